@@ -1,0 +1,22 @@
+include(CMakePackageConfigHelpers)
+
+set(meshwind_targets meshwind_core meshwind_mesh meshwind_geodesic meshwind_winding meshwind_machines
+                     meshwind_postproc)
+install(
+    TARGETS ${meshwind_targets}
+    EXPORT meshwindTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshwind)
+install(TARGETS meshwind_umbrella EXPORT meshwindTargets)
+install(TARGETS meshwind_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(
+    EXPORT meshwindTargets
+    NAMESPACE meshwind::
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/meshwind)
+configure_package_config_file(
+    ${CMAKE_SOURCE_DIR}/cmake/meshwindConfig.cmake.in ${CMAKE_BINARY_DIR}/meshwindConfig.cmake
+    INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/meshwind)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/meshwindConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/meshwindConfig.cmake ${CMAKE_BINARY_DIR}/meshwindConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/meshwind)

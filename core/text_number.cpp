@@ -1,0 +1,41 @@
+#include "core/text_number.h"
+
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace meshwind {
+
+void append_fixed(std::string& text, double value, int decimals) {
+    assert(std::isfinite(value));
+    std::array<char, 400> buffer;  // 309 digits before the point, the rest after it
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                            std::chars_format::fixed, decimals);
+    assert(error == std::errc{});
+    (void)error;
+    std::string_view digits(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+    if (digits.front() == '-' && digits.find_first_not_of("-0.") == std::string_view::npos) {
+        digits.remove_prefix(1);
+    }
+    text.append(digits);
+}
+
+void append_shortest(std::string& text, double value) {
+    assert(std::isfinite(value));
+    std::array<char, 32> buffer;
+    const auto [end, error] =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0);
+    assert(error == std::errc{});
+    (void)error;
+    text.append(buffer.data(), end);
+}
+
+std::string fixed(double value, int decimals) {
+    std::string text;
+    append_fixed(text, value, decimals);
+    return text;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,18 @@
+/// Numbers as text: locale-free, reproducible, never "-0.000".
+#pragma once
+
+#include <string>
+
+namespace meshwind {
+
+/// Appends `value` with exactly `decimals` digits after the point (>= 0). A value that rounds to zero
+/// carries no sign. \pre value is finite
+void append_fixed(std::string& text, double value, int decimals);
+
+/// Appends the shortest decimal text that reads back as `value`. \pre value is finite
+void append_shortest(std::string& text, double value);
+
+/// `append_fixed` on an empty string.
+[[nodiscard]] std::string fixed(double value, int decimals);
+
+}  // namespace meshwind

@@ -1,0 +1,23 @@
+/// Triangles as files hold them: points and index triples, no topology.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace meshwind {
+
+struct TriangleSoup {
+    std::vector<Eigen::Vector3d> points_mm;          ///< n x 3
+    std::vector<std::array<std::int32_t, 3>> faces;  ///< m x 3, counter-clockwise seen from outside
+};
+
+/// Area in mm^2 of all faces.
+[[nodiscard]] double area_mm2(const TriangleSoup& soup);
+
+/// Length in mm of the bounding box's diagonal; 0 for an empty soup.
+[[nodiscard]] double diagonal_mm(const TriangleSoup& soup);
+
+}  // namespace meshwind
