@@ -20,17 +20,18 @@ struct SurfacePoint {
 struct PathPoint {
     SurfacePoint at;
     Eigen::Vector3d position_mm;
-    Eigen::Vector3d normal;      ///< smooth outward normal
-    Eigen::Vector3d tangent;     ///< direction of travel, perpendicular to `normal`
-    double s_mm = 0.0;           ///< arc length from the path's start
-    double kn_per_mm = 0.0;      ///< normal curvature, > 0 where tension presses the fibre on
-    double kg_per_mm = 0.0;      ///< geodesic curvature, > 0 to the left of travel seen from outside
+    Eigen::Vector3d normal;   ///< smooth outward normal
+    Eigen::Vector3d tangent;  ///< direction of travel, perpendicular to `normal`
+    double s_mm = 0.0;        ///< arc length from the path's start
+    double kn_per_mm = 0.0;   ///< normal curvature, > 0 where tension presses the fibre on
+    double kg_per_mm = 0.0;   ///< geodesic curvature, > 0 to the left of travel seen from outside
 };
 
 using SurfacePath = std::vector<PathPoint>;
 
 /// Position of a surface point on its facet.
-[[nodiscard]] inline Eigen::Vector3d position_mm(const Surface& surface, const SurfacePoint& point) {
+[[nodiscard]] inline Eigen::Vector3d position_mm(const Surface& surface,
+                                                 const SurfacePoint& point) {
     const auto& [a, b, c] = surface.face[static_cast<std::size_t>(point.face)];
     return point.bary[0] * surface.position_mm[static_cast<std::size_t>(a)] +
            point.bary[1] * surface.position_mm[static_cast<std::size_t>(b)] +

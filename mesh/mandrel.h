@@ -36,8 +36,8 @@ struct Rim {
     Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, pointing away from the mandrel
     double radius_mm = 0.0;                           ///< mean distance of the loop from the axis
-    double circularity_mm = 0.0;                      ///< largest distance of a vertex from that circle
-    std::vector<std::int32_t> vertices;               ///< surface vertices in loop order
+    double circularity_mm = 0.0;         ///< largest distance of a vertex from that circle
+    std::vector<std::int32_t> vertices;  ///< surface vertices in loop order
 };
 
 /// How the spindle axis was found.
@@ -59,28 +59,29 @@ struct RepairReport {
 };
 
 struct MandrelOptions {
-    double unit_mm = 0.0;  ///< length of a file unit; 0: from the file, else mm (metres if < 10 units long)
+    double unit_mm =
+        0.0;  ///< length of a file unit; 0: from the file, else mm (metres if < 10 units long)
     struct Axis {
         Eigen::Vector3d origin;
         Eigen::Vector3d direction;
     };
-    std::optional<Axis> axis;                 ///< in the file's frame and units; none: found
-    std::vector<std::int32_t> keep_regions;   ///< region ids; empty: the outer wall
+    std::optional<Axis> axis;                ///< in the file's frame and units; none: found
+    std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
 };
 
 /// The winding surface with all that was found on the way. Immutable once loaded.
 struct Mandrel {
-    std::string file;                 ///< name without folder
-    double unit_mm = 1.0;             ///< length of a file unit
-    std::string unit_rule;            ///< "given" | "file" | "assumed"
-    TriangleSoup whole;               ///< every repaired triangle, mandrel frame: what can be hit
+    std::string file;       ///< name without folder
+    double unit_mm = 1.0;   ///< length of a file unit
+    std::string unit_rule;  ///< "given" | "file" | "assumed"
+    TriangleSoup whole;     ///< every repaired triangle, mandrel frame: what can be hit
     std::vector<std::int32_t> whole_region;  ///< region id per face of `whole`
-    Surface surface;                  ///< what is wound
+    Surface surface;                         ///< what is wound
     std::vector<Region> regions;
     std::vector<Rim> rims;
     SpindleAxis axis;
-    /// Mandrel-frame point in mm = linear * file point in file units + translation; the linear part is
-    /// a rotation times `unit_mm`.
+    /// Mandrel-frame point in mm = linear * file point in file units + translation; the linear part
+    /// is a rotation times `unit_mm`.
     Eigen::Affine3d file_to_mandrel = Eigen::Affine3d::Identity();
     RepairReport repairs;
     std::vector<std::string> remarks;  ///< one line each: what a user should know of this file
@@ -88,14 +89,15 @@ struct Mandrel {
 
 /// Reads, repairs, segments and freezes a mandrel file (STL, OBJ, PLY, OFF).
 /// \throws IoError mesh.unreadable; InputError mesh.* with the file, the place and the mend
-[[nodiscard]] Mandrel load_mandrel(const std::filesystem::path& file, const MandrelOptions& options = {});
+[[nodiscard]] Mandrel load_mandrel(const std::filesystem::path& file,
+                                   const MandrelOptions& options = {});
 
 /// The same from triangles in memory; `name` stands in for the file's name.
 [[nodiscard]] Mandrel build_mandrel(const TriangleSoup& file_units, const std::string& name,
                                     const MandrelOptions& options = {});
 
-/// Cylinder of the rim's radius from the rim outward, closed at its far end: the mandrel's extension.
-/// \param length_mm > 0 \param segments >= 3 around
+/// Cylinder of the rim's radius from the rim outward, closed at its far end: the mandrel's
+/// extension. \param length_mm > 0 \param segments >= 3 around
 [[nodiscard]] TriangleSoup extension_of(const Rim& rim, double length_mm, int segments = 96);
 
 }  // namespace meshwind

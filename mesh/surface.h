@@ -22,34 +22,36 @@ struct FitReport {
     int averaged = 0;   ///< fell back again: angle-weighted facet normal, curvature from facets
 };
 
-/// Positions, adjacency, smooth normals and curvature. Vertices on a feature edge have one normal per
-/// smooth side, so normals and shape operators belong to `corner` indices, not to vertices.
+/// Positions, adjacency, smooth normals and curvature. Vertices on a feature edge have one normal
+/// per smooth side, so normals and shape operators belong to `corner` indices, not to vertices.
 struct Surface {
-    std::vector<Eigen::Vector3d> position_mm;            ///< per vertex
-    std::vector<std::array<std::int32_t, 3>> face;       ///< vertex indices, outside = counter-clockwise
+    std::vector<Eigen::Vector3d> position_mm;       ///< per vertex
+    std::vector<std::array<std::int32_t, 3>> face;  ///< vertex indices, outside = counter-clockwise
     std::vector<std::array<std::int32_t, 3>> neighbour;  ///< face across edge e, kNoFace at a rim
     std::vector<std::array<std::uint8_t, 3>> feature;    ///< 1 where edge e is a feature edge
     std::vector<std::array<std::int32_t, 3>> corner;     ///< index of the smooth normal of corner e
     std::vector<std::int32_t> region;                    ///< per face: region id of the mandrel
-    std::vector<std::array<std::int32_t, 3>> rim;        ///< rim id of edge e where it is a rim, else -1
-    std::vector<Eigen::Vector3d> normal;                 ///< per corner index, unit, outward
-    /// Per corner index: dn, symmetric, with `normal` in its kernel; t . S t = kn in 1/mm, > 0 convex.
+    std::vector<std::array<std::int32_t, 3>> rim;  ///< rim id of edge e where it is a rim, else -1
+    std::vector<Eigen::Vector3d> normal;           ///< per corner index, unit, outward
+    /// Per corner index: dn, symmetric, with `normal` in its kernel; t . S t = kn in 1/mm, > 0
+    /// convex.
     std::vector<Eigen::Matrix3d> shape_operator_per_mm;
     double mean_edge_mm = 0.0;
     FitReport fit;
 };
 
-/// What `freeze_surface` needs beside the triangles; all spans are per face and as long as `soup.faces`.
+/// What `freeze_surface` needs beside the triangles; all spans are per face and as long as
+/// `soup.faces`.
 struct FreezeInput {
     std::span<const std::array<std::uint8_t, 3>> feature;  ///< 1 = feature edge
     std::span<const std::int32_t> region;
     std::span<const std::array<std::int32_t, 3>> rim;  ///< rim id per edge, -1 elsewhere
 };
 
-/// Flat arrays from an oriented manifold soup in the mandrel frame. Normals and shape operators come
-/// from a local least-squares height fit, cubic where the neighbourhood allows; never across a feature
-/// edge. \pre soup is manifold, oriented, without degenerate faces (see repair.h)
-/// Accuracy: tests/mesh/surface_test.cpp (normals third order, curvature second order in edge length).
+/// Flat arrays from an oriented manifold soup in the mandrel frame. Normals and shape operators
+/// come from a local least-squares height fit, cubic where the neighbourhood allows; never across a
+/// feature edge. \pre soup is manifold, oriented, without degenerate faces (see repair.h) Accuracy:
+/// tests/mesh/surface_test.cpp (normals third order, curvature second order in edge length).
 [[nodiscard]] Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input);
 
 }  // namespace meshwind

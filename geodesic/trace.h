@@ -1,0 +1,51 @@
+/// Fibre paths over the triangles: the tangent is carried in the smooth normal field and steered.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geodesic/surface_path.h"
+
+namespace meshwind {
+
+/// Why a trace ended. Every value is a normal outcome, none is an error.
+enum class TraceStop { Length, Rim, FaceLimit };
+
+/// "length", "rim", "face-limit".
+[[nodiscard]] const char* name_of(TraceStop stop);
+
+/// The law of steering: kg = slip_ratio * kn. A fibre is pressed on only where kn > 0, so a plan
+/// may ask for another ratio (usually 0, the geodesic) where the surface is concave along it.
+struct Steering {
+    double slip_ratio = 0.0;
+    double slip_ratio_concave = 0.0;  ///< where kn < 0
+};
+
+struct TraceOptions {
+    double max_length_mm = 1e5;  ///< > 0; the path is cut exactly here
+    int max_faces = 1'000'000;   ///< > 0; reached gives TraceStop::FaceLimit: a trace always ends
+};
+
+struct TraceResult {
+    SurfacePath path;  ///< n >= 1 stations: the start, every edge crossing, the end
+    TraceStop stop = TraceStop::Length;
+    std::int32_t rim = -1;  ///< where TraceStop::Rim: the rim's id
+};
+
+/// Fibre path from `start` into `direction`, which is projected into the tangent plane.
+/// On each facet the path is straight; from crossing to crossing the tangent is turned by the
+/// minimal rotation between the interpolated smooth normals and by kg ds about the normal. Convex
+/// feature edges are crossed by unfolding, for which the smooth normals of both sides are used.
+/// \pre start.face is a face of `surface`; direction is not parallel to the normal there
+/// Accuracy: second order in edge length (tests/geodesic/trace_test.cpp).
+/// Source: the walk of polthier_1998_straightest, with the facet's angle rule replaced.
+[[nodiscard]] TraceResult trace(const Surface& surface, const SurfacePoint& start,
+                                const Eigen::Vector3d& direction, const Steering& steering = {},
+                                const TraceOptions& options = {});
+
+/// Smooth outward unit normal at a surface point, interpolated from the face's corners.
+[[nodiscard]] Eigen::Vector3d smooth_normal(const Surface& surface, const SurfacePoint& point);
+
+/// The same way travelled backwards; arc length counts from the new start.
+[[nodiscard]] SurfacePath reversed(const SurfacePath& path);
+
+}  // namespace meshwind

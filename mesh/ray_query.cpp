@@ -1,0 +1,193 @@
+#include "mesh/ray_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <embree3/rtcore.h>
+#include <Eigen/Geometry>
+
+#include "core/error.h"
+
+namespace meshwind {
+namespace {
+
+// Barycentric coordinates of the point of triangle abc nearest to p (by Voronoi regions of the
+// triangle's features). Source: ericson_2004_collision, sec. 5.1.5.
+Eigen::Vector3d closest_bary(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                             const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    const Eigen::Vector3d ab = b - a;
+    const Eigen::Vector3d ac = c - a;
+    const double d1 = ab.dot(p - a);
+    const double d2 = ac.dot(p - a);
+    if (d1 <= 0.0 && d2 <= 0.0) {
+        return {1.0, 0.0, 0.0};
+    }
+    const double d3 = ab.dot(p - b);
+    const double d4 = ac.dot(p - b);
+    if (d3 >= 0.0 && d4 <= d3) {
+        return {0.0, 1.0, 0.0};
+    }
+    const double d5 = ab.dot(p - c);
+    const double d6 = ac.dot(p - c);
+    if (d6 >= 0.0 && d5 <= d6) {
+        return {0.0, 0.0, 1.0};
+    }
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+        const double v = d1 / (d1 - d3);
+        return {1.0 - v, v, 0.0};
+    }
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+        const double w = d2 / (d2 - d6);
+        return {1.0 - w, 0.0, w};
+    }
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+        const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {0.0, 1.0 - w, w};
+    }
+    const double sum = va + vb + vc;
+    return {va / sum, vb / sum, vc / sum};
+}
+
+struct Search {
+    const std::vector<TriangleSoup>* parts;
+    Eigen::Vector3d query;
+    ClosestPoint best;
+};
+
+bool visit_triangle(RTCPointQueryFunctionArguments* args) {
+    auto& search = *static_cast<Search*>(args->userPtr);
+    const auto part = static_cast<std::int32_t>(args->geomID);
+    const auto face = static_cast<std::int32_t>(args->primID);
+    const TriangleSoup& soup = (*search.parts)[args->geomID];
+    const auto& v = soup.faces[args->primID];
+    const Eigen::Vector3d& a = soup.points_mm[static_cast<std::size_t>(v[0])];
+    const Eigen::Vector3d& b = soup.points_mm[static_cast<std::size_t>(v[1])];
+    const Eigen::Vector3d& c = soup.points_mm[static_cast<std::size_t>(v[2])];
+    const Eigen::Vector3d bary = closest_bary(search.query, a, b, c);
+    const Eigen::Vector3d point = bary[0] * a + bary[1] * b + bary[2] * c;
+    const double distance = (point - search.query).norm();
+    ClosestPoint& best = search.best;
+    // The lowest part and face among equals, so that the answer does not depend on traversal order.
+    const bool nearer = distance < best.distance_mm ||
+                        (distance == best.distance_mm && (best.part < 0 || part < best.part ||
+                                                          (part == best.part && face < best.face)));
+    if (!nearer) {
+        return false;
+    }
+    best = {part, face, bary, point, distance};
+    args->query->radius = std::nextafter(static_cast<float>(distance), INFINITY);
+    return true;
+}
+
+RTCRay ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max) {
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(origin.x());
+    ray.org_y = static_cast<float>(origin.y());
+    ray.org_z = static_cast<float>(origin.z());
+    ray.dir_x = static_cast<float>(direction.x());
+    ray.dir_y = static_cast<float>(direction.y());
+    ray.dir_z = static_cast<float>(direction.z());
+    ray.tfar = static_cast<float>(max);
+    ray.mask = ~0U;
+    return ray;
+}
+
+}  // namespace
+
+struct RayQuery::Impl {
+    std::vector<TriangleSoup> parts;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    ~Impl() {
+        if (scene != nullptr) {
+            rtcReleaseScene(scene);
+        }
+        if (device != nullptr) {
+            rtcReleaseDevice(device);
+        }
+    }
+
+    void add(unsigned id, const TriangleSoup& soup) const {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+            std::max<std::size_t>(soup.points_mm.size(), 1)));
+        for (const Eigen::Vector3d& p : soup.points_mm) {
+            for (const double x : p) {
+                *vertex++ = static_cast<float>(x);
+            }
+        }
+        auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
+            std::max<std::size_t>(soup.faces.size(), 1)));
+        std::fill(index, index + 3, 0U);
+        for (const auto& face : soup.faces) {
+            for (const std::int32_t v : face) {
+                *index++ = static_cast<std::uint32_t>(v);
+            }
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene, geometry, id);
+        rtcReleaseGeometry(geometry);
+    }
+};
+
+RayQuery::RayQuery(std::span<const TriangleSoup> parts) : impl_(std::make_unique<Impl>()) {
+    impl_->parts.assign(parts.begin(), parts.end());
+    impl_->device = rtcNewDevice(nullptr);
+    if (impl_->device == nullptr) {
+        throw NumericalError("mesh.ray_device", "",
+                             "the ray tracing library Embree does not start");
+    }
+    impl_->scene = rtcNewScene(impl_->device);
+    rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+    for (std::size_t i = 0; i < impl_->parts.size(); ++i) {
+        impl_->add(static_cast<unsigned>(i), impl_->parts[i]);
+    }
+    rtcCommitScene(impl_->scene);
+}
+
+RayQuery::~RayQuery() = default;
+RayQuery::RayQuery(RayQuery&&) noexcept = default;
+RayQuery& RayQuery::operator=(RayQuery&&) noexcept = default;
+
+double RayQuery::first_hit_mm(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                              double max_mm) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    query.ray = ray_of(origin, direction, max_mm);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(impl_->scene, &context, &query);
+    return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? max_mm
+                                                       : static_cast<double>(query.ray.tfar);
+}
+
+bool RayQuery::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray = ray_of(from, to - from, 1.0);
+    rtcOccluded1(impl_->scene, &context, &ray);
+    return ray.tfar < 0.0F;
+}
+
+ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) const {
+    Search search{&impl_->parts, query, {}};
+    search.best.distance_mm = radius_mm;
+    RTCPointQuery point{};
+    point.x = static_cast<float>(query.x());
+    point.y = static_cast<float>(query.y());
+    point.z = static_cast<float>(query.z());
+    point.radius = static_cast<float>(radius_mm);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(impl_->scene, &point, &context, visit_triangle, &search);
+    return search.best;
+}
+
+}  // namespace meshwind

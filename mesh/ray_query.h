@@ -1,0 +1,50 @@
+/// Rays, closest points and clearances against everything that can be hit (Embree).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "mesh/triangle_soup.h"
+
+namespace meshwind {
+
+/// The nearest point of a triangle set. Mandrel frame.
+struct ClosestPoint {
+    std::int32_t part =
+        -1;  ///< which soup, in the order given; -1: nothing within the search radius
+    std::int32_t face = -1;
+    Eigen::Vector3d bary = Eigen::Vector3d::Zero();
+    Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
+    double distance_mm = 0.0;
+};
+
+/// Queries against triangles; thread-safe once built. Embree stores single precision: positions are
+/// good to about 1e-7 of the scene's size; closest points are computed in double on Embree's
+/// triangle order.
+class RayQuery {
+public:
+    /// \param parts triangle soups, copied \pre face indices are valid
+    explicit RayQuery(std::span<const TriangleSoup> parts);
+    ~RayQuery();
+    RayQuery(RayQuery&&) noexcept;
+    RayQuery& operator=(RayQuery&&) noexcept;
+
+    /// Distance in mm from `origin` along unit `direction` to the first triangle, or `max_mm`.
+    [[nodiscard]] double first_hit_mm(const Eigen::Vector3d& origin,
+                                      const Eigen::Vector3d& direction, double max_mm) const;
+
+    /// True when a triangle crosses the straight segment.
+    [[nodiscard]] bool occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+    /// Nearest point within `radius_mm`; part -1 and distance `radius_mm` when there is none.
+    [[nodiscard]] ClosestPoint closest(const Eigen::Vector3d& query, double radius_mm) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meshwind

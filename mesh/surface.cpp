@@ -1,0 +1,263 @@
+#include "mesh/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <Eigen/Geometry>
+
+#include "core/parallel.h"
+#include "mesh/jet_fit.h"
+
+namespace meshwind {
+namespace {
+
+using Index = std::int32_t;
+
+constexpr int kRings = 2;            // of neighbours for a cubic fit: 18 on a regular mesh
+constexpr std::size_t kEnough = 14;  // fewer than this and one more ring is taken
+constexpr std::size_t kFitChunk = 256;
+
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
+
+void link_neighbours(Surface& surface) {
+    std::unordered_map<std::uint64_t, std::pair<Index, int>> open;
+    open.reserve(surface.face.size() * 2);
+    const auto key = [](Index a, Index b) {
+        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32U) |
+               static_cast<std::uint32_t>(b);
+    };
+    surface.neighbour.assign(surface.face.size(), {kNoFace, kNoFace, kNoFace});
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Index a = surface.face[f][e];
+            const Index b = surface.face[f][(e + 1) % 3];
+            const auto twin = open.find(key(b, a));
+            if (twin == open.end()) {
+                open.emplace(key(a, b), std::pair{static_cast<Index>(f), static_cast<int>(e)});
+                continue;
+            }
+            const auto [g, j] = twin->second;
+            surface.neighbour[f][e] = g;
+            surface.neighbour[at(g)][static_cast<std::size_t>(j)] = static_cast<Index>(f);
+            open.erase(twin);
+        }
+    }
+}
+
+std::size_t corner_of_vertex(const Surface& surface, Index face, Index vertex) {
+    const auto& v = surface.face[at(face)];
+    return v[0] == vertex ? 0 : (v[1] == vertex ? 1 : 2);
+}
+
+// One corner index per smooth fan: faces around a vertex joined across edges that are no features.
+void number_corners(Surface& surface, std::vector<Index>& corner_vertex) {
+    surface.corner.assign(surface.face.size(), {-1, -1, -1});
+    std::vector<std::pair<Index, std::size_t>> stack;
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (surface.corner[f][c] >= 0) {
+                continue;
+            }
+            const Index vertex = surface.face[f][c];
+            const Index id = static_cast<Index>(corner_vertex.size());
+            corner_vertex.push_back(vertex);
+            stack.assign(1, {static_cast<Index>(f), c});
+            while (!stack.empty()) {
+                const auto [g, k] = stack.back();
+                stack.pop_back();
+                if (surface.corner[at(g)][k] >= 0) {
+                    continue;
+                }
+                surface.corner[at(g)][k] = id;
+                for (const std::size_t e : {k, (k + 2) % 3}) {  // the two edges at this corner
+                    const Index next = surface.neighbour[at(g)][e];
+                    if (next != kNoFace && surface.feature[at(g)][e] == 0) {
+                        stack.emplace_back(next, corner_of_vertex(surface, next, vertex));
+                    }
+                }
+            }
+        }
+    }
+}
+
+std::vector<Eigen::Vector3d> angle_weighted_normals(const Surface& surface, std::size_t corners) {
+    std::vector<Eigen::Vector3d> normals(corners, Eigen::Vector3d::Zero());
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const auto& v = surface.face[f];
+        const Eigen::Vector3d ab = surface.position_mm[at(v[1])] - surface.position_mm[at(v[0])];
+        const Eigen::Vector3d ac = surface.position_mm[at(v[2])] - surface.position_mm[at(v[0])];
+        const Eigen::Vector3d facet = ab.cross(ac).normalized();
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Eigen::Vector3d& p = surface.position_mm[at(v[c])];
+            const Eigen::Vector3d u = surface.position_mm[at(v[(c + 1) % 3])] - p;
+            const Eigen::Vector3d w = surface.position_mm[at(v[(c + 2) % 3])] - p;
+            const double angle = std::atan2(u.cross(w).norm(), u.dot(w));
+            normals[at(surface.corner[f][c])] += angle * facet;
+        }
+    }
+    for (std::size_t i = 0; i < corners; ++i) {
+        normals[i].normalize();
+    }
+    return normals;
+}
+
+// Compressed rows: row i holds the indices next to i.
+struct Rows {
+    std::vector<Index> begin;
+    std::vector<Index> item;
+
+    [[nodiscard]] std::span<const Index> operator[](Index i) const {
+        const std::size_t first = at(begin[at(i)]);
+        return {item.data() + first, at(begin[at(i) + 1]) - first};
+    }
+};
+
+// For each corner index the corner indices it shares an edge with, all on its smooth side.
+Rows one_rings(const Surface& surface, std::size_t corners) {
+    std::vector<std::pair<Index, Index>> pairs;
+    pairs.reserve(surface.face.size() * 6);
+    for (const auto& c : surface.corner) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            pairs.emplace_back(c[e], c[(e + 1) % 3]);
+            pairs.emplace_back(c[(e + 1) % 3], c[e]);
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    Rows rows;
+    rows.begin.assign(corners + 1, 0);
+    rows.item.reserve(pairs.size());
+    for (const auto& [from, to] : pairs) {
+        rows.item.push_back(to);
+        ++rows.begin[at(from) + 1];
+    }
+    for (std::size_t i = 0; i < corners; ++i) {
+        rows.begin[i + 1] += rows.begin[i];
+    }
+    return rows;
+}
+
+// The corners within `kRings` rings of `centre`, nearest rings first; one ring more where few.
+void gather(const Rows& rings, Index centre, std::vector<Index>& found) {
+    found.assign(1, centre);
+    std::size_t begin = 0;
+    for (int ring = 0; ring < kRings || (ring == kRings && found.size() <= kEnough); ++ring) {
+        const std::size_t end = found.size();
+        for (std::size_t i = begin; i < end; ++i) {
+            for (const Index next : rings[found[i]]) {
+                if (std::find(found.begin(), found.end(), next) == found.end()) {
+                    found.push_back(next);
+                }
+            }
+        }
+        begin = end;
+    }
+    found.erase(found.begin());
+}
+
+enum class Fit : std::uint8_t { Cubic, Quadratic, Averaged };
+
+class CornerFitter {
+public:
+    CornerFitter(const Surface& surface, const Rows& rings, std::span<const Index> corner_vertex,
+                 std::span<const Eigen::Vector3d> averaged)
+        : surface_(surface), rings_(rings), corner_vertex_(corner_vertex), averaged_(averaged) {}
+
+    Fit fit(Index corner, Jet& jet) {
+        const Eigen::Vector3d& centre = position(corner);
+        const Eigen::Vector3d& guess = averaged_[at(corner)];
+        gather(rings_, corner, found_);
+        collect(found_);
+        if (const auto cubic = fit_jet(centre, guess, points_, 3)) {
+            jet = *cubic;
+            return Fit::Cubic;
+        }
+        if (const auto quadratic = fit_jet(centre, guess, points_, 2)) {
+            jet = *quadratic;
+            return Fit::Quadratic;
+        }
+        found_.assign(rings_[corner].begin(), rings_[corner].end());
+        collect(found_);
+        normals_.clear();
+        for (const Index i : found_) {
+            normals_.push_back(averaged_[at(i)]);
+        }
+        jet.normal = guess;
+        jet.shape_operator_per_mm = shape_operator_from_normals(centre, guess, points_, normals_);
+        return Fit::Averaged;
+    }
+
+private:
+    [[nodiscard]] const Eigen::Vector3d& position(Index corner) const {
+        return surface_.position_mm[at(corner_vertex_[at(corner)])];
+    }
+
+    void collect(const std::vector<Index>& corners) {
+        points_.clear();
+        for (const Index i : corners) {
+            points_.push_back(position(i));
+        }
+    }
+
+    const Surface& surface_;
+    const Rows& rings_;
+    std::span<const Index> corner_vertex_;
+    std::span<const Eigen::Vector3d> averaged_;
+    std::vector<Index> found_;
+    std::vector<Eigen::Vector3d> points_;
+    std::vector<Eigen::Vector3d> normals_;
+};
+
+void fit_corners(Surface& surface, std::span<const Index> corner_vertex) {
+    const std::size_t corners = corner_vertex.size();
+    const std::vector<Eigen::Vector3d> averaged = angle_weighted_normals(surface, corners);
+    const Rows rings = one_rings(surface, corners);
+    surface.normal.resize(corners);
+    surface.shape_operator_per_mm.resize(corners);
+    std::vector<Fit> used(corners);
+    parallel_for(corners, kFitChunk, [&](std::size_t begin, std::size_t end) {
+        CornerFitter fitter(surface, rings, corner_vertex, averaged);
+        for (std::size_t i = begin; i < end; ++i) {
+            Jet jet;
+            used[i] = fitter.fit(static_cast<Index>(i), jet);
+            surface.normal[i] = jet.normal;
+            surface.shape_operator_per_mm[i] = jet.shape_operator_per_mm;
+        }
+    });
+    const auto count = [&](Fit fit) {
+        return static_cast<int>(std::count(used.begin(), used.end(), fit));
+    };
+    surface.fit = {count(Fit::Cubic), count(Fit::Quadratic), count(Fit::Averaged)};
+}
+
+double mean_edge(const Surface& surface) {
+    double sum = 0.0;
+    for (const auto& v : surface.face) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            sum += (surface.position_mm[at(v[(e + 1) % 3])] - surface.position_mm[at(v[e])]).norm();
+        }
+    }
+    return surface.face.empty() ? 0.0 : sum / (3.0 * static_cast<double>(surface.face.size()));
+}
+
+}  // namespace
+
+Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input) {
+    Surface surface;
+    surface.position_mm = soup.points_mm;
+    surface.face = soup.faces;
+    surface.feature.assign(input.feature.begin(), input.feature.end());
+    surface.region.assign(input.region.begin(), input.region.end());
+    surface.rim.assign(input.rim.begin(), input.rim.end());
+    link_neighbours(surface);
+    std::vector<Index> corner_vertex;
+    number_corners(surface, corner_vertex);
+    fit_corners(surface, corner_vertex);
+    surface.mean_edge_mm = mean_edge(surface);
+    return surface;
+}
+
+}  // namespace meshwind
