@@ -243,7 +243,8 @@ private:
                                                (verdict_[i] == Verdict::Unknown && !known_only));
             }
             selection_ = select_courses(members_, allowed, samples_.size(), options_.select);
-            balance_rims(members_, allowed, mandrel_.rims.size(), options_.select, selection_);
+            laid_ = balance_courses(members_, allowed, mandrel_.rims.size(), options_.select,
+                                    selection_);
             if (verify_chosen()) {
                 return;
             }
@@ -252,19 +253,19 @@ private:
 
     void lay_out() {
         const std::vector<OrderedCourse> order =
-            order_courses(mandrel_.rims, members_, selection_.chosen, rules_.turn);
+            order_courses(mandrel_.rims, members_, laid_, rules_.turn);
         bool fresh = true;
         for (std::size_t i = 0; i < order.size(); ++i) {
-            const Member& member = members_[at(order[i].member)];
-            Piece piece = course_of(member, order[i].backward);
+            const auto [member, backward] = order[i].course;
+            Piece piece = course_of(members_[at(member)], backward);
             piece.starts_fibre = fresh;
             plan_.fibres += fresh ? 1 : 0;
             add_piece(std::move(piece));
             fresh = order[i].cut_after;
             if (!fresh) {
-                const Member& next = members_[at(order[i + 1].member)];
-                add_piece(turn_between(end_of(member, order[i].backward),
-                                       start_of(next, order[i + 1].backward)));
+                const LaidCourse& next = order[i + 1].course;
+                add_piece(turn_between(end_of(members_[at(member)], backward),
+                                       start_of(members_[at(next.member)], next.backward)));
             }
         }
         plan_.courses = static_cast<int>(order.size());
@@ -410,6 +411,7 @@ private:
     std::vector<char> reached_;
     std::vector<Refusal> closest_miss_;  // per sample: the last check that a candidate there failed
     Selection selection_;
+    std::vector<LaidCourse> laid_;
     std::uint64_t draws_ = 0;
     Plan plan_;
 };

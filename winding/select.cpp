@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <map>
 #include <queue>
 
 namespace meshwind {
@@ -115,112 +113,11 @@ private:
     Selection selection_;
 };
 
-int total(const std::vector<int>& imbalance) {
-    int sum = 0;
-    for (const int d : imbalance) {
-        sum += std::abs(d);
-    }
-    return sum;
-}
-
-void shift(std::vector<int>& imbalance, const Member& member) {
-    for (const RimCrossing& end : member.end) {
-        imbalance[at(end.rim)] += end.sense;
-    }
-}
-
-// Members that change the imbalance in the same way: one entry per way, with the members that do.
-using Moves = std::map<std::vector<int>, std::vector<std::int32_t>>;
-
-Moves moves_of(std::span<const Member> members, std::span<const char> allowed, std::size_t rims) {
-    Moves moves;
-    for (std::int32_t i = 0; at(i) < members.size(); ++i) {
-        std::vector<int> change(rims, 0);
-        shift(change, members[at(i)]);
-        if (allowed[at(i)] != 0 && total(change) > 0) {
-            moves[change].push_back(i);
-        }
-    }
-    return moves;
-}
-
-// Shortest sequence of moves to an imbalance of at most two ends, by breadth-first search.
-std::vector<std::vector<int>> shortest_balance(const std::vector<int>& start, const Moves& moves) {
-    std::map<std::vector<int>, std::vector<int>> came_by;  // state -> move that led to it
-    std::deque<std::vector<int>> queue{start};
-    came_by[start] = {};
-    const int limit = total(start) + 2;
-    while (!queue.empty()) {
-        const std::vector<int> state = queue.front();
-        queue.pop_front();
-        if (total(state) <= 2) {
-            std::vector<std::vector<int>> way;
-            for (std::vector<int> s = state; !came_by[s].empty();) {
-                const std::vector<int> move = came_by[s];
-                way.push_back(move);
-                for (std::size_t r = 0; r < s.size(); ++r) {
-                    s[r] -= move[r];
-                }
-            }
-            return way;
-        }
-        for (const auto& [move, unused] : moves) {
-            std::vector<int> next = state;
-            for (std::size_t r = 0; r < next.size(); ++r) {
-                next[r] += move[r];
-            }
-            if (total(next) <= limit && came_by.try_emplace(next, move).second) {
-                queue.push_back(next);
-            }
-        }
-    }
-    return {};
-}
-
 }  // namespace
 
 Selection select_courses(std::span<const Member> members, std::span<const char> allowed,
                          std::size_t samples, const SelectOptions& options) {
     return Selector(members, allowed, samples, options).run();
-}
-
-std::vector<int> rim_imbalance(std::span<const Member> members,
-                               std::span<const std::int32_t> chosen, std::size_t rims) {
-    std::vector<int> imbalance(rims, 0);
-    for (const std::int32_t i : chosen) {
-        shift(imbalance, members[at(i)]);
-    }
-    return imbalance;
-}
-
-bool balance_rims(std::span<const Member> members, std::span<const char> allowed, std::size_t rims,
-                  const SelectOptions& options, Selection& selection) {
-    const std::vector<int> start = rim_imbalance(members, selection.chosen, rims);
-    if (total(start) <= 2) {
-        return true;
-    }
-    const Moves moves = moves_of(members, allowed, rims);
-    const auto way = shortest_balance(start, moves);
-    for (const std::vector<int>& move : way) {
-        std::int32_t best = -1;
-        double least = 0.0;
-        for (const std::int32_t i : moves.at(move)) {
-            double cost = members[at(i)].length_mm;
-            for (const std::int32_t sample : members[at(i)].footprint) {
-                cost += options.overlap_weight *
-                        std::max(0, selection.layers[at(sample)] - options.target_layers);
-            }
-            if (best < 0 || cost < least) {
-                best = i;
-                least = cost;
-            }
-        }
-        selection.chosen.push_back(best);
-        for (const std::int32_t sample : members[at(best)].footprint) {
-            ++selection.layers[at(sample)];
-        }
-    }
-    return !way.empty();
 }
 
 }  // namespace meshwind

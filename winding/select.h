@@ -33,17 +33,4 @@ struct Selection {
                                        std::span<const char> allowed, std::size_t samples,
                                        const SelectOptions& options = {});
 
-/// Members whose ends cannot be paired: at each rim a fibre that leaves counter-clockwise must come
-/// back as one that leaves clockwise seen along its own way out. Entry r is (ends with sense +1) -
-/// (ends with sense -1) at rim r. One continuous fibre exists only if the entries' absolute values
-/// sum to <= 2.
-[[nodiscard]] std::vector<int> rim_imbalance(std::span<const Member> members,
-                                             std::span<const std::int32_t> chosen,
-                                             std::size_t rims);
-
-/// Adds the members that balance the rims at the least waste. \return false when the library has
-/// none that would. \param selection changed in place
-bool balance_rims(std::span<const Member> members, std::span<const char> allowed, std::size_t rims,
-                  const SelectOptions& options, Selection& selection);
-
 }  // namespace meshwind

@@ -18,7 +18,7 @@ constexpr double kMaxTurnAngle_rad = 84.0 * kPi / 180.0;
 
 // Share of the friction that a turn uses when the extension is long enough: less would waste fibre,
 // more leaves nothing for a wet or worn surface.
-constexpr double kEasyShare = 0.7;
+constexpr double kEasyShare = 0.85;
 
 // Steered with just this share where the extension is short: the rest is the margin of measurement.
 constexpr double kFullShare = 0.98;
