@@ -1,0 +1,109 @@
+// Programs read by LinuxCNC's own interpreter against the plan and against our reader.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "machines/machine_json.h"
+#include "postproc/linuxcnc.h"
+#include "postproc/motion_csv.h"
+#include "synthetic_paths.h"
+
+namespace meshwind {
+namespace {
+
+const std::string kSource = MESHWIND_SOURCE_DIR;
+constexpr int kUnavailable = 77;
+
+int run(const std::string& command) {
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void save(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    ASSERT_TRUE(stream.flush());
+}
+
+class LinuxCncOracle : public testing::Test {
+protected:
+    void SetUp() override {
+        if (run(kSource + "/tests/tools/run_rs274.sh --setup") == kUnavailable) {
+            GTEST_SKIP() << "LinuxCNC's interpreter is unavailable; see tests/tools/run_rs274.sh";
+        }
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("meshwind-oracle-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+
+    void TearDown() override {
+        if (!folder_.empty()) {
+            std::filesystem::remove_all(folder_);
+        }
+    }
+
+    // Writes program and table, compares ours and theirs.
+    void check(const std::string& machine_file, const BlockList& blocks) {
+        const Machine machine = read_machine(machine_file);
+        const LinuxCnc dialect;
+        const BlockList prepared = dialect.prepare(blocks);
+        const std::string text =
+            dialect.write(machine, prepared, {.version = "test", .mandrel = "synthetic (no file)"});
+        EXPECT_EQ(dialect.read(text, "program.ngc", machine).nano, prepared.nano);
+        save(folder_ / "program.ngc", text);
+        save(folder_ / "motion.csv", motion_csv(machine, prepared));
+        const int code =
+            run(kSource + "/tests/tools/check_program.py " + (folder_ / "program.ngc").string() +
+                " " + (folder_ / "motion.csv").string() + " " + machine_file);
+        if (code == kUnavailable) {
+            GTEST_SKIP() << "LinuxCNC's interpreter is unavailable";
+        }
+        EXPECT_EQ(code, 0);
+    }
+
+    static BlockList plan(const std::string& machine_file, const EyePath& path) {
+        const Machine machine = read_machine(machine_file);
+        const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
+        EXPECT_TRUE(joints.violations.empty());
+        return make_blocks(machine, path, joints, time_path(machine, path, joints));
+    }
+
+    std::string six_axis_ = kSource + "/machines/six_axis.json";
+    std::string five_axis_ = kSource + "/data/conformance/machine/valid/five_axis_roll_only.json";
+    std::filesystem::path folder_;
+};
+
+TEST_F(LinuxCncOracle, HelixForwardAndReturn) {
+    const EyePath path = test::strokes(70.0, 200.0, 2.0, 600.0, 8);
+    check(six_axis_, plan(six_axis_, path));
+    check(five_axis_, plan(five_axis_, path));
+}
+
+TEST_F(LinuxCncOracle, BodyWithoutRotationalSymmetry) {
+    check(six_axis_, plan(six_axis_, test::elliptic_helix(5000)));
+}
+
+TEST_F(LinuxCncOracle, HundredThousandBlocks) {
+    check(six_axis_, plan(six_axis_, test::helix(70.0, rad_from_deg(89.0), 200.0, 1.0, 100'001)));
+}
+
+TEST_F(LinuxCncOracle, LongTurnBesideATinyLinearMove) {
+    BlockList list = plan(six_axis_, test::helix(70.0, rad_from_deg(45.0), 200.0, 5.0, 1));
+    std::vector<std::int64_t> row(list.row(0).begin(), list.row(0).end());
+    for (int i = 0; i < 20; ++i) {
+        row[0] += 360 * kNanoPerUnit;
+        row[3] += 1'000'000 * (i % 4);
+        list.blocks.push_back({.duration_s = 0.7 + i, .piece = 0, .point = i + 1});
+        list.nano.insert(list.nano.end(), row.begin(), row.end());
+    }
+    check(six_axis_, list);
+}
+
+}  // namespace
+}  // namespace meshwind
