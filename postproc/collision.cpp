@@ -102,8 +102,8 @@ private:
         return base_from_mandrel(machine_, q).inverse() * base_from_link(machine_, q, link);
     }
 
-    // Upper bound of how far a piece moves against the mandrel while the joints go from the middle of
-    // [low, high] to an end: linear axes add up, rotary ones count with the piece's distance.
+    // Upper bound of how far a piece moves against the mandrel while the joints go from the middle
+    // of [low, high] to an end: linear axes add up, rotary ones count with the piece's distance.
     [[nodiscard]] double motion(const Chunk& chunk, const Isometry3d& pose, double share) const {
         const Vector3d centre = pose * chunk.centre();
         const double from_spindle =
@@ -185,8 +185,8 @@ bool fibre_blocked(const RayQuery& obstacles, const EyePoint& a, const EyePoint&
         const Vector3d tangent = (eye - landing).normalized();
         const Vector3d binormal = (a.binormal + share * (b.binormal - a.binormal)).normalized();
         const Vector3d normal = tangent.cross(binormal);
-        const Vector3d start = landing + rule.free_fibre.stand_off_mm * normal +
-                               rule.free_fibre.start_mm * tangent;
+        const Vector3d start =
+            landing + rule.free_fibre.stand_off_mm * normal + rule.free_fibre.start_mm * tangent;
         if (obstacles.occluded(start, eye)) {
             return true;
         }
@@ -222,8 +222,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
     std::vector<double> clearance(path.size(), kClearanceCap_mm);
     parallel_for(path.size(), kStepChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const bool checked =
-                i > 0 && !std::binary_search(tied_on.begin(), tied_on.end(), i);
+            const bool checked = i > 0 && !std::binary_search(tied_on.begin(), tied_on.end(), i);
             const std::size_t before = checked ? i - 1 : i;
             fibre[i] = fibre_blocked(obstacles, path[before], path[i], rule) ? 1 : 0;
             const StepSweep sweep(machine, obstacles, rule.clearance_mm, joints.row(before),
@@ -231,8 +230,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
             const Isometry3d mandrel = base_from_mandrel(machine, joints.row(i)).inverse();
             for (const LinkedChunk& part : chunks) {
                 head[i] = static_cast<char>(head[i] != 0 || !sweep.clear(part));
-                const Isometry3d pose =
-                    mandrel * base_from_link(machine, joints.row(i), part.link);
+                const Isometry3d pose = mandrel * base_from_link(machine, joints.row(i), part.link);
                 clearance[i] = least_distance(obstacles, pose, part.chunk, clearance[i]);
             }
         }

@@ -1,4 +1,5 @@
-/// Collisions of the free fibre and of the machine's head with the mandrel, at the blocks and between.
+/// Collisions of the free fibre and of the machine's head with the mandrel, at the blocks and
+/// between.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace meshwind {
 struct HeadEnvelope {
     struct Part {
         char link = '?';
-        Capsule capsule;       ///< where `triangles` is empty
+        Capsule capsule;  ///< where `triangles` is empty
         TriangleSoup triangles;
     };
     std::vector<Part> parts;
@@ -28,16 +29,18 @@ struct HeadEnvelope {
                                          TriangleSoup (*load_mesh)(const std::string& file));
 
 struct CollisionRule {
-    double clearance_mm = 5.0;       ///< kept between the head and anything
-    FreeFibreRule free_fibre;        ///< of which stand-off and start concern the ray
-    double fibre_step_mm = 2.0;      ///< the eye moves no further than this between two fibre rays
+    double clearance_mm = 5.0;   ///< kept between the head and anything
+    FreeFibreRule free_fibre;    ///< of which stand-off and start concern the ray
+    double fibre_step_mm = 2.0;  ///< the eye moves no further than this between two fibre rays
 };
 
 /// What the motion touches. A step leads from eye point i - 1 to eye point i.
 struct CollisionReport {
     std::vector<std::size_t> fibre_hits;  ///< steps in which the free fibre meets the mandrel
-    std::vector<std::size_t> head_hits;   ///< steps in which the head comes nearer than the clearance
-    double min_clearance_mm = 0.0;        ///< least distance of the head at the eye points, up to kClearanceCap_mm
+    std::vector<std::size_t>
+        head_hits;  ///< steps in which the head comes nearer than the clearance
+    double min_clearance_mm =
+        0.0;  ///< least distance of the head at the eye points, up to kClearanceCap_mm
     std::size_t min_clearance_point = 0;
 };
 
@@ -45,11 +48,12 @@ struct CollisionReport {
 inline constexpr double kClearanceCap_mm = 100.0;
 
 /// Checks every eye point and every step with linear joint interpolation in between.
-/// The head: pieces of the envelope are split, and the step halved, until a ball around each piece, grown by
-/// all that it can move in its share of the step, is clear of the mandrel or a centre is within the
-/// clearance: nothing slips through between points (conservative to kSweepResolution_mm).
-/// The free fibre: rays from landing point to eye, so close that the eye moves at most `fibre_step_mm`.
-/// \param tied_on eye points before which the machine moves without fibre: those steps are not checked
+/// The head: pieces of the envelope are split, and the step halved, until a ball around each piece,
+/// grown by all that it can move in its share of the step, is clear of the mandrel or a centre is
+/// within the clearance: nothing slips through between points (conservative to
+/// kSweepResolution_mm). The free fibre: rays from landing point to eye, so close that the eye
+/// moves at most `fibre_step_mm`. \param tied_on eye points before which the machine moves without
+/// fibre: those steps are not checked
 [[nodiscard]] CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
                                                const RayQuery& obstacles, const EyePath& path,
                                                const JointPath& joints, const CollisionRule& rule,

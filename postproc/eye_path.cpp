@@ -35,8 +35,8 @@ EyePath landing_points(std::span<const Piece> pieces) {
     return path;
 }
 
-// Lowers `value` (raises it for `sign` -1) until it changes by at most kFreeLengthRate per mm of fibre.
-// Where a new fibre is tied on, the length is free to jump.
+// Lowers `value` (raises it for `sign` -1) until it changes by at most kFreeLengthRate per mm of
+// fibre. Where a new fibre is tied on, the length is free to jump.
 void limit_rate(const EyePath& path, std::span<const Piece> pieces, std::vector<double>& value,
                 double sign) {
     const auto tied_on = [&](std::size_t i) {
@@ -75,8 +75,8 @@ EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& o
     parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Vector3d normal = path[i].tangent.cross(path[i].binormal).normalized();
-            const FreeFibreWindow window = free_fibre_window(
-                obstacles, path[i].landing_mm, normal, path[i].tangent, rule);
+            const FreeFibreWindow window =
+                free_fibre_window(obstacles, path[i].landing_mm, normal, path[i].tangent, rule);
             blocked[i] = window.empty() ? 1 : 0;
             if (!window.empty()) {
                 low[i] = window.low_mm;
@@ -93,8 +93,8 @@ EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& o
         }
         point.free_length_mm = std::min(high[i], std::max(low[i], wish));
         point.eye_mm = point.landing_mm + point.free_length_mm * point.tangent;
-        result.shortest_mm = i == 0 ? point.free_length_mm
-                                    : std::min(result.shortest_mm, point.free_length_mm);
+        result.shortest_mm =
+            i == 0 ? point.free_length_mm : std::min(result.shortest_mm, point.free_length_mm);
         result.longest_mm = std::max(result.longest_mm, point.free_length_mm);
         if (blocked[i] != 0) {
             result.blocked.push_back(i);

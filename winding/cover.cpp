@@ -27,14 +27,40 @@ constexpr double kMaxHalfLengthBoxes = 8.0;
 // Times that rejected courses are replaced by others before the plan does without.
 constexpr int kMaxReplacements = 12;
 
-// Distance of stations on a turn.
-constexpr double kTurnStep_mm = 4.0;
+// Distance of the stations of a plan: what the machine is told of the curve between them is below
+// its own following error.
+constexpr double kStation_mm = 4.0;
 
 // Streams of random numbers, so that one draw never depends on another.
 enum Stream : std::uint64_t { Sampling = 1, Seeds = 2, Angles = 3, Steerings = 4 };
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
+}
+
+// Keeps stations at least kStation_mm apart, both ends, and both sides of a feature edge.
+void thin_out(Piece& piece) {
+    std::vector<std::size_t> kept{0};
+    const std::size_t last = piece.path.size() - 1;
+    for (std::size_t i = 1; i <= last; ++i) {
+        const double s = piece.path[i].s_mm;
+        const bool crease =
+            s <= piece.path[i - 1].s_mm || (i < last && piece.path[i + 1].s_mm <= s);
+        const bool room = piece.path[last].s_mm - s >= kStation_mm;
+        if (i == last || crease || (room && s - piece.path[kept.back()].s_mm >= kStation_mm)) {
+            kept.push_back(i);
+        }
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+        piece.path[k] = piece.path[kept[k]];
+        piece.slip[k] = piece.slip[kept[k]];
+        piece.string.gap_mm[k] = piece.string.gap_mm[kept[k]];
+        piece.string.slope[k] = piece.string.slope[kept[k]];
+    }
+    piece.path.resize(kept.size());
+    piece.slip.resize(kept.size());
+    piece.string.gap_mm.resize(kept.size());
+    piece.string.slope.resize(kept.size());
 }
 
 enum class Verdict : char { Unknown, Accepted, Rejected };
@@ -199,7 +225,8 @@ private:
             if (!windable) {
                 continue;
             }
-            const Piece piece = course_of(member, backward);
+            Piece piece = course_of(member, backward);
+            thin_out(piece);
             if (piece.worst_slip > options_.tow.friction) {
                 return Verdict::Rejected;
             }
@@ -258,6 +285,7 @@ private:
         for (std::size_t i = 0; i < order.size(); ++i) {
             const auto [member, backward] = order[i].course;
             Piece piece = course_of(members_[at(member)], backward);
+            thin_out(piece);
             piece.starts_fibre = fresh;
             plan_.fibres += fresh ? 1 : 0;
             add_piece(std::move(piece));
@@ -272,7 +300,7 @@ private:
     }
 
     [[nodiscard]] Piece turn_between(const RimCrossing& from, const RimCrossing& to) const {
-        Turn turn = make_turn(mandrel_.rims[at(from.rim)], from, to, rules_.turn, kTurnStep_mm);
+        Turn turn = make_turn(mandrel_.rims[at(from.rim)], from, to, rules_.turn, kStation_mm);
         Piece piece;
         piece.kind = PieceKind::Transition;
         piece.string.gap_mm.assign(turn.path.size(), 0.0);
