@@ -1,10 +1,11 @@
+#include "postproc/block.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 #include "core/error.h"
 #include "core/units.h"
-#include "postproc/block.h"
 
 namespace meshwind {
 namespace {

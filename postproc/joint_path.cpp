@@ -14,6 +14,8 @@ namespace {
 constexpr double kNearSingularSine = 0.0175;
 // An eye this near to the axis asks for a quarter turn of the spindle per few mm of path.
 constexpr double kNearAxis_mm = 5.0;
+// Axis::resolution_nano counts these per mm or degree.
+constexpr double kNanoPerUnit = 1e9;
 
 double eye_radius_mm(const EyePoint& point) {
     return std::hypot(point.eye_mm.x(), point.eye_mm.y());
@@ -32,14 +34,21 @@ void note(JointPath& path, JointNoteKind kind, std::size_t point, double measure
     }
 }
 
+// Half of the smallest increment in axis units: what is less beyond a limit is not written.
+double half_step(const Axis& axis) {
+    const double step = static_cast<double>(axis.resolution_nano) / kNanoPerUnit;
+    return 0.5 * (axis.type == AxisType::Rotary ? rad_from_deg(step) : step);
+}
+
 // Appends the runs in which `joint` passes one end of its travel.
 void find_violations(const Axis& axis, std::size_t joint, JointPath& path) {
+    const double slack = half_step(axis);
     for (const double side : {-1.0, 1.0}) {
         const double limit = side < 0.0 ? axis.min : axis.max;
         bool open = false;
         for (std::size_t i = 0; i < path.size(); ++i) {
             const double value = path.row(i)[joint];
-            if (!(side * (value - limit) > 0.0)) {
+            if (!(side * (value - limit) > slack)) {
                 open = false;
                 continue;
             }

@@ -19,7 +19,8 @@ enum class RedundancyPolicy {
     Hold,
 };
 
-/// A run of neighbouring points at which one axis is beyond one end of its travel.
+/// A run of neighbouring points at which one axis is beyond one end of its travel by more than half
+/// of its resolution.
 struct LimitViolation {
     char axis = '?';
     std::size_t first = 0;  ///< index of the run's first point in the eye path

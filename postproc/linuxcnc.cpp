@@ -230,10 +230,6 @@ private:
 
 }  // namespace
 
-// Defined beside the reader in linuxcnc_read.cpp: refuses lines that would move or that it cannot
-// read.
-void check_linuxcnc_raw_lines(const Machine& machine);
-
 BlockList LinuxCnc::prepare(BlockList list) const {
     const std::vector<std::size_t> split = blocks_to_split(list);
     if (split.empty()) {
@@ -259,7 +255,7 @@ std::string LinuxCnc::write(const Machine& machine, const BlockList& list,
                             const ProgramHeader& header) const {
     assert(!list.blocks.empty() && list.axes.size() == machine.axis_count());
     check_letters(machine, list);
-    check_linuxcnc_raw_lines(machine);
+    check_linuxcnc_lines(machine);
     if (blocks_to_split(list).empty()) {
         return Writer(machine, list).program(header);
     }

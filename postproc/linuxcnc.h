@@ -33,6 +33,11 @@ public:
                                  const Machine& machine) const override;
 };
 
+/// The header and footer lines of the machine's controller must be such that the reader takes them,
+/// and must neither move nor end the program.
+/// \throws InputError dialect.header_line
+void check_linuxcnc_lines(const Machine& machine);
+
 /// Characters of a line that the interpreter still reads, comments included.
 inline constexpr std::size_t kLinuxCncLineLength = 252;
 

@@ -1,3 +1,5 @@
+#include "postproc/linuxcnc.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -7,8 +9,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "postproc/decimal_text.h"
-#include "postproc/linuxcnc.h"
 
 namespace meshwind {
 namespace {
@@ -390,7 +390,7 @@ private:
 
 }  // namespace
 
-void check_linuxcnc_raw_lines(const Machine& machine) {
+void check_linuxcnc_lines(const Machine& machine) {
     for (const auto* lines : {&machine.controller.header, &machine.controller.footer}) {
         for (const std::string& line : *lines) {
             Reader reader(machine.name, machine);

@@ -10,7 +10,7 @@
 #include "machines/machine_json.h"
 #include "postproc/decimal_text.h"
 #include "postproc/motion_csv.h"
-#include "synthetic_paths.h"
+#include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
 namespace {

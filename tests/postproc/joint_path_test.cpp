@@ -7,7 +7,7 @@
 #include "core/units.h"
 #include "machines/kinematics.h"
 #include "machines/machine_json.h"
-#include "synthetic_paths.h"
+#include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
 namespace {

@@ -12,7 +12,7 @@
 #include "machines/machine_json.h"
 #include "postproc/linuxcnc.h"
 #include "postproc/motion_csv.h"
-#include "synthetic_paths.h"
+#include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
 namespace {
@@ -103,6 +103,30 @@ TEST_F(LinuxCncOracle, LongTurnBesideATinyLinearMove) {
         list.nano.insert(list.nano.end(), row.begin(), row.end());
     }
     check(six_axis_, list);
+}
+
+// The comparison itself must be able to fail: each program differs from its table in one thing.
+TEST_F(LinuxCncOracle, ComparisonFindsWrongPrograms) {
+    const std::string start = "G21 G90\nG0 A0 B0 C0\nG0 X100 Y0 Z0\nG91 G93\n";
+    save(folder_ / "motion.csv",
+         "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,course,point\n"
+         "0,0.0,0,0,0,100,0,0,0,0,0,0,0\n1,1.0,360,0,0,100.001,0,0,0,0,0,0,1\n"
+         "2,2.0,360,1,0,100.001,0,0,0,0,0,0,2\n");
+    const auto verdict = [&](const std::string& moves) {
+        save(folder_ / "program.ngc", start + moves);
+        return run(kSource + "/tests/tools/check_program.py " + (folder_ / "program.ngc").string() +
+                   " " + (folder_ / "motion.csv").string() + " " + six_axis_);
+    };
+    const int faster = verdict("G1 X0.001 C360 F120\nG1 Z1 F60\nM2\n");
+    if (faster == kUnavailable) {
+        GTEST_SKIP() << "LinuxCNC's interpreter is unavailable";
+    }
+    EXPECT_EQ(faster, 1);                                          // twice as fast
+    EXPECT_EQ(verdict("G1 X0.001 C360 F60\nG1 Z1 F60\nM2\n"), 1);  // caught by the feed floor
+    EXPECT_EQ(verdict("G1 C360 F60\nG1 Z1 F60\nM2\n"), 1);         // X one step off
+    EXPECT_EQ(verdict("G1 X0.001 C360 F60\nM2\n"), 1);             // a block less
+    EXPECT_EQ(verdict("G1 X0.001 C360\nG1 Z1 F60\nM2\n"), 1);      // refused: no F
+    EXPECT_EQ(verdict("G1 X0.001 C360 F60\nG1 Z1 F60\n"), 1);      // cut off
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "postproc/linuxcnc.h"
 
-#include <chrono>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -10,7 +9,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machines/machine_json.h"
-#include "synthetic_paths.h"
+#include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
 namespace {

@@ -1,4 +1,4 @@
-#include "synthetic_paths.h"
+#include "tests/postproc/synthetic_paths.h"
 
 #include <cmath>
 

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machines/machine_json.h"
-#include "synthetic_paths.h"
+#include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
 namespace {
