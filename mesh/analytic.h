@@ -1,0 +1,31 @@
+/// Nearest points on the ideal shapes: what made meshes and traced paths are measured against.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mesh/shapes.h"
+
+namespace meshwind {
+
+/// The smooth piece a point belongs to.
+enum class ShapePart { Run, Branch, Blend };
+
+/// Nearest point of an ideal surface. The surface is taken without its ends: cylinders go on for
+/// ever.
+struct ShapeFoot {
+    Eigen::Vector3d point_mm;
+    Eigen::Vector3d normal;    ///< unit, outward
+    double distance_mm = 0.0;  ///< of the asked point, > 0 outside
+    ShapePart part = ShapePart::Run;
+};
+
+/// The point where the blend's ball stands at angle `psi_rad` around the branch axis, from +z to
+/// +y. \pre shape is valid
+[[nodiscard]] Eigen::Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad);
+
+/// Nearest point of the tee's surface to `point_mm`.
+/// \pre shape is valid; the point is nearer to the surface than half the smallest radius (farther
+/// away another piece may be nearer). Accuracy: 1e-12 of the size; tests/mesh/make_test.cpp.
+[[nodiscard]] ShapeFoot tee_foot(const TeeShape& shape, const Eigen::Vector3d& point_mm);
+
+}  // namespace meshwind
