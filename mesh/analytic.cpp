@@ -1,13 +1,13 @@
 #include "mesh/analytic.h"
 
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <optional>
 
 #include <Eigen/Geometry>
-#include <boost/math/tools/toms748_solve.hpp>
 
 #include "core/units.h"
+#include "mesh/nearest_parameter.h"
+#include "mesh/profile.h"
 
 namespace meshwind {
 namespace {
@@ -43,35 +43,9 @@ struct Spine {
 
 // Spine parameter nearest to a point with y >= 0 and z >= 0, in [0, pi/2].
 double nearest_psi(const Spine& spine, const Vector3d& point) {
-    // The spine's quarter bends little; 16 steps bracket the nearest minimum.
-    constexpr int kSteps = 16;
-    const auto slope = [&](double psi) {
-        return (spine.point(psi) - point).dot(spine.derivative(psi));
-    };
-    int best = 0;
-    double best_distance = std::numeric_limits<double>::max();
-    for (int i = 0; i <= kSteps; ++i) {
-        const double distance = (spine.point(0.5 * kPi * i / kSteps) - point).squaredNorm();
-        if (distance < best_distance) {
-            best_distance = distance;
-            best = i;
-        }
-    }
-    const double low = 0.5 * kPi * std::max(best - 1, 0) / kSteps;
-    const double high = 0.5 * kPi * std::min(best + 1, kSteps) / kSteps;
-    const double slope_low = slope(low);
-    const double slope_high = slope(high);
-    if (slope_low >= 0.0) {
-        return low;
-    }
-    if (slope_high <= 0.0) {
-        return high;
-    }
-    std::uintmax_t iterations = 100;
-    const auto [a, b] = boost::math::tools::toms748_solve(
-        slope, low, high, slope_low, slope_high, boost::math::tools::eps_tolerance<double>(52),
-        iterations);
-    return 0.5 * (a + b);
+    return nearest_parameter(
+        {0.0, 0.5 * kPi}, [&](double psi) { return (spine.point(psi) - point).squaredNorm(); },
+        [&](double psi) { return (spine.point(psi) - point).dot(spine.derivative(psi)); });
 }
 
 ShapeFoot run_foot(const TeeShape& shape, const Vector3d& point) {
@@ -99,6 +73,19 @@ ShapeFoot blend_foot(const TeeShape& shape, const Vector3d& point) {
             ShapePart::Blend};
 }
 
+// A pipe seen from the nearest point of its centre line.
+struct PipeCentre {
+    Vector3d centre;
+    double radius_mm;
+    ShapePart part;
+};
+
+ShapeFoot pipe_foot(const PipeCentre& pipe, const Vector3d& point) {
+    const double distance = (point - pipe.centre).norm();
+    const Vector3d normal = (point - pipe.centre) / distance;
+    return {pipe.centre + pipe.radius_mm * normal, normal, distance - pipe.radius_mm, pipe.part};
+}
+
 }  // namespace
 
 Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad) {
@@ -124,6 +111,62 @@ ShapeFoot tee_foot(const TeeShape& shape, const Vector3d& point_mm) {
         return run_foot(shape, point_mm);
     }
     return on_branch ? branch_foot(shape, point_mm) : blend_foot(shape, point_mm);
+}
+
+ShapeFoot cylinder_foot(const CylinderShape& shape, const Vector3d& point_mm) {
+    return profile_foot(profile_of(shape), point_mm);
+}
+
+ShapeFoot cone_foot(const ConeShape& shape, const Vector3d& point_mm) {
+    return profile_foot(profile_of(shape), point_mm);
+}
+
+ShapeFoot vessel_foot(const VesselShape& shape, const Vector3d& point_mm) {
+    return profile_foot(profile_of(shape), point_mm);
+}
+
+ShapeFoot combination_foot(const CombinationShape& shape, const Vector3d& point_mm) {
+    return profile_foot(profile_of(shape), point_mm);
+}
+
+ShapeFoot ellipsoid_foot(const EllipsoidShape& shape, const Vector3d& point_mm) {
+    return profile_foot(profile_of(shape), point_mm);
+}
+
+ShapeFoot torus_foot(const TorusShape& shape, const Vector3d& point_mm) {
+    const Vector3d axis_point(point_mm.x(), point_mm.y(), 0.0);
+    const Vector3d centre = shape.ring_radius_mm * axis_point.normalized();
+    return pipe_foot({centre, shape.tube_radius_mm, ShapePart::Bend}, point_mm);
+}
+
+ShapeFoot elbow_foot(const ElbowShape& shape, const Vector3d& point_mm) {
+    const double pipe = shape.pipe_radius_mm;
+    const double c = std::cos(shape.angle_rad);
+    const double s = std::sin(shape.angle_rad);
+    const Vector3d bend_centre(shape.bend_radius_mm, 0.0, shape.leg1_mm);
+    const Vector3d from_centre = point_mm - bend_centre;
+    const Vector3d leg2_start = bend_centre + shape.bend_radius_mm * Vector3d(-c, 0.0, s);
+    const Vector3d leg2_way(s, 0.0, c);
+    const double turn = std::atan2(from_centre.z(), -from_centre.x());
+    const double along_leg2 = (point_mm - leg2_start).dot(leg2_way);
+    std::optional<ShapeFoot> best;
+    const auto offer = [&](const Vector3d& centre, ShapePart part) {
+        const ShapeFoot foot = pipe_foot({centre, pipe, part}, point_mm);
+        if (!best || std::abs(foot.distance_mm) < std::abs(best->distance_mm)) {
+            best = foot;
+        }
+    };
+    if (turn >= 0.0 && turn <= shape.angle_rad) {
+        const Vector3d way(-std::cos(turn), 0.0, std::sin(turn));
+        offer(bend_centre + shape.bend_radius_mm * way, ShapePart::Bend);
+    }
+    if (from_centre.z() <= 0.0 || !best) {
+        offer({0.0, 0.0, point_mm.z()}, ShapePart::Leg);
+    }
+    if (along_leg2 >= 0.0) {
+        offer(leg2_start + along_leg2 * leg2_way, ShapePart::Leg);
+    }
+    return *best;
 }
 
 }  // namespace meshwind

@@ -8,7 +8,7 @@
 namespace meshwind {
 
 /// The smooth piece a point belongs to.
-enum class ShapePart { Run, Branch, Blend };
+enum class ShapePart { Run, Branch, Blend, Cylinder, Cone, Dome, Leg, Bend };
 
 /// Nearest point of an ideal surface. The surface is taken without its ends: cylinders go on for
 /// ever.
@@ -27,5 +27,18 @@ struct ShapeFoot {
 /// \pre shape is valid; the point is nearer to the surface than half the smallest radius (farther
 /// away another piece may be nearer). Accuracy: 1e-12 of the size; tests/mesh/make_test.cpp.
 [[nodiscard]] ShapeFoot tee_foot(const TeeShape& shape, const Eigen::Vector3d& point_mm);
+
+/// Nearest point of the other shapes. Two pieces equally near (on a bisector of a sharp ring): the
+/// lower. \pre shape is valid; the point is not on the axis or a centre line Accuracy: 1e-12 of the
+/// size; tests/mesh/make_shapes_test.cpp.
+[[nodiscard]] ShapeFoot cylinder_foot(const CylinderShape& shape, const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot cone_foot(const ConeShape& shape, const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot vessel_foot(const VesselShape& shape, const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot combination_foot(const CombinationShape& shape,
+                                         const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot ellipsoid_foot(const EllipsoidShape& shape,
+                                       const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot elbow_foot(const ElbowShape& shape, const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot torus_foot(const TorusShape& shape, const Eigen::Vector3d& point_mm);
 
 }  // namespace meshwind

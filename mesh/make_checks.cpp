@@ -27,6 +27,12 @@ void require_positive(const char* name, double value) {
     }
 }
 
+void require_not_negative(const char* name, double value) {
+    if (!(value >= 0.0) || std::isinf(value)) {
+        throw InputError("make.negative", name, text_of(value) + " must be a finite number >= 0");
+    }
+}
+
 void require(bool holds, const char* code, const char* name, double value, const char* rule,
              double limit) {
     if (!holds) {

@@ -5,8 +5,8 @@
 
 #include "core/units.h"
 #include "mesh/analytic.h"
-#include "mesh/make.h"
-#include "mesh/make_checks.h"
+#include "mesh/make_parts.h"
+#include "mesh/make_walls.h"
 #include "mesh/planar_delaunay.h"
 #include "mesh/remesh.h"
 
@@ -15,14 +15,9 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Triangle = std::array<std::int32_t, 3>;
 
 std::int32_t count_of(double length, double step) {
     return static_cast<std::int32_t>(std::lround(length / step));
-}
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
 }
 
 // A cylinder unrolled to (arc, axial), with its closed contact curve and the lattice on its piece
@@ -267,32 +262,19 @@ void add_branch(TriangleSoup& soup, const TeeShape& shape, const std::vector<std
     mesh_sheet(soup, sheet, true, edge_mm);
 }
 
-void check_edge(const TeeShape& shape, double edge_mm) {
-    // Twelve edges around the branch and two between blend and rims, or the pieces lose their
-    // shape.
-    const double blend_to_rim = std::min(0.5 * shape.run_length_mm - shape.branch_radius_mm,
-                                         shape.branch_length_mm - shape.run_radius_mm) -
-                                shape.blend_radius_mm;
-    const double limit = std::min(0.5 * shape.branch_radius_mm, 0.5 * blend_to_rim);
-    require_positive("edge", edge_mm);
-    require(edge_mm <= limit, "make.edge_too_large", "edge", edge_mm, "at most", limit);
-}
-
 }  // namespace
 
-TriangleSoup make_tee(const TeeShape& shape, const MakeOptions& options) {
-    shape.validate();
-    check_edge(shape, options.edge_mm);
+Wall wall_of(const TeeShape& shape, double edge_mm) {
     TriangleSoup soup;
-    const std::vector<double> angles = contact_angles(shape, options.edge_mm);
-    const auto rows = add_blend_rows(soup, shape, angles, options.edge_mm);
+    const std::vector<double> angles = contact_angles(shape, edge_mm);
+    const auto rows = add_blend_rows(soup, shape, angles, edge_mm);
     for (std::size_t row = 0; row + 1 < rows.size(); ++row) {
         join_rows(soup, rows[row], rows[row + 1]);
     }
-    add_run(soup, shape, rows.front(), options.edge_mm);
-    add_branch(soup, shape, rows.back(), options.edge_mm);
+    add_run(soup, shape, rows.front(), edge_mm);
+    add_branch(soup, shape, rows.back(), edge_mm);
     const auto project = [&](const Vector3d& p) { return tee_foot(shape, p).point_mm; };
-    return remesh_onto(soup, project, {.edge_mm = options.edge_mm});
+    return {remesh_onto(soup, project, {.edge_mm = edge_mm}), {}};
 }
 
 }  // namespace meshwind

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include <Eigen/Geometry>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -221,6 +222,55 @@ void smooth(Mesh& mesh, const Project& project) {
     }
 }
 
+// Even numbers in [0, 1), the same on every machine.
+class Dice {
+public:
+    explicit Dice(std::uint64_t seed) : engine_(seed) {}
+    double roll() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
+
+private:
+    std::mt19937_64 engine_;
+};
+
+struct Limits {
+    double cosine;   // of the smallest angle
+    double edge_mm;  // longest edge
+};
+
+// Whether a vertex at `target` would fold a triangle or break the limits.
+bool move_spoils(const Mesh& mesh, Mesh::VertexHandle vertex, const Vector3d& target,
+                 const Limits& limits) {
+    if (move_folds(mesh, vertex, target)) {
+        return true;
+    }
+    for (const auto out : mesh.voh_range(vertex)) {
+        const Vector3d near = eigen(mesh.point(out.to()));
+        if ((near - target).norm() > limits.edge_mm ||
+            worst_cosine(target, near, eigen(mesh.point(out.next().to()))) > limits.cosine) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool flip_spoils(const Mesh& mesh, Mesh::EdgeHandle edge, const Limits& limits) {
+    const Diamond diamond = diamond_of(mesh, edge);
+    const FlipView view = look_at_flip(mesh, diamond);
+    const double length = (mesh.point(diamond.c) - mesh.point(diamond.d)).norm();
+    return view.folds || view.worst_after > limits.cosine || length > limits.edge_mm;
+}
+
+Vector3d random_in_ball(Dice& dice) {
+    for (;;) {
+        const double x = 2.0 * dice.roll() - 1.0;
+        const double y = 2.0 * dice.roll() - 1.0;
+        const double z = 2.0 * dice.roll() - 1.0;
+        if (x * x + y * y + z * z <= 1.0) {
+            return {x, y, z};
+        }
+    }
+}
+
 }  // namespace
 
 TriangleSoup remesh_onto(const TriangleSoup& soup, const Project& project,
@@ -239,6 +289,34 @@ TriangleSoup remesh_onto(const TriangleSoup& soup, const Project& project,
         smooth(mesh, project);
     }
     flip_edges(mesh, FlipFor::Angle);
+    return soup_of(mesh);
+}
+
+TriangleSoup roughen_onto(const TriangleSoup& soup, const Project& project,
+                          const std::vector<std::uint8_t>& fixed, const RoughenOptions& options) {
+    Mesh mesh = mesh_of(soup);
+    Dice dice(options.seed);
+    const Limits limits{std::cos(options.min_angle_rad), options.max_edge * options.edge_mm};
+    const auto stays = [&](Mesh::VertexHandle vertex) {
+        return !fixed.empty() && fixed[static_cast<std::size_t>(vertex.idx())] != 0;
+    };
+    for (const auto vertex : mesh.vertices()) {
+        const Vector3d shift = options.jitter * options.edge_mm * random_in_ball(dice);
+        if (!mesh.is_boundary(vertex) && !stays(vertex)) {
+            const Vector3d target = project(eigen(mesh.point(vertex)) + shift);
+            if (!move_spoils(mesh, vertex, target, limits)) {
+                mesh.set_point(vertex, open(target));
+            }
+        }
+    }
+    for (const auto edge : mesh.edges()) {
+        const bool wanted = dice.roll() < 0.5;
+        const bool crease = stays(edge.v0()) && stays(edge.v1());
+        if (wanted && !crease && !mesh.is_boundary(edge) && mesh.is_flip_ok(edge) &&
+            !flip_spoils(mesh, edge, limits)) {
+            mesh.flip(edge);
+        }
+    }
     return soup_of(mesh);
 }
 

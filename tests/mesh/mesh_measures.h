@@ -87,4 +87,18 @@ inline MeshMeasures measure(const TriangleSoup& soup) {
     return measures;
 }
 
+inline std::set<std::int32_t> rim_vertices(const TriangleSoup& soup) {
+    std::set<std::pair<std::int32_t, std::int32_t>> halves;
+    for (const auto& [a, b, c] : soup.faces) {
+        halves.insert({{a, b}, {b, c}, {c, a}});
+    }
+    std::set<std::int32_t> vertices;
+    for (const auto& [a, b] : halves) {
+        if (!halves.contains({b, a})) {
+            vertices.insert({a, b});
+        }
+    }
+    return vertices;
+}
+
 }  // namespace meshwind::test
