@@ -2,7 +2,10 @@
 
 #include <bit>
 #include <cctype>
+#include <cstdint>
+#include <fstream>
 #include <limits>
+#include <system_error>
 
 #include <Eigen/Geometry>
 
@@ -139,6 +142,25 @@ std::string mesh_file_bytes(const TriangleSoup& soup, MeshFormat format) {
             break;
     }
     return stl_bytes(soup);
+}
+
+void write_mesh_file(const TriangleSoup& soup, const std::filesystem::path& file) {
+    const std::string bytes = mesh_file_bytes(soup, mesh_format_of(file));
+    std::filesystem::path unfinished = file;
+    unfinished += ".part";
+    std::ofstream stream(unfinished, std::ios::binary);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    std::error_code error;
+    if (stream) {
+        std::filesystem::rename(unfinished, file, error);
+    }
+    if (!stream || error) {
+        std::error_code ignored;
+        std::filesystem::remove(unfinished, ignored);
+        throw IoError("export.unwritable", file.string(),
+                      "cannot be written; check that the folder exists and has room");
+    }
 }
 
 }  // namespace meshwind

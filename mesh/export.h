@@ -20,4 +20,8 @@ enum class MeshFormat { Stl, Obj, Ply, Off };
 /// \throws InputError export.too_large for more than 2^32 - 1 STL triangles
 [[nodiscard]] std::string mesh_file_bytes(const TriangleSoup& soup, MeshFormat format);
 
+/// Writes `mesh_file_bytes` by the extension's format; the file appears complete or not at all.
+/// \throws InputError export.unknown_format; IoError export.unwritable
+void write_mesh_file(const TriangleSoup& soup, const std::filesystem::path& file);
+
 }  // namespace meshwind

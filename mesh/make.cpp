@@ -63,6 +63,60 @@ double least_size(const TeeShape& shape) {
     return std::min(0.5 * shape.branch_radius_mm, 0.5 * blend_to_rim);
 }
 
+// Rough area of the outer surface, enough to foresee the number of triangles.
+double rough_area(const CylinderShape& shape) {
+    return 2.0 * kPi * shape.radius_mm * shape.length_mm;
+}
+
+double rough_area(const ConeShape& shape) {
+    return kPi * (shape.radius1_mm + shape.radius2_mm) *
+           std::hypot(shape.radius1_mm - shape.radius2_mm, shape.length_mm);
+}
+
+double rough_area(const VesselShape& shape) {
+    return 2.0 * kPi * shape.radius_mm *
+           (shape.cylinder_length_mm + shape.radius_mm + 2.0 * shape.dome_height_mm);
+}
+
+double rough_area(const CombinationShape& shape) {
+    const double radius = std::max(shape.radius1_mm, shape.radius2_mm);
+    return 2.0 * kPi * radius *
+           (shape.length1_mm + shape.cone_length_mm + shape.length2_mm + shape.dome_height_mm +
+            radius);
+}
+
+double rough_area(const ElbowShape& shape) {
+    return 2.0 * kPi * shape.pipe_radius_mm *
+           (shape.leg1_mm + shape.leg2_mm + shape.bend_radius_mm * shape.angle_rad);
+}
+
+double rough_area(const TorusShape& shape) {
+    return 2.0 * kPi * shape.tube_radius_mm * shape.ring_radius_mm * shape.angle_rad;
+}
+
+double rough_area(const EllipsoidShape& shape) {
+    return 4.0 * kPi * shape.equator_radius_mm *
+           std::max(shape.equator_radius_mm, shape.pole_radius_mm);
+}
+
+double rough_area(const TeeShape& shape) {
+    return 2.0 * kPi *
+           (shape.run_radius_mm * shape.run_length_mm +
+            shape.branch_radius_mm * shape.branch_length_mm);
+}
+
+template <class Shape>
+void check_edge(const Shape& shape, double edge_mm) {
+    require_positive("edge", edge_mm);
+    const double limit = least_size(shape);
+    require(edge_mm <= limit, "make.edge_too_large", "edge", edge_mm, "at most", limit);
+    // Ten million triangles need about 3 GB while they are made and fill a 500 MB STL file.
+    constexpr double kMaxTriangles = 1e7;
+    const double least = std::sqrt(rough_area(shape) / (kMaxTriangles * std::sqrt(3.0) / 4.0));
+    require(edge_mm >= least, "make.edge_too_small", "edge", edge_mm,
+            "at least, for ten million triangles,", least);
+}
+
 // The wall's inner side.
 CylinderShape inside(CylinderShape shape, double wall) {
     shape.radius_mm -= wall;
@@ -157,10 +211,7 @@ TriangleSoup wall_with(const Shape& shape, const MakeOptions& options, std::uint
 template <class Shape>
 TriangleSoup make(const Shape& shape, const MakeOptions& options) {
     shape.validate();
-    require_positive("edge", options.edge_mm);
-    const double limit = least_size(shape);
-    require(options.edge_mm <= limit, "make.edge_too_large", "edge", options.edge_mm, "at most",
-            limit);
+    check_edge(shape, options.edge_mm);
     TriangleSoup outer = wall_with(shape, options, options.seed);
     if (!options.solid) {
         return outer;

@@ -1,7 +1,8 @@
 #include "mesh/export.h"
 
 #include <cstring>
-#include <sstream>
+#include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +56,23 @@ TEST(MeshFormatOf, KnowsTheExtensionInEitherCase) {
     EXPECT_EQ(mesh_format_of("tee.off"), MeshFormat::Off);
     EXPECT_THROW((void)mesh_format_of("tee.step"), InputError);
     EXPECT_THROW((void)mesh_format_of("tee"), InputError);
+}
+
+TEST(WriteMeshFile, LeavesTheWholeFileOrNone) {
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / "meshwind_export_test";
+    std::filesystem::create_directories(folder);
+    write_mesh_file(corner(), folder / "corner.off");
+    std::ifstream file(folder / "corner.off", std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    EXPECT_EQ(text, mesh_file_bytes(corner(), MeshFormat::Off));
+    EXPECT_FALSE(std::filesystem::exists(folder / "corner.off.part"));
+    EXPECT_THROW(write_mesh_file(corner(), folder / "missing" / "corner.off"), IoError);
+    // A folder in the file's place: the rename fails and the part is taken away.
+    std::filesystem::create_directories(folder / "taken.off" / "inside");
+    EXPECT_THROW(write_mesh_file(corner(), folder / "taken.off"), IoError);
+    EXPECT_FALSE(std::filesystem::exists(folder / "taken.off.part"));
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

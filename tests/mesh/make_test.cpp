@@ -241,6 +241,9 @@ TEST(MakeMandrel, RefusesWhatDoesNotFit) {
     EXPECT_EQ(code_of("torus", {{"tube-radius", 200.0}}), "make.bend_too_tight");
     EXPECT_EQ(code_of("torus", {{"angle", 6.3}}), "make.angle_too_large");
     EXPECT_EQ(code_of("cylinder", {}, {.edge_mm = 51.0}), "make.edge_too_large");
+    EXPECT_EQ(code_of("cylinder", {}, {.edge_mm = 1e-3}), "make.edge_too_small");
+    EXPECT_EQ(code_of("cylinder", {{"length", 1e300}}), "make.edge_too_small");
+    EXPECT_EQ(code_of("torus", {{"ring-radius", 1e200}}), "make.edge_too_small");
     EXPECT_EQ(code_of("cylinder", {}, {.edge_mm = 0.0}), "make.not_positive");
     EXPECT_EQ(code_of("cylinder", {}, {.solid = true, .wall_mm = 46.0}), "make.wall_too_thick");
     EXPECT_EQ(code_of("cylinder", {}, {.solid = true, .wall_mm = 50.0}), "make.wall_too_thick");
