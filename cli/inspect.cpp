@@ -1,0 +1,101 @@
+#include "cli/inspect.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "core/text_number.h"
+
+namespace meshwind {
+namespace {
+
+constexpr std::size_t kRegionsShown = 12;  // lettering alone makes hundreds; the rest is summed up
+
+std::string padded(const std::string& text, std::size_t width) {
+    return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
+std::string triple(const Eigen::Vector3d& v, int decimals) {
+    return "(" + fixed(v.x(), decimals) + ", " + fixed(v.y(), decimals) + ", " +
+           fixed(v.z(), decimals) + ")";
+}
+
+void print_size(std::ostream& out, const Mandrel& m) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : m.whole.points_mm) {
+        box.extend(p);
+    }
+    const Eigen::Vector3d size = box.sizes();
+    out << "file          " << m.file << ", " << m.whole.faces.size() << " triangles\n"
+        << "unit          " << fixed(m.unit_mm, 3) << " mm (" << m.unit_rule << ")\n"
+        << "size          " << fixed(size.x(), 3) << " x " << fixed(size.y(), 3) << " x "
+        << fixed(size.z(), 3) << " mm in the mandrel frame\n"
+        << "spindle axis  " << m.axis.rule << ", residual " << fixed(m.axis.residual_mm, 4)
+        << " mm\n"
+        << "file frame    mandrel origin at "
+        << triple(m.file_to_mandrel.inverse().translation(), 4) << ", +Z along "
+        << triple(m.file_to_mandrel.linear().row(2).transpose().normalized(), 4) << "\n";
+}
+
+void print_repairs(std::ostream& out, const RepairReport& r) {
+    const std::array<std::pair<const char*, int>, 8> counts = {
+        {{"points welded", r.welded_points},
+         {"degenerate triangles removed", r.degenerate_faces_removed},
+         {"duplicate triangles removed", r.duplicate_faces_removed},
+         {"triangles turned over", r.faces_flipped},
+         {"open edges stitched", r.edges_stitched},
+         {"non-manifold vertices split", r.non_manifold_vertices_split},
+         {"self-intersecting triangles (kept)", r.self_intersecting_faces},
+         {"shells", r.components}}};
+    out << "repairs\n";
+    for (const auto& [what, count] : counts) {
+        out << padded(std::to_string(count), 10) << "  " << what << "\n";
+    }
+}
+
+void print_regions(std::ostream& out, const Mandrel& m) {
+    out << "regions\n        id  kind        wound  triangles      area mm2  visible\n";
+    const std::size_t shown = std::min(kRegionsShown, m.regions.size());
+    for (std::size_t i = 0; i < shown; ++i) {
+        const Region& r = m.regions[i];
+        std::string kind(name_of(r.kind));
+        kind.resize(10, ' ');
+        out << padded(std::to_string(r.id), 10) << "  " << kind << "  "
+            << (r.kept ? "yes  " : "no   ") << padded(std::to_string(r.triangles), 11)
+            << padded(fixed(r.area_mm2, 2), 14) << padded(fixed(100.0 * r.visible_fraction, 0), 7)
+            << " %\n";
+    }
+    double area = 0.0;
+    std::size_t wound = 0;
+    for (std::size_t i = shown; i < m.regions.size(); ++i) {
+        area += m.regions[i].area_mm2;
+        wound += m.regions[i].kept ? 1 : 0;
+    }
+    if (shown < m.regions.size()) {
+        out << "            and " << m.regions.size() - shown << " smaller ones, " << wound
+            << " of them wound, together " << fixed(area, 2) << " mm2\n";
+    }
+}
+
+}  // namespace
+
+void print_mandrel(std::ostream& out, const Mandrel& mandrel) {
+    print_size(out, mandrel);
+    print_repairs(out, mandrel.repairs);
+    print_regions(out, mandrel);
+    out << "rims          " << mandrel.rims.size() << (mandrel.rims.empty() ? " (closed)\n" : "\n");
+    for (const Rim& rim : mandrel.rims) {
+        out << padded(std::to_string(rim.id), 10) << "  centre " << triple(rim.centre_mm, 3)
+            << "  axis " << triple(rim.axis, 4) << "  radius " << fixed(rim.radius_mm, 3)
+            << "  off circle " << fixed(rim.circularity_mm, 3) << "\n";
+    }
+    const FitReport& fit = mandrel.surface.fit;
+    out << "surface       " << mandrel.surface.face.size() << " triangles, mean edge "
+        << fixed(mandrel.surface.mean_edge_mm, 3) << " mm; smooth fit at " << fit.cubic
+        << " corners cubic, " << fit.quadratic << " quadratic, " << fit.averaged << " averaged\n";
+    for (const std::string& remark : mandrel.remarks) {
+        out << "remark        " << remark << "\n";
+    }
+}
+
+}  // namespace meshwind

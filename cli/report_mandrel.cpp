@@ -1,0 +1,73 @@
+#include "cli/report_mandrel.h"
+
+namespace meshwind {
+namespace {
+
+using nlohmann::json;
+
+json json_of(const Eigen::Vector3d& v) {
+    // Adding zero turns -0 into 0.
+    return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};
+}
+
+json matrix_of(const Eigen::Affine3d& transform) {
+    json rows = json::array();
+    const Eigen::Matrix4d m = transform.matrix();
+    for (int i = 0; i < 4; ++i) {
+        rows.push_back({m(i, 0) + 0.0, m(i, 1) + 0.0, m(i, 2) + 0.0, m(i, 3) + 0.0});
+    }
+    return rows;
+}
+
+json repairs_of(const RepairReport& r) {
+    return {{"welded_points", r.welded_points},
+            {"degenerate_faces_removed", r.degenerate_faces_removed},
+            {"duplicate_faces_removed", r.duplicate_faces_removed},
+            {"faces_flipped", r.faces_flipped},
+            {"edges_stitched", r.edges_stitched},
+            {"non_manifold_vertices_split", r.non_manifold_vertices_split},
+            {"self_intersecting_faces", r.self_intersecting_faces},
+            {"components", r.components}};
+}
+
+}  // namespace
+
+json mandrel_report(const Mandrel& mandrel) {
+    json rims = json::array();
+    for (const Rim& rim : mandrel.rims) {
+        rims.push_back({{"id", rim.id},
+                        {"centre", json_of(rim.centre_mm)},
+                        {"axis", json_of(rim.axis)},
+                        {"radius", rim.radius_mm},
+                        {"circularity_mm", rim.circularity_mm},
+                        {"points", rim.vertices.size()}});
+    }
+    json regions = json::array();
+    double area = 0.0;
+    for (const Region& region : mandrel.regions) {
+        regions.push_back({{"id", region.id},
+                           {"kind", name_of(region.kind)},
+                           {"kept", region.kept},
+                           {"triangles", region.triangles},
+                           {"area_mm2", region.area_mm2},
+                           {"visible_fraction", region.visible_fraction}});
+        area += region.kept ? region.area_mm2 : 0.0;
+    }
+    const FitReport& fit = mandrel.surface.fit;
+    return {{"file", mandrel.file},
+            {"unit_mm", mandrel.unit_mm},
+            {"unit_rule", mandrel.unit_rule},
+            {"triangles", mandrel.surface.face.size()},
+            {"file_triangles", mandrel.whole.faces.size()},
+            {"file_to_mandrel", matrix_of(mandrel.file_to_mandrel)},
+            {"axis", {{"rule", mandrel.axis.rule}, {"residual_mm", mandrel.axis.residual_mm}}},
+            {"rims", rims},
+            {"area_mm2", area},
+            {"regions", regions},
+            {"repairs", repairs_of(mandrel.repairs)},
+            {"smooth_fit",
+             {{"cubic", fit.cubic}, {"quadratic", fit.quadratic}, {"averaged", fit.averaged}}},
+            {"remarks", mandrel.remarks}};
+}
+
+}  // namespace meshwind

@@ -1,0 +1,32 @@
+/// Who meets whom across an edge: the flat topology that import works on before a mesh is manifold.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshwind {
+
+/// One face's use of an undirected edge.
+struct EdgeUse {
+    std::int32_t low = 0;   ///< smaller vertex index
+    std::int32_t high = 0;  ///< larger vertex index
+    std::int32_t face = 0;
+    std::int8_t edge = 0;       ///< edge of the face: from its corner `edge` to the next
+    std::int8_t ascending = 0;  ///< 1 where the face runs from `low` to `high`
+};
+
+/// All uses, sorted by (low, high, face): the uses of one edge stand together.
+/// \param faces index triples, three different vertices each
+[[nodiscard]] std::vector<EdgeUse> edge_uses(std::span<const std::array<std::int32_t, 3>> faces);
+
+/// Per face and edge the face on the other side, -1 where the edge does not have exactly two uses.
+[[nodiscard]] std::vector<std::array<std::int32_t, 3>> face_neighbours(
+    std::span<const std::array<std::int32_t, 3>> faces);
+
+/// Edge of `face` that it shares with `neighbour`, given the neighbours of `face`; -1 when none.
+[[nodiscard]] int shared_edge(const std::array<std::int32_t, 3>& neighbours,
+                              std::int32_t neighbour);
+
+}  // namespace meshwind

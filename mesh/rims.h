@@ -1,0 +1,28 @@
+/// Boundary loops of the winding surface and the circles they lie on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/mandrel.h"
+
+namespace meshwind {
+
+/// A loop smaller than this share of the largest is a hole in the wall, not an end.
+inline constexpr double kRimRadiusShare = 0.1;
+
+struct Rims {
+    std::vector<Rim> rims;                             ///< by their first face, id = index
+    std::vector<std::array<std::int32_t, 3>> of_edge;  ///< rim id per face and edge, else -1
+    int holes = 0;                                     ///< loops too small to be rims
+};
+
+/// Loops run counter-clockwise seen along `Rim::axis` from outside. The axis is the normal of the
+/// area the loop encloses; centre and radius come from a least-squares circle in that plane with
+/// each vertex weighted by the boundary length beside it, so uneven spacing does not pull.
+/// Accuracy: exact to rounding on a loop of points on a circle (tests/mesh/rims_test.cpp).
+/// \pre soup is an oriented manifold, one fan per vertex
+[[nodiscard]] Rims find_rims(const TriangleSoup& soup);
+
+}  // namespace meshwind

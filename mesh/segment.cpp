@@ -1,0 +1,383 @@
+#include "mesh/segment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string_view>
+
+#include <Eigen/Geometry>
+
+#include "core/parallel.h"
+#include "mesh/edge_table.h"
+#include "mesh/feature_edges.h"
+#include "mesh/visibility.h"
+
+namespace meshwind {
+namespace {
+
+constexpr double kSamples = 4000.0;      // over the whole part, shared out by area
+constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothing alone
+
+// A point sees the outside when most directions escape. The wall of a bore never does: even at the
+// very mouth half of its directions meet the opposite wall.
+constexpr double kMostDirections = 0.5;
+
+constexpr double kPlaneShare = 2e-3;         // distance of a planar region's points, of its size
+constexpr double kPlaneNormalSpread = 0.02;  // 1 - |mean normal| of a planar region: 11 deg
+constexpr double kConvexShare = 0.98;        // of an end cap's boundary length
+
+// End caps against other plateaus such as the tops of letters, by radius relative to the largest.
+constexpr double kCapRadiusShare = 0.25;
+constexpr double kBoreAreaShare =
+    0.01;  // a blind region smaller than this of the part may be a nook
+
+std::size_t at(std::int32_t index) {
+    return static_cast<std::size_t>(index);
+}
+
+struct Facts {
+    double area_mm2 = 0.0;
+    Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
+    Eigen::AlignedBox3d box;
+    double boundary_mm = 0.0;
+    double convex_mm = 0.0;
+    bool open = false;  // has open edges
+    double plane_error_mm = 0.0;
+    double outline_mm2 = 0.0;  // area within its outline, holes included
+    std::vector<std::int32_t> faces;
+    std::vector<std::int32_t> beside;  // regions across its edges, sorted
+};
+
+std::vector<std::int32_t> label_faces(const Segmentation& s) {
+    std::vector<std::int32_t> label(s.neighbours.size(), -1);
+    std::int32_t count = 0;
+    std::vector<std::int32_t> stack;
+    for (std::size_t seed = 0; seed < label.size(); ++seed) {
+        if (label[seed] >= 0) {
+            continue;
+        }
+        label[seed] = count;
+        stack.push_back(static_cast<std::int32_t>(seed));
+        while (!stack.empty()) {
+            const std::size_t f = at(stack.back());
+            stack.pop_back();
+            for (std::size_t e = 0; e < 3; ++e) {
+                const std::int32_t g = s.neighbours[f][e];
+                if (g >= 0 && s.feature[f][e] == 0 && label[at(g)] < 0) {
+                    label[at(g)] = count;
+                    stack.push_back(g);
+                }
+            }
+        }
+        ++count;
+    }
+    return label;
+}
+
+// Renumbers labels by area, largest first; equal areas keep the order of their first face.
+void sort_labels(std::vector<std::int32_t>& label, const std::vector<double>& face_area) {
+    const std::int32_t count = *std::max_element(label.begin(), label.end()) + 1;
+    std::vector<double> area(at(count), 0.0);
+    for (std::size_t f = 0; f < label.size(); ++f) {
+        area[at(label[f])] += face_area[f];
+    }
+    std::vector<std::int32_t> order(area.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int32_t a, std::int32_t b) { return area[at(a)] > area[at(b)]; });
+    std::vector<std::int32_t> rank(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        rank[at(order[i])] = static_cast<std::int32_t>(i);
+    }
+    for (std::int32_t& l : label) {
+        l = rank[at(l)];
+    }
+}
+
+// Area that the longest of the region's boundary loops encloses, seen along the region's normal.
+// The signed sum over all loops is the area itself; holes have the other sign and are left out by
+// taking the hull's view: the enclosed area is summed per loop.
+double outline_area(const TriangleSoup& soup, const Segmentation& s, const Facts& facts,
+                    std::int32_t id) {
+    std::map<std::int32_t, std::int32_t> next;
+    for (const std::int32_t f : facts.faces) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const std::int32_t g = s.neighbours[at(f)][e];
+            if (g < 0 || s.region[at(g)] != id) {
+                next.emplace(soup.faces[at(f)][e], soup.faces[at(f)][(e + 1) % 3]);
+            }
+        }
+    }
+    const Eigen::Vector3d normal = facts.area_normal.normalized();
+    double largest = 0.0;
+    while (!next.empty()) {
+        const auto first = next.begin();
+        const Eigen::Vector3d origin = soup.points_mm[at(first->first)];
+        double enclosed = 0.0;
+        for (auto step = first; step != next.end();) {
+            const Eigen::Vector3d from = soup.points_mm[at(step->first)] - origin;
+            const Eigen::Vector3d to = soup.points_mm[at(step->second)] - origin;
+            enclosed += 0.5 * normal.dot(from.cross(to));
+            const std::int32_t onward = step->second;
+            next.erase(step);
+            step = next.find(onward);
+        }
+        largest = std::max(largest, enclosed);
+    }
+    return largest;
+}
+
+std::vector<Facts> facts_of(const TriangleSoup& soup, const Segmentation& s,
+                            const std::vector<Eigen::Vector3d>& normals,
+                            const std::vector<double>& face_area) {
+    const std::int32_t count = *std::max_element(s.region.begin(), s.region.end()) + 1;
+    std::vector<Facts> facts(at(count));
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        Facts& r = facts[at(s.region[f])];
+        r.faces.push_back(static_cast<std::int32_t>(f));
+        r.area_mm2 += face_area[f];
+        r.area_normal += face_area[f] * normals[f];
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Eigen::Vector3d& from = soup.points_mm[at(soup.faces[f][e])];
+            const Eigen::Vector3d along = soup.points_mm[at(soup.faces[f][(e + 1) % 3])] - from;
+            const std::int32_t g = s.neighbours[f][e];
+            r.box.extend(from);
+            if (g < 0) {
+                r.open = true;
+            } else if (s.region[at(g)] != s.region[f]) {
+                r.boundary_mm += along.norm();
+                r.convex_mm +=
+                    normals[f].cross(normals[at(g)]).dot(along) > 0.0 ? along.norm() : 0.0;
+                r.beside.push_back(s.region[at(g)]);
+            }
+        }
+    }
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        Facts& r = facts[id];
+        std::sort(r.beside.begin(), r.beside.end());
+        r.beside.erase(std::unique(r.beside.begin(), r.beside.end()), r.beside.end());
+        const Eigen::Vector3d normal = r.area_normal.normalized();
+        for (const std::int32_t f : r.faces) {
+            for (const std::int32_t v : soup.faces[at(f)]) {
+                const double height = normal.dot(soup.points_mm[at(v)] - r.box.center());
+                r.plane_error_mm = std::max(r.plane_error_mm, std::abs(height));
+            }
+        }
+    }
+    return facts;
+}
+
+bool is_plateau(const Facts& r) {
+    return !r.open && r.boundary_mm > 0.0 && r.convex_mm >= kConvexShare * r.boundary_mm &&
+           r.area_normal.norm() >= (1.0 - kPlaneNormalSpread) * r.area_mm2 &&
+           r.plane_error_mm <= kPlaneShare * r.box.diagonal().norm();
+}
+
+// A disc beside another plateau is the flat of a box, not an end.
+void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Facts>& facts) {
+    std::vector<char> plateau(facts.size(), 0);
+    double largest = 0.0;
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        if (is_plateau(facts[id])) {
+            plateau[id] = 1;
+            facts[id].outline_mm2 = outline_area(soup, s, facts[id], static_cast<std::int32_t>(id));
+        }
+    }
+    std::vector<char> cap(facts.size(), 0);
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        const bool disc = facts[id].outline_mm2 < 1.01 * facts[id].area_mm2;
+        const bool flat_of_box =
+            disc && std::any_of(facts[id].beside.begin(), facts[id].beside.end(),
+                                [&](std::int32_t other) { return plateau[at(other)] != 0; });
+        cap[id] = static_cast<char>(plateau[id] != 0 && !flat_of_box);
+        largest = std::max(largest, cap[id] != 0 ? facts[id].outline_mm2 : 0.0);
+    }
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        if (cap[id] != 0 && facts[id].outline_mm2 >= kCapRadiusShare * kCapRadiusShare * largest) {
+            s.regions[id].kind = RegionKind::EndCap;
+        }
+    }
+}
+
+struct Sample {
+    std::int32_t face = 0;
+    std::int32_t region = 0;
+    Eigen::Vector3d bary;
+};
+
+// Evenly over the region's area, in face order; inside a face by an additive (plastic-number)
+// sequence.
+std::vector<Sample> samples_of(const std::vector<Facts>& facts,
+                               const std::vector<double>& face_area) {
+    constexpr double kStep[2] = {0.7548776662466927, 0.5698402909980532};
+    const double total = std::accumulate(face_area.begin(), face_area.end(), 0.0);
+    std::vector<Sample> samples;
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        const Facts& r = facts[id];
+        const double count = std::max(kSamplesPerRegion, std::round(kSamples * r.area_mm2 / total));
+        double before = 0.0;
+        double next = 0.5;
+        for (const std::int32_t f : r.faces) {
+            before += face_area[at(f)] * count / r.area_mm2;
+            for (; next < before; next += 1.0) {
+                const double u = std::sqrt(std::fmod(next * kStep[0], 1.0));
+                const double v = std::fmod(next * kStep[1], 1.0);
+                samples.push_back(
+                    {f, static_cast<std::int32_t>(id), {1.0 - u, u * (1.0 - v), u * v}});
+            }
+        }
+    }
+    return samples;
+}
+
+void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
+                 const std::vector<Facts>& facts, const std::vector<double>& face_area,
+                 std::vector<Region>& regions) {
+    const Visibility visibility(soup);
+    const std::vector<Sample> samples = samples_of(facts, face_area);
+    std::vector<char> sees(samples.size(), 0);
+    parallel_for(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& [a, b, c] = soup.faces[at(samples[i].face)];
+            const Eigen::Vector3d point = samples[i].bary[0] * soup.points_mm[at(a)] +
+                                          samples[i].bary[1] * soup.points_mm[at(b)] +
+                                          samples[i].bary[2] * soup.points_mm[at(c)];
+            sees[i] = static_cast<char>(
+                visibility.escape_fraction(point, normals[at(samples[i].face)]) > kMostDirections);
+        }
+    });
+    std::vector<int> asked(regions.size(), 0);
+    std::vector<int> seen(regions.size(), 0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        ++asked[at(samples[i].region)];
+        seen[at(samples[i].region)] += sees[i];
+    }
+    for (std::size_t id = 0; id < regions.size(); ++id) {
+        regions[id].visible_fraction =
+            asked[id] > 0 ? static_cast<double>(seen[id]) / asked[id] : 0;
+    }
+}
+
+// Regions that hang together without crossing an end cap or a bore.
+std::vector<std::vector<std::int32_t>> pieces_of(const std::vector<Region>& regions,
+                                                 const std::vector<Facts>& facts) {
+    const auto blocks = [&](std::int32_t id) {
+        return regions[at(id)].kind == RegionKind::EndCap ||
+               regions[at(id)].kind == RegionKind::Bore;
+    };
+    std::vector<char> reached(regions.size(), 0);
+    std::vector<std::vector<std::int32_t>> pieces;
+    for (std::int32_t seed = 0; seed < static_cast<std::int32_t>(regions.size()); ++seed) {
+        if (blocks(seed) || reached[at(seed)] != 0) {
+            continue;
+        }
+        std::vector<std::int32_t> piece{seed};
+        reached[at(seed)] = 1;
+        for (std::size_t i = 0; i < piece.size(); ++i) {
+            for (const std::int32_t other : facts[at(piece[i])].beside) {
+                if (!blocks(other) && reached[at(other)] == 0) {
+                    reached[at(other)] = 1;
+                    piece.push_back(other);
+                }
+            }
+        }
+        pieces.push_back(std::move(piece));
+    }
+    return pieces;
+}
+
+// Share of the piece's area that sees the outside.
+double view_of(const std::vector<std::int32_t>& piece, const std::vector<Region>& regions) {
+    double seen = 0.0;
+    double area = 0.0;
+    for (const std::int32_t id : piece) {
+        seen += regions[at(id)].area_mm2 * regions[at(id)].visible_fraction;
+        area += regions[at(id)].area_mm2;
+    }
+    return area > 0.0 ? seen / area : 0.0;
+}
+
+void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2) {
+    for (const auto& piece : pieces_of(s.regions, facts)) {
+        const bool blind = view_of(piece, s.regions) < kMostDirections;
+        for (const std::int32_t id : piece) {
+            Region& r = s.regions[at(id)];
+            const bool large = r.area_mm2 >= kBoreAreaShare * total_mm2;
+            const bool is_bore = r.visible_fraction <= 0.05 && large;
+            if (is_bore || (blind && r.visible_fraction < kMostDirections)) {
+                r.kind = RegionKind::Bore;
+            }
+        }
+    }
+    // What is left and hangs on a bore alone belongs to it.
+    double widest = 0.0;
+    const auto pieces = pieces_of(s.regions, facts);
+    std::vector<double> seen;
+    for (const auto& piece : pieces) {
+        double area = 0.0;
+        for (const std::int32_t id : piece) {
+            area += s.regions[at(id)].area_mm2 * s.regions[at(id)].visible_fraction;
+        }
+        seen.push_back(area);
+        widest = std::max(widest, area);
+    }
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const bool by_bore = std::any_of(pieces[p].begin(), pieces[p].end(), [&](std::int32_t id) {
+            return std::any_of(
+                facts[at(id)].beside.begin(), facts[at(id)].beside.end(),
+                [&](std::int32_t other) { return s.regions[at(other)].kind == RegionKind::Bore; });
+        });
+        const bool wall = seen[p] == widest || (!by_bore && seen[p] > 0.0);
+        for (const std::int32_t id : pieces[p]) {
+            s.regions[at(id)].kind = wall ? RegionKind::OuterWall : RegionKind::Bore;
+        }
+    }
+    for (Region& r : s.regions) {
+        r.kept = r.kind == RegionKind::OuterWall;
+    }
+}
+
+}  // namespace
+
+std::string_view name_of(RegionKind kind) {
+    switch (kind) {
+        case RegionKind::OuterWall:
+            return "outer-wall";
+        case RegionKind::EndCap:
+            return "end-cap";
+        case RegionKind::Bore:
+            return "bore";
+        case RegionKind::Other:
+            break;
+    }
+    return "other";
+}
+
+Segmentation segment(const TriangleSoup& soup) {
+    Segmentation s;
+    s.neighbours = face_neighbours(soup.faces);
+    const std::vector<Eigen::Vector3d> normals = steady_normals(soup, s.neighbours);
+    s.feature = feature_edges(normals, s.neighbours);
+    s.region = label_faces(s);
+    std::vector<double> face_area(soup.faces.size());
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        const auto& [a, b, c] = soup.faces[f];
+        face_area[f] = 0.5 * (soup.points_mm[at(b)] - soup.points_mm[at(a)])
+                                 .cross(soup.points_mm[at(c)] - soup.points_mm[at(a)])
+                                 .norm();
+    }
+    sort_labels(s.region, face_area);
+    std::vector<Facts> facts = facts_of(soup, s, normals, face_area);
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        s.regions.push_back({.id = static_cast<std::int32_t>(id),
+                             .triangles = static_cast<int>(facts[id].faces.size()),
+                             .area_mm2 = facts[id].area_mm2});
+    }
+    look_around(soup, normals, facts, face_area, s.regions);
+    mark_end_caps(soup, s, facts);
+    classify(s, facts, std::accumulate(face_area.begin(), face_area.end(), 0.0));
+    return s;
+}
+
+}  // namespace meshwind

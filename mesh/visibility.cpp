@@ -1,0 +1,50 @@
+#include "mesh/visibility.h"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+constexpr int kDirections = 64;  // resolves a share of 2 %, half of them decide "most"
+
+// Rays start this share of the diagonal off the surface: a hundred times Embree's single precision.
+constexpr double kLiftShare = 1e-5;
+
+// Cosine-weighted directions over +z on a golden-angle spiral.
+std::array<Eigen::Vector3d, kDirections> make_directions() {
+    std::array<Eigen::Vector3d, kDirections> directions;
+    const double golden = kPi * (3.0 - std::sqrt(5.0));
+    for (int i = 0; i < kDirections; ++i) {
+        const double sine = std::sqrt((i + 0.5) / kDirections);
+        directions[static_cast<std::size_t>(i)] = {
+            sine * std::cos(golden * i), sine * std::sin(golden * i), std::sqrt(1.0 - sine * sine)};
+    }
+    return directions;
+}
+
+}  // namespace
+
+Visibility::Visibility(const TriangleSoup& soup)
+    : rays_(std::span<const TriangleSoup>(&soup, 1)), diagonal_mm_(diagonal_mm(soup)) {}
+
+double Visibility::escape_fraction(const Eigen::Vector3d& point,
+                                   const Eigen::Vector3d& normal) const {
+    static const std::array<Eigen::Vector3d, kDirections> directions = make_directions();
+    const Eigen::Vector3d side = normal.unitOrthogonal();
+    const Eigen::Vector3d up = normal.cross(side);
+    const Eigen::Vector3d start = point + kLiftShare * diagonal_mm_ * normal;
+    int escaped = 0;
+    for (const Eigen::Vector3d& d : directions) {
+        const Eigen::Vector3d direction = d.x() * side + d.y() * up + d.z() * normal;
+        escaped += rays_.occluded(start, start + 2.0 * diagonal_mm_ * direction) ? 0 : 1;
+    }
+    return static_cast<double>(escaped) / kDirections;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,26 @@
+/// How much of the outside a point of the surface sees.
+#pragma once
+
+#include "mesh/ray_query.h"
+#include "mesh/triangle_soup.h"
+
+namespace meshwind {
+
+/// Answers from a fixed set of directions, so equal questions get equal answers. Thread-safe.
+class Visibility {
+public:
+    /// \pre soup has faces
+    explicit Visibility(const TriangleSoup& soup);
+
+    /// Share (0 to 1) of the directions above `point`, weighted with their cosine to `normal`, in
+    /// which a ray leaves the part without hitting it.
+    /// \param point on the surface \param normal unit, the side to look from
+    [[nodiscard]] double escape_fraction(const Eigen::Vector3d& point,
+                                         const Eigen::Vector3d& normal) const;
+
+private:
+    RayQuery rays_;
+    double diagonal_mm_;
+};
+
+}  // namespace meshwind
