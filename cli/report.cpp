@@ -32,22 +32,23 @@ json plan_report(const Plan& plan) {
     for (std::size_t r = 0; r < kRefusals; ++r) {
         refusals[name_of(static_cast<Refusal>(r))] = plan.effort.refusals[r];
     }
-    json report = {{"planner", plan.planner},
-                   {"courses", plan.courses},
-                   {"transitions", std::max(0, static_cast<int>(plan.pieces.size()) - plan.courses)},
-                   {"fibres", plan.fibres},
-                   {"fibre_length_mm", rounded(plan.fibre_length_mm)},
-                   {"coverage",
-                    {{"fraction", rounded(plan.coverage.fraction)},
-                     {"reachable", rounded(plan.coverage.reachable)},
-                     {"mean_layers", rounded(plan.coverage.mean_layers)},
-                     {"max_layers", plan.coverage.max_layers},
-                     {"cv", rounded(plan.coverage.cv)}}},
-                   {"uncovered", uncovered},
-                   {"library",
-                    {{"candidates", plan.effort.candidates},
-                     {"outcomes", refusals},
-                     {"rejected_courses", plan.effort.rejected_courses}}}};
+    json report = {
+        {"planner", plan.planner},
+        {"courses", plan.courses},
+        {"transitions", std::max(0, static_cast<int>(plan.pieces.size()) - plan.courses)},
+        {"fibres", plan.fibres},
+        {"fibre_length_mm", rounded(plan.fibre_length_mm)},
+        {"coverage",
+         {{"fraction", rounded(plan.coverage.fraction)},
+          {"reachable", rounded(plan.coverage.reachable)},
+          {"mean_layers", rounded(plan.coverage.mean_layers)},
+          {"max_layers", plan.coverage.max_layers},
+          {"cv", rounded(plan.coverage.cv)}}},
+        {"uncovered", uncovered},
+        {"library",
+         {{"candidates", plan.effort.candidates},
+          {"outcomes", refusals},
+          {"rejected_courses", plan.effort.rejected_courses}}}};
     if (!plan.failure.empty()) {
         report["failure"] = plan.failure;
     }
@@ -80,8 +81,8 @@ json axes_report(const WindResult& result) {
             low = std::min(low, list.value(b, a));
             high = std::max(high, list.value(b, a));
         }
-        const double step = static_cast<double>(list.axes[a].resolution_nano) /
-                            static_cast<double>(kNanoPerUnit);
+        const double step =
+            static_cast<double>(list.axes[a].resolution_nano) / static_cast<double>(kNanoPerUnit);
         axes[std::string(1, list.axes[a].letter)] = {
             {"unit", list.axes[a].type == AxisType::Rotary ? "deg" : "mm"},
             {"min", rounded(low)},
@@ -150,8 +151,8 @@ void print_summary(std::ostream& out, const WindResult& result,
     if (plan.failure.empty()) {
         out << result.mandrel.file << " on " << result.machine.name << ": " << plan.courses
             << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1) << " m of fibre, "
-            << result.blocks.blocks.size() << " blocks, "
-            << fixed(result.duration_s / 60.0, 1) << " min\n"
+            << result.blocks.blocks.size() << " blocks, " << fixed(result.duration_s / 60.0, 1)
+            << " min\n"
             << "covered " << percent(plan.coverage.fraction) << " of the wall (reachable "
             << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
             << " layers on average, at most " << plan.coverage.max_layers << '\n';

@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The free fibre's ray starts two mesh edges along the tangent: nearer, the facet that holds the landing
-// point itself may stand in the way; a wall within that distance would bridge first.
+// The free fibre's ray starts two mesh edges along the tangent: nearer, the facet that holds the
+// landing point itself may stand in the way; a wall within that distance would bridge first.
 constexpr double kRayStartEdges = 2.0;
 
 class Stopwatch {
@@ -105,8 +105,7 @@ double head_radius_mm(const HeadEnvelope& envelope) {
 
 class Winder {
 public:
-    explicit Winder(const WindRequest& request)
-        : request_(request), watch_(result_.timing_s) {}
+    explicit Winder(const WindRequest& request) : request_(request), watch_(result_.timing_s) {}
 
     WindResult run() {
         read();
@@ -138,9 +137,8 @@ private:
         refuse_what_is_not_offered(result_.job, request_.job);
         inverse_ = std::make_unique<SpindleWristInverse>(result_.machine);
         dialect_ = make_dialect(result_.machine.controller.dialect);
-        envelope_ = head_envelope(result_.machine, [](const std::string& file) {
-            return read_triangles(file);
-        });
+        envelope_ = head_envelope(result_.machine,
+                                  [](const std::string& file) { return read_triangles(file); });
         result_.mandrel =
             load_mandrel(request_.mandrel, mandrel_options(result_.job, request_.unit_mm));
         set_up_rules();
@@ -176,8 +174,7 @@ private:
 
     // Whether the machine can wind a course by itself: eye points, axis limits, head and fibre.
     [[nodiscard]] bool machine_accepts(const Piece& piece) const {
-        const EyePathResult eyes =
-            equal_free_length({&piece, 1}, *obstacles_, rule_.free_fibre);
+        const EyePathResult eyes = equal_free_length({&piece, 1}, *obstacles_, rule_.free_fibre);
         if (!eyes.blocked.empty()) {
             return false;
         }
@@ -186,8 +183,8 @@ private:
         if (!joints.violations.empty()) {
             return false;
         }
-        const CollisionReport report = check_collisions(result_.machine, envelope_, *obstacles_,
-                                                        eyes.path, joints, rule_);
+        const CollisionReport report =
+            check_collisions(result_.machine, envelope_, *obstacles_, eyes.path, joints, rule_);
         return report.fibre_hits.empty() && report.head_hits.empty();
     }
 
@@ -217,8 +214,8 @@ private:
         const TimedPath timed = time_path(result_.machine, result_.eyes.path, joints_, time);
         result_.duration_s = timed.duration_s;
         result_.binding = timed.binding;
-        result_.blocks = dialect_->prepare(
-            make_blocks(result_.machine, result_.eyes.path, joints_, timed));
+        result_.blocks =
+            dialect_->prepare(make_blocks(result_.machine, result_.eyes.path, joints_, timed));
         tell("collisions", 0.5);
         collisions_ = check_collisions(result_.machine, envelope_, *obstacles_, result_.eyes.path,
                                        joints_, rule_);
@@ -278,11 +275,10 @@ private:
 
     void check_collision() {
         Check check{"collision", true, {}, {}};
-        check.numbers = {
-            {"fibre_hits", static_cast<double>(collisions_.fibre_hits.size())},
-            {"head_hits", static_cast<double>(collisions_.head_hits.size())},
-            {"blocked_points", static_cast<double>(result_.eyes.blocked.size())},
-            {"min_clearance_mm", collisions_.min_clearance_mm}};
+        check.numbers = {{"fibre_hits", static_cast<double>(collisions_.fibre_hits.size())},
+                         {"head_hits", static_cast<double>(collisions_.head_hits.size())},
+                         {"blocked_points", static_cast<double>(result_.eyes.blocked.size())},
+                         {"min_clearance_mm", collisions_.min_clearance_mm}};
         if (!result_.eyes.blocked.empty()) {
             check.ok = false;
             check.words = "no free fibre length between " + fixed(rule_.free_fibre.min_mm, 0) +
@@ -310,8 +306,8 @@ private:
             const auto shown = [&](double value) {
                 return rotary ? fixed(deg_from_rad(value), 2) + " deg" : fixed(value, 2) + " mm";
             };
-            check.words = std::string("axis ") + worst.axis + " would go to " +
-                          shown(worst.value) + ", past its end at " + shown(worst.limit) + ", at " +
+            check.words = std::string("axis ") + worst.axis + " would go to " + shown(worst.value) +
+                          ", past its end at " + shown(worst.limit) + ", at " +
                           place_of(worst.point);
         }
         result_.checks.push_back(check);
@@ -329,7 +325,8 @@ private:
         result_.checks.push_back(check);
     }
 
-    // The program is read back from its text: every position must be the planned one within half a step.
+    // The program is read back from its text: every position must be the planned one within half a
+    // step.
     void check_rounding() {
         tell("write", 0.0);
         write_program();
@@ -368,11 +365,11 @@ private:
             thickness.push_back(plan.face_layers[f] * result_.job.tow.thickness_mm);
             angle_deg.push_back(deg_from_rad(plan.face_angle_rad[f]));
         }
-        const std::vector<CellArray> cells{{"layers", std::span<const double>(plan.face_layers)},
-                                           {"thickness_mm", std::span<const double>(thickness)},
-                                           {"fibre_angle_to_spindle_deg",
-                                            std::span<const double>(angle_deg)},
-                                           {"region", std::span<const std::int32_t>(surface.region)}};
+        const std::vector<CellArray> cells{
+            {"layers", std::span<const double>(plan.face_layers)},
+            {"thickness_mm", std::span<const double>(thickness)},
+            {"fibre_angle_to_spindle_deg", std::span<const double>(angle_deg)},
+            {"region", std::span<const std::int32_t>(surface.region)}};
         return layup_vtu(surface.position_mm, surface.face, cells);
     }
 

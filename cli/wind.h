@@ -31,7 +31,7 @@ struct WindRequest {
 
 /// One check of the report. The place is empty where the check passed.
 struct Check {
-    std::string name;   ///< key in report.json
+    std::string name;  ///< key in report.json
     bool ok = true;
     std::string words;  ///< where it failed: one line with the place, the number and the limit
     std::map<std::string, double> numbers;  ///< further keys of the check, e.g. "worst", "limit"
