@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <limits>
+#include <memory>
 #include <sstream>
 
 #include "cli/digest.h"
@@ -30,6 +32,10 @@ namespace fs = std::filesystem;
 // The free fibre's ray starts two mesh edges along the tangent: nearer, the facet that holds the
 // landing point itself may stand in the way; a wall within that distance would bridge first.
 constexpr double kRayStartEdges = 2.0;
+
+// Added to the clearance where free lengths are chosen: between two blocks the axes cut the corner of the
+// eye's curve by up to this much, and the clearance must hold there as well.
+constexpr double kBetweenBlocks_mm = 0.5;
 
 class Stopwatch {
 public:
@@ -91,16 +97,37 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     return options;
 }
 
-double head_radius_mm(const HeadEnvelope& envelope) {
-    // The ball that stands for the head in planning: what reaches furthest around the eye itself.
-    double radius = 0.0;
+// The head as planning sees it: a ball around the eye that holds every part which turns with the
+// last wrist axis, however that turns, and the other parts as capsules on the line away from the
+// spindle, on which the central-angle policy keeps them.
+void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFibreRule& rule) {
+    const Eigen::Vector3d& eye = machine.eye.position_mm;
+    const Eigen::Vector3d outward = -machine.eye.exit;
+    rule.head_radius_mm = 0.0;
+    rule.arm.clear();
     for (const HeadEnvelope::Part& part : envelope.parts) {
-        const Capsule& c = part.capsule;
-        if (part.triangles.faces.empty() && c.from_mm.norm() <= 2.0 * c.radius_mm) {
-            radius = std::max(radius, c.radius_mm);
+        std::vector<Eigen::Vector3d> points = part.triangles.points_mm;
+        double thickness = 0.0;
+        if (points.empty()) {
+            points = {part.capsule.from_mm, part.capsule.to_mm};
+            thickness = part.capsule.radius_mm;
+        }
+        double reach = 0.0;
+        ArmPart arm{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0.0};
+        for (const Eigen::Vector3d& point : points) {
+            const double along = outward.dot(point - eye);
+            reach = std::max(reach, (point - eye).norm() + thickness);
+            arm.from_mm = std::min(arm.from_mm, along);
+            arm.to_mm = std::max(arm.to_mm, along);
+            arm.radius_mm =
+                std::max(arm.radius_mm, (point - eye - along * outward).norm() + thickness);
+        }
+        if (part.link == machine.eye_chain.back().letter) {
+            rule.head_radius_mm = std::max(rule.head_radius_mm, reach);
+        } else {
+            rule.arm.push_back(arm);
         }
     }
-    return radius;
 }
 
 class Winder {
@@ -160,8 +187,8 @@ private:
                                  fixed(free.min_mm, 1) + " to " + fixed(free.max_mm, 1) +
                                  " mm of the machine; choose a length between");
         }
-        free.head_radius_mm = head_radius_mm(envelope_);
-        free.clearance_mm = job.tolerance.clearance_mm;
+        describe_head(result_.machine, envelope_, free);
+        free.clearance_mm = job.tolerance.clearance_mm + kBetweenBlocks_mm;
         free.start_mm = std::min(kRayStartEdges * mandrel.surface.mean_edge_mm, 0.5 * free.min_mm);
         std::vector<TriangleSoup> parts{mandrel.whole};
         for (const Rim& rim : mandrel.rims) {

@@ -12,6 +12,9 @@
 namespace meshwind {
 namespace {
 
+// Half length of a piece of a capsule that is not split further, as a share of its radius.
+constexpr double kCapsuleResolution = 0.01;
+
 // Barycentric coordinates of the point of triangle abc nearest to p (by Voronoi regions of the
 // triangle's features). Source: ericson_2004_collision, sec. 5.1.5.
 Eigen::Vector3d closest_bary(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
@@ -188,6 +191,20 @@ ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) c
     rtcInitPointQueryContext(&context);
     rtcPointQuery(impl_->scene, &point, &context, visit_triangle, &search);
     return search.best;
+}
+
+bool RayQuery::capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                             double radius_mm) const {
+    const Eigen::Vector3d centre = 0.5 * (from + to);
+    const double reach = 0.5 * (to - from).norm();
+    const double distance = closest(centre, reach + radius_mm).distance_mm;
+    if (distance >= reach + radius_mm) {
+        return true;
+    }
+    if (distance < radius_mm || reach < kCapsuleResolution * radius_mm) {
+        return false;
+    }
+    return capsule_clear(from, centre, radius_mm) && capsule_clear(centre, to, radius_mm);
 }
 
 }  // namespace meshwind

@@ -42,6 +42,11 @@ public:
     /// Nearest point within `radius_mm`; part -1 and distance `radius_mm` when there is none.
     [[nodiscard]] ClosestPoint closest(const Eigen::Vector3d& query, double radius_mm) const;
 
+    /// True when no triangle is nearer than `radius_mm` to the straight segment.
+    /// Conservative: a triangle that is up to 1 % of the radius further away may count as too near.
+    [[nodiscard]] bool capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                     double radius_mm) const;
+
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -60,6 +60,6 @@ inline constexpr double kClearanceCap_mm = 100.0;
                                                std::span<const std::size_t> tied_on = {});
 
 /// Pieces and steps smaller than this are not split further and count as a hit.
-inline constexpr double kSweepResolution_mm = 0.25;
+inline constexpr double kSweepResolution_mm = 0.03;
 
 }  // namespace meshwind

@@ -35,30 +35,16 @@ EyePath landing_points(std::span<const Piece> pieces) {
     return path;
 }
 
-// Lowers `value` (raises it for `sign` -1) until it changes by at most kFreeLengthRate per mm of
-// fibre. Where a new fibre is tied on, the length is free to jump.
-void limit_rate(const EyePath& path, std::span<const Piece> pieces, std::vector<double>& value,
-                double sign) {
-    const auto tied_on = [&](std::size_t i) {
-        return path[i].point == 0 && pieces[static_cast<std::size_t>(path[i].piece)].starts_fibre;
-    };
-    const auto pull = [&](std::size_t from, std::size_t to) {
-        const double reach =
-            value[from] + sign * kFreeLengthRate * std::abs(path[to].s_mm - path[from].s_mm);
-        if (sign * value[to] > sign * reach) {
-            value[to] = reach;
-        }
-    };
+// Ends of the fibres in the path: each is tied on anew, with a free length of its own.
+std::vector<std::size_t> fibre_ends(const EyePath& path, std::span<const Piece> pieces) {
+    std::vector<std::size_t> ends;
     for (std::size_t i = 1; i < path.size(); ++i) {
-        if (!tied_on(i)) {
-            pull(i - 1, i);
+        if (path[i].point == 0 && pieces[static_cast<std::size_t>(path[i].piece)].starts_fibre) {
+            ends.push_back(i);
         }
     }
-    for (std::size_t i = path.size(); i-- > 1;) {
-        if (!tied_on(i)) {
-            pull(i, i - 1);
-        }
-    }
+    ends.push_back(path.size());
+    return ends;
 }
 
 }  // namespace
@@ -69,36 +55,34 @@ EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& o
     EyePath& path = result.path;
     path = landing_points(pieces);
     const double wish = std::clamp(rule.preferred_mm, rule.min_mm, rule.max_mm);
-    std::vector<double> low(path.size(), rule.min_mm);
-    std::vector<double> high(path.size(), rule.max_mm);
-    std::vector<char> blocked(path.size(), 0);
+    std::vector<double> s_mm(path.size());
+    std::vector<std::vector<FreeFibreWindow>> windows(path.size());
     parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Vector3d normal = path[i].tangent.cross(path[i].binormal).normalized();
-            const FreeFibreWindow window =
-                free_fibre_window(obstacles, path[i].landing_mm, normal, path[i].tangent, rule);
-            blocked[i] = window.empty() ? 1 : 0;
-            if (!window.empty()) {
-                low[i] = window.low_mm;
-                high[i] = window.high_mm;
-            }
+            s_mm[i] = path[i].s_mm;
+            windows[i] =
+                free_fibre_windows(obstacles, path[i].landing_mm, normal, path[i].tangent, rule);
         }
     });
-    limit_rate(path, pieces, low, -1.0);
-    limit_rate(path, pieces, high, 1.0);
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        EyePoint& point = path[i];
-        if (low[i] > high[i]) {
-            blocked[i] = 1;
+    std::size_t begin = 0;
+    for (const std::size_t end : fibre_ends(path, pieces)) {
+        const FreeLengths lengths =
+            choose_free_lengths(std::span(s_mm).subspan(begin, end - begin),
+                                std::span(windows).subspan(begin, end - begin), wish);
+        for (const std::size_t i : lengths.blocked) {
+            result.blocked.push_back(begin + i);
         }
-        point.free_length_mm = std::min(high[i], std::max(low[i], wish));
-        point.eye_mm = point.landing_mm + point.free_length_mm * point.tangent;
-        result.shortest_mm =
-            i == 0 ? point.free_length_mm : std::min(result.shortest_mm, point.free_length_mm);
-        result.longest_mm = std::max(result.longest_mm, point.free_length_mm);
-        if (blocked[i] != 0) {
-            result.blocked.push_back(i);
+        for (std::size_t i = begin; i < end; ++i) {
+            EyePoint& point = path[i];
+            point.free_length_mm =
+                std::min(lengths.high_mm[i - begin], std::max(lengths.low_mm[i - begin], wish));
+            point.eye_mm = point.landing_mm + point.free_length_mm * point.tangent;
+            result.shortest_mm =
+                i == 0 ? point.free_length_mm : std::min(result.shortest_mm, point.free_length_mm);
+            result.longest_mm = std::max(result.longest_mm, point.free_length_mm);
         }
+        begin = end;
     }
     return result;
 }

@@ -29,10 +29,6 @@ struct EyePoint {
 
 using EyePath = std::vector<EyePoint>;
 
-/// Change of the free length per fibre laid (no unit): at a half, fibre always runs out of the eye,
-/// so it never goes slack while the free length shortens.
-inline constexpr double kFreeLengthRate = 0.5;
-
 /// Eye points, and where no free length was possible.
 struct EyePathResult {
     EyePath path;
@@ -43,8 +39,9 @@ struct EyePathResult {
 };
 
 /// Rule equal-free-length (fu_2009_post_processing, sec. 1): L is the preferred length wherever
-/// free fibre and head are clear, and leaves it only as far as it must, at most by kFreeLengthRate.
-/// Stations under a bridge are taken on the taut string. One eye point per station of the pieces.
+/// free fibre and head are clear, and leaves it only as far as it must, at most by the rates of
+/// free_fibre.h. Stations under a bridge are taken on the taut string. One eye point per station of
+/// the pieces.
 [[nodiscard]] EyePathResult equal_free_length(std::span<const Piece> pieces,
                                               const RayQuery& obstacles, const FreeFibreRule& rule);
 

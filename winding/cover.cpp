@@ -27,6 +27,10 @@ constexpr double kMaxHalfLengthBoxes = 8.0;
 // Times that rejected courses are replaced by others before the plan does without.
 constexpr int kMaxReplacements = 12;
 
+// Added to the clearance while candidates are judged at a few stations, so that a course still
+// fits when every station is tried.
+constexpr double kHeadMargin_mm = 0.3;
+
 // Distance of the stations of a plan: what the machine is told of the curve between them is below
 // its own following error.
 constexpr double kStation_mm = 4.0;
@@ -82,6 +86,7 @@ public:
                  max_half_length_mm(mandrel.surface)} {
         rules_.turn.friction = options.tow.friction;
         rules_.turn.band_mm = options.tow.width_mm;
+        rules_.free_fibre.clearance_mm += kHeadMargin_mm;
         reached_.assign(samples_.size(), 0);
         closest_miss_.assign(samples_.size(), Refusal::None);
         plan_.planner = "cover";

@@ -1,6 +1,8 @@
 #include "winding/free_fibre.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace meshwind {
 namespace {
@@ -8,78 +10,167 @@ namespace {
 // Smallest step of the search along the fibre: finer than any clearance that is asked for.
 constexpr double kStep_mm = 1.0;
 
+// Longest step of the search: an arm's far end moves faster than the eye.
+constexpr double kLongestStep_mm = 12.0;
+
 class Window {
 public:
     Window(const RayQuery& obstacles, const Eigen::Vector3d& landing,
            const Eigen::Vector3d& tangent, const FreeFibreRule& rule)
-        : obstacles_(obstacles),
-          landing_(landing),
-          tangent_(tangent),
-          need_mm_(rule.head_radius_mm + rule.clearance_mm) {}
+        : obstacles_(obstacles), landing_(landing), tangent_(tangent), rule_(rule) {}
 
-    // Distance from the head's ball to the next thing, negative where too near; at most `need`.
+    // Distance from the head's ball to the next thing, at most twice its radius; negative where
+    // head or arm are too near.
     [[nodiscard]] double spare(double length) const {
+        const double need = rule_.head_radius_mm + rule_.clearance_mm;
         const Eigen::Vector3d eye = landing_ + length * tangent_;
-        return obstacles_.closest(eye, 2.0 * need_mm_).distance_mm - need_mm_;
+        const double ball = obstacles_.closest(eye, 2.0 * need).distance_mm - need;
+        return ball >= 0.0 && !arm_clear(eye) ? -kStep_mm : ball;
     }
 
-    // First length from `from` towards `to` whose ball is clear; `to` passed when there is none.
-    [[nodiscard]] double find_clear(double from, double to) const {
-        const double sign = to >= from ? 1.0 : -1.0;
-        double length = from;
-        while (sign * (to - length) >= 0.0) {
+    // Appends the clear ranges within [from, to].
+    void scan(double from, double to, std::vector<FreeFibreWindow>& windows) const {
+        double last_clear = -1.0;
+        for (double length = from;;) {
             const double gap = spare(length);
+            if (gap >= 0.0 && last_clear < 0.0) {
+                windows.push_back({length, length});
+            }
             if (gap >= 0.0) {
-                break;
+                windows.back().high_mm = length;
+                last_clear = length;
+            } else {
+                last_clear = -1.0;
             }
-            length += sign * std::max(-gap, kStep_mm);
-        }
-        return length;
-    }
-
-    // Last length from `from` (clear) towards `to` before the ball is no longer clear.
-    [[nodiscard]] double find_end(double from, double to) const {
-        const double sign = to >= from ? 1.0 : -1.0;
-        double length = from;
-        while (sign * (to - length) > 0.0) {
-            const double step = std::min(sign * (to - length), std::max(spare(length), kStep_mm));
-            if (spare(length + sign * step) < 0.0) {
-                return length;
+            if (length >= to) {
+                return;
             }
-            length += sign * step;
+            length = std::min(to, length + std::clamp(std::abs(gap), kStep_mm, kLongestStep_mm));
         }
-        return to;
     }
 
 private:
+    [[nodiscard]] bool arm_clear(const Eigen::Vector3d& eye) const {
+        const Eigen::Vector3d outward = Eigen::Vector3d(eye.x(), eye.y(), 0.0).normalized();
+        return std::all_of(rule_.arm.begin(), rule_.arm.end(), [&](const ArmPart& part) {
+            return obstacles_.capsule_clear(eye + part.from_mm * outward,
+                                            eye + part.to_mm * outward,
+                                            part.radius_mm + rule_.clearance_mm);
+        });
+    }
+
     const RayQuery& obstacles_;
     const Eigen::Vector3d& landing_;
     const Eigen::Vector3d& tangent_;
-    double need_mm_;
+    const FreeFibreRule& rule_;
 };
+
+// A way to reach one window of a station: the lengths in it that can be reached, at what cost, and
+// from which window of the station before.
+struct Reach {
+    FreeFibreWindow window;
+    double cost = std::numeric_limits<double>::infinity();
+    std::size_t before = 0;
+};
+
+double distance_to(const FreeFibreWindow& window, double length) {
+    return std::max({0.0, window.low_mm - length, length - window.high_mm});
+}
+
+// The cheapest way over windows that overlap within the rates from station to station, by dynamic
+// programming; the cost is the area between windows and the preferred length. Where no window can
+// be reached the way starts anew.
+FreeLengths choose_windows(std::span<const double> s_mm,
+                           std::span<const std::vector<FreeFibreWindow>> windows,
+                           double preferred_mm) {
+    std::vector<std::vector<Reach>> reach(windows.size());
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+        for (const FreeFibreWindow& window : windows[i]) {
+            const double cost = distance_to(window, preferred_mm);
+            Reach best{window, i == 0 ? cost : std::numeric_limits<double>::infinity(), 0};
+            for (std::size_t k = 0; i > 0 && k < reach[i - 1].size(); ++k) {
+                const Reach& from = reach[i - 1][k];
+                const double ds = s_mm[i] - s_mm[i - 1];
+                const FreeFibreWindow next{
+                    std::max(window.low_mm, from.window.low_mm - kShorteningRate * ds),
+                    std::min(window.high_mm, from.window.high_mm + kLengtheningRate * ds)};
+                if (!next.empty() && from.cost + cost * ds < best.cost) {
+                    best = {next, from.cost + cost * ds, k};
+                }
+            }
+            reach[i].push_back(best);
+        }
+    }
+    FreeLengths lengths{std::vector<double>(windows.size(), preferred_mm),
+                        std::vector<double>(windows.size(), preferred_mm),
+                        {}};
+    bool fresh = true;
+    std::size_t k = 0;
+    for (std::size_t i = windows.size(); i-- > 0;) {
+        if (reach[i].empty()) {
+            fresh = true;
+            continue;
+        }
+        if (fresh) {
+            k = static_cast<std::size_t>(
+                std::min_element(reach[i].begin(), reach[i].end(),
+                                 [](const Reach& a, const Reach& b) { return a.cost < b.cost; }) -
+                reach[i].begin());
+        }
+        lengths.low_mm[i] = windows[i][k].low_mm;
+        lengths.high_mm[i] = windows[i][k].high_mm;
+        fresh = reach[i][k].cost == std::numeric_limits<double>::infinity();
+        k = reach[i][k].before;
+    }
+    return lengths;
+}
 
 }  // namespace
 
-FreeFibreWindow free_fibre_window(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
-                                  const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,
-                                  const FreeFibreRule& rule) {
+std::vector<FreeFibreWindow> free_fibre_windows(const RayQuery& obstacles,
+                                                const Eigen::Vector3d& landing_mm,
+                                                const Eigen::Vector3d& normal,
+                                                const Eigen::Vector3d& tangent,
+                                                const FreeFibreRule& rule) {
     const Eigen::Vector3d origin =
         landing_mm + rule.stand_off_mm * normal + rule.start_mm * tangent;
     const double free = rule.start_mm + obstacles.first_hit_mm(origin, tangent, rule.max_mm);
     const double longest = std::min(rule.max_mm, free);
+    std::vector<FreeFibreWindow> windows;
     if (longest < rule.min_mm) {
-        return {};
+        return windows;
     }
     const Window window(obstacles, landing_mm, tangent, rule);
     const double wish = std::min(std::max(rule.preferred_mm, rule.min_mm), longest);
-    double inside = window.find_clear(wish, rule.min_mm);
-    if (inside < rule.min_mm) {
-        inside = window.find_clear(wish, longest);
-        if (inside > longest) {
-            return {};
+    window.scan(rule.min_mm, wish, windows);
+    if (windows.empty() && longest > wish) {
+        window.scan(wish, longest, windows);
+    }
+    return windows;
+}
+
+FreeLengths choose_free_lengths(std::span<const double> s_mm,
+                                std::span<const std::vector<FreeFibreWindow>> windows,
+                                double preferred_mm) {
+    FreeLengths lengths = choose_windows(s_mm, windows, preferred_mm);
+    std::vector<double>& low = lengths.low_mm;
+    std::vector<double>& high = lengths.high_mm;
+    for (std::size_t i = 1; i < s_mm.size(); ++i) {
+        const double ds = s_mm[i] - s_mm[i - 1];
+        low[i] = std::max(low[i], low[i - 1] - kShorteningRate * ds);
+        high[i] = std::min(high[i], high[i - 1] + kLengtheningRate * ds);
+    }
+    for (std::size_t i = s_mm.size(); i-- > 1;) {
+        const double ds = s_mm[i] - s_mm[i - 1];
+        low[i - 1] = std::max(low[i - 1], low[i] - kLengtheningRate * ds);
+        high[i - 1] = std::min(high[i - 1], high[i] + kShorteningRate * ds);
+    }
+    for (std::size_t i = 0; i < s_mm.size(); ++i) {
+        if (windows[i].empty() || low[i] > high[i]) {
+            lengths.blocked.push_back(i);
         }
     }
-    return {window.find_end(inside, rule.min_mm), window.find_end(inside, longest)};
+    return lengths;
 }
 
 }  // namespace meshwind

@@ -2,25 +2,37 @@
 /// collision.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "mesh/ray_query.h"
 
 namespace meshwind {
 
+/// A round part of the machine that follows the eye on the line leading radially away from the
+/// spindle axis.
+struct ArmPart {
+    double from_mm = 0.0;  ///< distance of its axis' ends from the eye, outward
+    double to_mm = 0.0;
+    double radius_mm = 0.0;
+};
+
 /// What the machine and the job ask of the free fibre; all lengths mm.
 struct FreeFibreRule {
     double min_mm = 60.0;          ///< shortest the machine can wind with
     double preferred_mm = 200.0;   ///< taken where nothing is in the way
     double max_mm = 400.0;         ///< longest the machine can wind with
-    double head_radius_mm = 12.0;  ///< ball around the eye that stands for its head
-    double clearance_mm = 5.0;     ///< kept between head and anything
-    double stand_off_mm =
-        0.3;  ///< the ray starts this far above the landing point: facets are not smooth
-    double start_mm = 5.0;  ///< and this far along: what the landing facet itself hides
+    double head_radius_mm = 10.0;  ///< ball around the eye that stands for its head
+    std::vector<ArmPart> arm{};    ///< what carries the head
+    double clearance_mm = 5.0;     ///< kept between head, arm and anything
+    double stand_off_mm = 0.3;     ///< the ray starts this far above the landing point: facets are
+                                   ///< not smooth
+    double start_mm = 5.0;         ///< and this far along: what the landing facet itself hides
 };
 
-/// Free lengths around the one nearest to the preferred. Empty when low_mm > high_mm.
+/// A range of free lengths. Empty when low_mm > high_mm.
 struct FreeFibreWindow {
     double low_mm = 1.0;
     double high_mm = 0.0;
@@ -28,13 +40,38 @@ struct FreeFibreWindow {
     [[nodiscard]] bool empty() const { return low_mm > high_mm; }
 };
 
-/// Lengths L for which the segment from the landing point to the eye at L is free and the head's
-/// ball stays clear: the connected piece of [min, max] that holds the length nearest to the
-/// preferred one. \param landing_mm, normal, tangent mandrel frame, unit; tangent points to the eye
-[[nodiscard]] FreeFibreWindow free_fibre_window(const RayQuery& obstacles,
-                                                const Eigen::Vector3d& landing_mm,
-                                                const Eigen::Vector3d& normal,
-                                                const Eigen::Vector3d& tangent,
-                                                const FreeFibreRule& rule);
+/// Lengths L for which the segment from the landing point to the eye at L is free and head and arm
+/// stay clear, as ascending separate ranges. Lengths over the preferred one are looked at only
+/// where nothing up to it is possible. \param landing_mm, normal, tangent mandrel frame, unit;
+/// tangent points to the eye
+[[nodiscard]] std::vector<FreeFibreWindow> free_fibre_windows(const RayQuery& obstacles,
+                                                              const Eigen::Vector3d& landing_mm,
+                                                              const Eigen::Vector3d& normal,
+                                                              const Eigen::Vector3d& tangent,
+                                                              const FreeFibreRule& rule);
+
+/// Most that the free length may grow per fibre laid (no unit): the fibre then runs through the eye
+/// three times as fast as it is laid.
+inline constexpr double kLengtheningRate = 2.0;
+
+/// Most that it may shrink (no unit): below 1 fibre always runs out of the eye and never goes
+/// slack.
+inline constexpr double kShorteningRate = 0.8;
+
+/// Free lengths that can be run through along a path: at each station every length from low to
+/// high.
+struct FreeLengths {
+    std::vector<double> low_mm;
+    std::vector<double> high_mm;
+    std::vector<std::size_t>
+        blocked;  ///< stations that no choice of windows passes; empty if it works
+};
+
+/// Chooses one window at each station and narrows them until the length can change from each to the
+/// next within the rates above. Of the choices that pass, one that stays near `preferred_mm`.
+/// \param s_mm ascending arc length \param windows per station, as from free_fibre_windows
+[[nodiscard]] FreeLengths choose_free_lengths(std::span<const double> s_mm,
+                                              std::span<const std::vector<FreeFibreWindow>> windows,
+                                              double preferred_mm);
 
 }  // namespace meshwind

@@ -44,25 +44,25 @@ SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {
     return path;
 }
 
-bool windable(const CourseRules& rules, const SurfacePath& path, const TautString& string,
-              double travel) {
+// True when a free length can be found at every station tried, and carried from each to the next.
+bool windable(const CourseRules& rules, const SurfacePath& path, const TautString& string) {
+    std::vector<double> s_mm;
+    std::vector<std::vector<FreeFibreWindow>> windows;
     double next = 0.0;
-    const auto clear_at = [&](std::size_t i) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
         if (path[i].s_mm < next && i + 1 < path.size()) {
-            return true;
+            continue;
         }
         next = path[i].s_mm + kWindableStep_mm;
         const StringPoint fibre = string_point(path[i], string.gap_mm[i], string.slope[i]);
-        return !free_fibre_window(rules.obstacles, fibre.position_mm, path[i].normal,
-                                  travel * fibre.tangent, rules.free_fibre)
-                    .empty();
-    };
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        if (!clear_at(i)) {
+        s_mm.push_back(path[i].s_mm);
+        windows.push_back(free_fibre_windows(rules.obstacles, fibre.position_mm, path[i].normal,
+                                             fibre.tangent, rules.free_fibre));
+        if (windows.back().empty()) {
             return false;
         }
     }
-    return true;
+    return choose_free_lengths(s_mm, windows, rules.free_fibre.preferred_mm).blocked.empty();
 }
 
 }  // namespace
@@ -116,8 +116,9 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
     if (string.worst_gap_mm > rules.tow.bridging_tolerance_mm) {
         return Refusal::Bridging;
     }
-    course.windable_forward = windable(rules, path, string, 1.0);
-    course.windable_backward = windable(rules, path, string, -1.0);
+    course.windable_forward = windable(rules, path, string);
+    const SurfacePath back = reversed(path);
+    course.windable_backward = windable(rules, back, taut_string(back));
     if (!course.windable_forward && !course.windable_backward) {
         return Refusal::NotWindable;
     }
