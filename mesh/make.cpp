@@ -217,13 +217,14 @@ TriangleSoup make(const Shape& shape, const MakeOptions& options) {
         return outer;
     }
     require_positive("wall", options.wall_mm);
-    const double least = least_size(inside(shape, options.wall_mm));
+    const Shape inner = inside(shape, options.wall_mm);
+    const double least = least_size(inner);
     require(least >= options.edge_mm, "make.wall_too_thick", "wall", options.wall_mm,
             "so thin that what it leaves inside is at least one edge, not", least);
+    inner.validate();
     // The inner wall must not repeat the outer one's random numbers.
     constexpr std::uint64_t kInnerSeed = 0x9e3779b97f4a7c15U;
-    return shell_between(
-        outer, wall_with(inside(shape, options.wall_mm), options, options.seed ^ kInnerSeed));
+    return shell_between(outer, wall_with(inner, options, options.seed ^ kInnerSeed));
 }
 
 }  // namespace

@@ -1,8 +1,28 @@
 #include "mesh/shapes.h"
 
+#include <boost/math/tools/roots.hpp>
+
 #include "mesh/make_checks.h"
 
 namespace meshwind {
+namespace {
+
+// Blend radius at which the ball's path, where it passes the crotch, curves as tightly as the ball:
+// the blend would fold there. With b = branch + blend, a = run + blend its radius of curvature is
+// b / sqrt(1 + (b / a)^2).
+double folding_blend_mm(const TeeShape& shape) {
+    const auto excess = [&](double blend) {
+        const double b = blend / (shape.branch_radius_mm + blend);
+        const double a = blend / (shape.run_radius_mm + blend);
+        return a * a + b * b - 1.0;
+    };
+    // At ten times the run radius the sum of squares is at least 2 (10 / 11)^2 > 1.
+    const auto [low, high] = boost::math::tools::bisect(
+        excess, 0.0, 10.0 * shape.run_radius_mm, boost::math::tools::eps_tolerance<double>(30));
+    return 0.5 * (low + high);
+}
+
+}  // namespace
 
 void CylinderShape::validate() const {
     require_positive("radius", radius_mm);
@@ -78,6 +98,10 @@ void TeeShape::validate() const {
     require(blend_radius_mm < branch_length_mm - run_radius_mm, "make.blend_too_large",
             "blend-radius", blend_radius_mm,
             "less than the branch length less the run radius:", branch_length_mm - run_radius_mm);
+    // Close to folding the blend's curvature has no bound.
+    const double limit = 0.9 * folding_blend_mm(*this);
+    require(blend_radius_mm <= limit, "make.blend_too_large", "blend-radius", blend_radius_mm,
+            "at most, lest the blend fold,", limit);
 }
 
 }  // namespace meshwind

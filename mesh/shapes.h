@@ -93,7 +93,7 @@ struct TeeShape {
     double run_radius_mm = 50.0;
     double branch_radius_mm =
         40.0;  ///< <= run radius; equal radii make the blend vanish in two points
-    double blend_radius_mm = 15.0;
+    double blend_radius_mm = 15.0;    ///< of the ball; up to twice the branch radius always fits
     double run_length_mm = 400.0;     ///< whole length
     double branch_length_mm = 236.0;  ///< from the run's axis to the branch's end
 

@@ -165,6 +165,7 @@ TEST(MakeTee, RefusesImpossibleShapes) {
     EXPECT_EQ(code_of({50, 51, 15, 400, 236}), "make.branch_too_wide");
     EXPECT_EQ(code_of({50, 40, 160, 400, 236}), "make.blend_too_large");
     EXPECT_EQ(code_of({50, 40, 15, 400, 60}), "make.blend_too_large");
+    EXPECT_EQ(code_of({26, 5.2, 34.8, 112, 114}, 1.2), "make.blend_too_large");  // would fold
     EXPECT_EQ(code_of({}, 30.0), "make.edge_too_large");
     EXPECT_EQ(code_of({}, 0.0), "make.not_positive");
     EXPECT_EQ(code_of({}, std::nan("")), "make.not_positive");
