@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
+#include <queue>
 #include <string_view>
+#include <tuple>
 
 #include <Eigen/Geometry>
 
@@ -23,9 +26,14 @@ constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothi
 // very mouth half of its directions meet the opposite wall.
 constexpr double kMostDirections = 0.5;
 
-constexpr double kPlaneShare = 2e-3;         // distance of a planar region's points, of its size
-constexpr double kPlaneNormalSpread = 0.02;  // 1 - |mean normal| of a planar region: 11 deg
-constexpr double kConvexShare = 0.98;        // of an end cap's boundary length
+// A planar region: this share of its area lies in one plane, by distance (of the region's size) and
+// by normal (8 deg). The rest may be a notch in the end face.
+constexpr double kPlanarAreaShare = 0.93;
+constexpr double kMouthShare =
+    0.6;  // of its directions: seen by a wall beside an end face, not a bore
+constexpr double kPlaneShare = 2e-3;
+constexpr double kPlaneCosine = 0.99;
+constexpr double kConvexShare = 0.9;  // of an end cap's boundary length; notches are concave
 
 // End caps against other plateaus such as the tops of letters, by radius relative to the largest.
 constexpr double kCapRadiusShare = 0.25;
@@ -42,8 +50,8 @@ struct Facts {
     Eigen::AlignedBox3d box;
     double boundary_mm = 0.0;
     double convex_mm = 0.0;
-    bool open = false;  // has open edges
-    double plane_error_mm = 0.0;
+    bool open = false;         // has open edges
+    double planar_mm2 = 0.0;   // area that lies in the region's plane
     double outline_mm2 = 0.0;  // area within its outline, holes included
     std::vector<std::int32_t> faces;
     std::vector<std::int32_t> beside;  // regions across its edges, sorted
@@ -128,6 +136,40 @@ double outline_area(const TriangleSoup& soup, const Segmentation& s, const Facts
     return largest;
 }
 
+// Area of the faces in the plane through the region's median height along its mean normal.
+double planar_area(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
+                   const std::vector<double>& face_area, const Facts& r) {
+    const Eigen::Vector3d normal = r.area_normal.normalized();
+    if (r.area_normal.norm() < 0.5 * r.area_mm2) {
+        return 0.0;
+    }
+    std::vector<std::pair<double, std::int32_t>> heights;
+    for (const std::int32_t f : r.faces) {
+        const auto& [a, b, c] = soup.faces[at(f)];
+        heights.emplace_back(
+            normal.dot(soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0,
+            f);
+    }
+    std::sort(heights.begin(), heights.end());
+    double below = 0.0;
+    double median = heights.back().first;
+    for (const auto& [height, f] : heights) {
+        below += face_area[at(f)];
+        if (2.0 * below >= r.area_mm2) {
+            median = height;
+            break;
+        }
+    }
+    const double tolerance = kPlaneShare * r.box.diagonal().norm();
+    double planar = 0.0;
+    for (const auto& [height, f] : heights) {
+        const bool inside =
+            std::abs(height - median) <= tolerance && normals[at(f)].dot(normal) >= kPlaneCosine;
+        planar += inside ? face_area[at(f)] : 0.0;
+    }
+    return planar;
+}
+
 std::vector<Facts> facts_of(const TriangleSoup& soup, const Segmentation& s,
                             const std::vector<Eigen::Vector3d>& normals,
                             const std::vector<double>& face_area) {
@@ -157,21 +199,14 @@ std::vector<Facts> facts_of(const TriangleSoup& soup, const Segmentation& s,
         Facts& r = facts[id];
         std::sort(r.beside.begin(), r.beside.end());
         r.beside.erase(std::unique(r.beside.begin(), r.beside.end()), r.beside.end());
-        const Eigen::Vector3d normal = r.area_normal.normalized();
-        for (const std::int32_t f : r.faces) {
-            for (const std::int32_t v : soup.faces[at(f)]) {
-                const double height = normal.dot(soup.points_mm[at(v)] - r.box.center());
-                r.plane_error_mm = std::max(r.plane_error_mm, std::abs(height));
-            }
-        }
+        r.planar_mm2 = planar_area(soup, normals, face_area, r);
     }
     return facts;
 }
 
 bool is_plateau(const Facts& r) {
     return !r.open && r.boundary_mm > 0.0 && r.convex_mm >= kConvexShare * r.boundary_mm &&
-           r.area_normal.norm() >= (1.0 - kPlaneNormalSpread) * r.area_mm2 &&
-           r.plane_error_mm <= kPlaneShare * r.box.diagonal().norm();
+           r.planar_mm2 >= kPlanarAreaShare * r.area_mm2;
 }
 
 // A disc beside another plateau is the flat of a box, not an end.
@@ -188,8 +223,11 @@ void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Facts>
     for (std::size_t id = 0; id < facts.size(); ++id) {
         const bool disc = facts[id].outline_mm2 < 1.01 * facts[id].area_mm2;
         const bool flat_of_box =
-            disc && std::any_of(facts[id].beside.begin(), facts[id].beside.end(),
-                                [&](std::int32_t other) { return plateau[at(other)] != 0; });
+            disc &&
+            std::any_of(facts[id].beside.begin(), facts[id].beside.end(), [&](std::int32_t other) {
+                return plateau[at(other)] != 0 &&
+                       facts[at(other)].area_mm2 > 0.1 * facts[id].area_mm2;
+            });
         cap[id] = static_cast<char>(plateau[id] != 0 && !flat_of_box);
         largest = std::max(largest, cap[id] != 0 ? facts[id].outline_mm2 : 0.0);
     }
@@ -233,8 +271,7 @@ std::vector<Sample> samples_of(const std::vector<Facts>& facts,
 
 void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
                  const std::vector<Facts>& facts, const std::vector<double>& face_area,
-                 std::vector<Region>& regions) {
-    const Visibility visibility(soup);
+                 const Visibility& visibility, std::vector<Region>& regions) {
     const std::vector<Sample> samples = samples_of(facts, face_area);
     std::vector<char> sees(samples.size(), 0);
     parallel_for(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -298,6 +335,119 @@ double view_of(const std::vector<std::int32_t>& piece, const std::vector<Region>
     return area > 0.0 ? seen / area : 0.0;
 }
 
+// Faces across the edges of the end caps; the inner ones, on the wall of a bore, see at most half.
+struct Mouth {
+    std::vector<std::int32_t> outer;
+    std::vector<std::int32_t> inner;
+};
+
+Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const Facts& cap,
+               const std::vector<Eigen::Vector3d>& normals, const Visibility& visibility) {
+    Mouth mouth;
+    for (const std::int32_t f : cap.faces) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const std::int32_t g = s.neighbours[at(f)][e];
+            if (g < 0 || s.regions[at(s.region[at(g)])].kind == RegionKind::EndCap) {
+                continue;
+            }
+            const Eigen::Vector3d middle =
+                0.5 * (soup.points_mm[at(soup.faces[at(f)][e])] +
+                       soup.points_mm[at(soup.faces[at(f)][(e + 1) % 3])]);
+            const std::size_t opposite =
+                (static_cast<std::size_t>(shared_edge(s.neighbours[at(g)], f)) + 2) % 3;
+            // Just inside the neighbour, not at its centroid: it may be a long triangle.
+            const Eigen::Vector3d point =
+                0.9 * middle + 0.1 * soup.points_mm[at(soup.faces[at(g)][opposite])];
+            const bool sees = visibility.escape_fraction(point, normals[at(g)]) > kMouthShare;
+            (sees ? mouth.outer : mouth.inner).push_back(g);
+        }
+    }
+    return mouth;
+}
+
+// Spreads the sides of the mouths over their pieces, nearest first: 1 = outer, 2 = inner, 0 =
+// neither.
+std::vector<char> spread(const TriangleSoup& soup, const Segmentation& s,
+                         const std::vector<std::int32_t>& piece_of_region, const Mouth& seeds) {
+    const auto centre = [&](std::int32_t f) {
+        const auto& [a, b, c] = soup.faces[at(f)];
+        return Eigen::Vector3d(
+            (soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0);
+    };
+    using Entry = std::tuple<double, std::int32_t, char>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    std::vector<char> side(soup.faces.size(), 0);
+    for (const std::int32_t f : seeds.outer) {
+        queue.emplace(0.0, f, char{1});
+    }
+    for (const std::int32_t f : seeds.inner) {
+        queue.emplace(0.0, f, char{2});
+    }
+    while (!queue.empty()) {
+        const auto [distance, f, label] = queue.top();
+        queue.pop();
+        if (side[at(f)] != 0) {
+            continue;
+        }
+        side[at(f)] = label;
+        for (const std::int32_t g : s.neighbours[at(f)]) {
+            if (g >= 0 && side[at(g)] == 0 &&
+                piece_of_region[at(s.region[at(g)])] == piece_of_region[at(s.region[at(f)])]) {
+                queue.emplace(distance + (centre(g) - centre(f)).norm(), g, label);
+            }
+        }
+    }
+    return side;
+}
+
+// Where an end face is notched or its lip rounded in places, wall and bore run into each other.
+// Such pieces touch one end cap from both sides; they are parted halfway between the two. Returns
+// per face 1 where it is on the bore's side; empty when nothing runs together.
+std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
+                             const std::vector<Facts>& facts,
+                             const std::vector<Eigen::Vector3d>& normals,
+                             const Visibility& visibility) {
+    constexpr std::size_t kFew = 8;  // of the faces around a cap, one in so many may be misjudged
+    std::vector<std::int32_t> piece_of_region(s.regions.size(), -1);
+    const auto pieces = pieces_of(s.regions, facts);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        for (const std::int32_t id : pieces[p]) {
+            piece_of_region[at(id)] = static_cast<std::int32_t>(p);
+        }
+    }
+    const auto piece_of = [&](std::int32_t f) { return piece_of_region[at(s.region[at(f)])]; };
+    Mouth all;
+    std::vector<char> joined(pieces.size(), 0);
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        if (s.regions[id].kind != RegionKind::EndCap) {
+            continue;
+        }
+        const Mouth mouth = mouth_of(soup, s, facts[id], normals, visibility);
+        std::map<std::int32_t, std::array<std::size_t, 2>> counts;
+        for (const std::int32_t f : mouth.outer) {
+            ++counts[piece_of(f)][0];
+        }
+        for (const std::int32_t f : mouth.inner) {
+            ++counts[piece_of(f)][1];
+        }
+        const std::size_t few = (mouth.outer.size() + mouth.inner.size()) / kFew;
+        for (const auto& [piece, count] : counts) {
+            joined[at(piece)] |= static_cast<char>(std::min(count[0], count[1]) > few);
+        }
+        all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
+        all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
+    }
+    if (std::count(joined.begin(), joined.end(), 1) == 0) {
+        return {};
+    }
+    std::vector<char> side = spread(soup, s, piece_of_region, all);
+    for (std::size_t f = 0; f < side.size(); ++f) {
+        const std::int32_t piece = piece_of(static_cast<std::int32_t>(f));
+        side[f] = static_cast<char>(piece >= 0 && joined[at(piece)] != 0 && side[f] == 2);
+    }
+    return side;
+}
+
 void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2) {
     for (const auto& piece : pieces_of(s.regions, facts)) {
         const bool blind = view_of(piece, s.regions) < kMostDirections;
@@ -338,6 +488,39 @@ void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2
     }
 }
 
+void make_regions(Segmentation& s, const std::vector<Facts>& facts) {
+    s.regions.clear();
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        s.regions.push_back({.id = static_cast<std::int32_t>(id),
+                             .triangles = static_cast<int>(facts[id].faces.size()),
+                             .area_mm2 = facts[id].area_mm2});
+    }
+}
+
+// Gives the bore's side of each region a label of its own.
+void part_regions(std::vector<std::int32_t>& region, const std::vector<char>& bore_side) {
+    std::int32_t next = *std::max_element(region.begin(), region.end()) + 1;
+    std::map<std::int32_t, std::int32_t> parted;
+    for (std::size_t f = 0; f < region.size(); ++f) {
+        if (bore_side[f] != 0) {
+            const auto [entry, is_new] = parted.try_emplace(region[f], next);
+            next += is_new ? 1 : 0;
+            region[f] = entry->second;
+        }
+    }
+}
+
+std::vector<double> face_areas(const TriangleSoup& soup) {
+    std::vector<double> areas(soup.faces.size());
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        const auto& [a, b, c] = soup.faces[f];
+        areas[f] = 0.5 * (soup.points_mm[at(b)] - soup.points_mm[at(a)])
+                             .cross(soup.points_mm[at(c)] - soup.points_mm[at(a)])
+                             .norm();
+    }
+    return areas;
+}
+
 }  // namespace
 
 std::string_view name_of(RegionKind kind) {
@@ -358,24 +541,31 @@ Segmentation segment(const TriangleSoup& soup) {
     Segmentation s;
     s.neighbours = face_neighbours(soup.faces);
     const std::vector<Eigen::Vector3d> normals = steady_normals(soup, s.neighbours);
+    const std::vector<double> face_area = face_areas(soup);
+    const Visibility visibility(soup);
     s.feature = feature_edges(normals, s.neighbours);
     s.region = label_faces(s);
-    std::vector<double> face_area(soup.faces.size());
-    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
-        const auto& [a, b, c] = soup.faces[f];
-        face_area[f] = 0.5 * (soup.points_mm[at(b)] - soup.points_mm[at(a)])
-                                 .cross(soup.points_mm[at(c)] - soup.points_mm[at(a)])
-                                 .norm();
-    }
     sort_labels(s.region, face_area);
     std::vector<Facts> facts = facts_of(soup, s, normals, face_area);
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        s.regions.push_back({.id = static_cast<std::int32_t>(id),
-                             .triangles = static_cast<int>(facts[id].faces.size()),
-                             .area_mm2 = facts[id].area_mm2});
-    }
-    look_around(soup, normals, facts, face_area, s.regions);
+    make_regions(s, facts);
     mark_end_caps(soup, s, facts);
+    const std::vector<char> bore_side = bore_sides(soup, s, facts, normals, visibility);
+    if (!bore_side.empty()) {
+        std::vector<char> cap(soup.faces.size(), 0);
+        for (std::size_t f = 0; f < cap.size(); ++f) {
+            cap[f] = static_cast<char>(s.regions[at(s.region[f])].kind == RegionKind::EndCap);
+        }
+        part_regions(s.region, bore_side);
+        sort_labels(s.region, face_area);
+        facts = facts_of(soup, s, normals, face_area);
+        make_regions(s, facts);
+        for (std::size_t f = 0; f < cap.size(); ++f) {
+            s.regions[at(s.region[f])].kind = cap[f] != 0         ? RegionKind::EndCap
+                                              : bore_side[f] != 0 ? RegionKind::Bore
+                                                                  : RegionKind::Other;
+        }
+    }
+    look_around(soup, normals, facts, face_area, visibility, s.regions);
     classify(s, facts, std::accumulate(face_area.begin(), face_area.end(), 0.0));
     return s;
 }
