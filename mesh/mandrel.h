@@ -65,8 +65,8 @@ struct MandrelOptions {
         Eigen::Vector3d origin;
         Eigen::Vector3d direction;
     };
-    std::optional<Axis> axis;                ///< in the file's frame and units; none: found
-    std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
+    std::optional<Axis> axis{};                ///< in the file's frame and units; none: found
+    std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
 };
 
 /// The winding surface with all that was found on the way. Immutable once loaded.

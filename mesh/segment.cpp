@@ -22,13 +22,14 @@ namespace {
 constexpr double kSamples = 4000.0;      // over the whole part, shared out by area
 constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothing alone
 
-// A point sees the outside when most directions escape. The wall of a bore never does: even at the
-// very mouth half of its directions meet the opposite wall.
+// A point sees the outside when most directions escape. The wall of a long bore never does: even at
+// its very mouth half of the directions meet the opposite wall.
 constexpr double kMostDirections = 0.5;
 
-// A planar region: this share of its area lies in one plane, by distance (of the region's size) and
-// by normal (8 deg). The rest may be a notch in the end face.
-constexpr double kPlanarAreaShare = 0.93;
+// An end face: most of its area in one plane, by distance (of its size) and by normal (8 deg). The
+// rest may be rounded or notched, but faces the same way on the whole; a dome does neither.
+constexpr double kPlanarAreaShare = 0.5;
+constexpr double kSameWayShare = 0.93;  // |mean normal|
 constexpr double kMouthShare =
     0.6;  // of its directions: seen by a wall beside an end face, not a bore
 constexpr double kPlaneShare = 2e-3;
@@ -54,7 +55,9 @@ struct Facts {
     double planar_mm2 = 0.0;   // area that lies in the region's plane
     double outline_mm2 = 0.0;  // area within its outline, holes included
     std::vector<std::int32_t> faces;
-    std::vector<std::int32_t> beside;  // regions across its edges, sorted
+    std::vector<std::int32_t> beside;          // regions across its edges, sorted
+    std::vector<std::int32_t> beyond_outline;  // of a plateau: regions outside, one entry per edge
+    std::vector<std::int32_t> in_holes;        // of a plateau: regions in its holes
 };
 
 std::vector<std::int32_t> label_faces(const Segmentation& s) {
@@ -103,37 +106,42 @@ void sort_labels(std::vector<std::int32_t>& label, const std::vector<double>& fa
     }
 }
 
-// Area that the longest of the region's boundary loops encloses, seen along the region's normal.
-// The signed sum over all loops is the area itself; holes have the other sign and are left out by
-// taking the hull's view: the enclosed area is summed per loop.
-double outline_area(const TriangleSoup& soup, const Segmentation& s, const Facts& facts,
-                    std::int32_t id) {
-    std::map<std::int32_t, std::int32_t> next;
+// Walks the region's boundary loops: the outline turns left about the region's normal, holes right.
+// Notes the area within the outline and which regions lie beyond it and in the holes.
+void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t id, Facts& facts) {
+    struct Step {
+        std::int32_t to = 0;
+        std::int32_t beyond = 0;
+    };
+    std::map<std::int32_t, Step> next;
     for (const std::int32_t f : facts.faces) {
         for (std::size_t e = 0; e < 3; ++e) {
             const std::int32_t g = s.neighbours[at(f)][e];
-            if (g < 0 || s.region[at(g)] != id) {
-                next.emplace(soup.faces[at(f)][e], soup.faces[at(f)][(e + 1) % 3]);
+            if (g >= 0 && s.region[at(g)] != id) {
+                next.emplace(soup.faces[at(f)][e],
+                             Step{soup.faces[at(f)][(e + 1) % 3], s.region[at(g)]});
             }
         }
     }
     const Eigen::Vector3d normal = facts.area_normal.normalized();
-    double largest = 0.0;
     while (!next.empty()) {
         const auto first = next.begin();
         const Eigen::Vector3d origin = soup.points_mm[at(first->first)];
+        std::vector<std::int32_t> beyond;
         double enclosed = 0.0;
         for (auto step = first; step != next.end();) {
             const Eigen::Vector3d from = soup.points_mm[at(step->first)] - origin;
-            const Eigen::Vector3d to = soup.points_mm[at(step->second)] - origin;
+            const Eigen::Vector3d to = soup.points_mm[at(step->second.to)] - origin;
             enclosed += 0.5 * normal.dot(from.cross(to));
-            const std::int32_t onward = step->second;
+            beyond.push_back(step->second.beyond);
+            const std::int32_t onward = step->second.to;
             next.erase(step);
             step = next.find(onward);
         }
-        largest = std::max(largest, enclosed);
+        auto& side = enclosed > 0.0 ? facts.beyond_outline : facts.in_holes;
+        side.insert(side.end(), beyond.begin(), beyond.end());
+        facts.outline_mm2 = std::max(facts.outline_mm2, enclosed);
     }
-    return largest;
 }
 
 // Area of the faces in the plane through the region's median height along its mean normal.
@@ -206,6 +214,7 @@ std::vector<Facts> facts_of(const TriangleSoup& soup, const Segmentation& s,
 
 bool is_plateau(const Facts& r) {
     return !r.open && r.boundary_mm > 0.0 && r.convex_mm >= kConvexShare * r.boundary_mm &&
+           r.area_normal.norm() >= kSameWayShare * r.area_mm2 &&
            r.planar_mm2 >= kPlanarAreaShare * r.area_mm2;
 }
 
@@ -216,7 +225,7 @@ void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Facts>
     for (std::size_t id = 0; id < facts.size(); ++id) {
         if (is_plateau(facts[id])) {
             plateau[id] = 1;
-            facts[id].outline_mm2 = outline_area(soup, s, facts[id], static_cast<std::int32_t>(id));
+            trace_outline(soup, s, static_cast<std::int32_t>(id), facts[id]);
         }
     }
     std::vector<char> cap(facts.size(), 0);
@@ -448,8 +457,37 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
     return side;
 }
 
+// Per region 1 where it lies in the hole of an end cap, plus 2 where it lies on the outline of one.
+// A piece in holes only is the wall of a bore, however short and well lit.
+std::vector<char> sides_of_caps(const std::vector<Region>& regions,
+                                const std::vector<Facts>& facts) {
+    std::vector<char> hole(regions.size(), 0);
+    for (const Region& r : regions) {
+        for (const std::int32_t id : r.kind == RegionKind::EndCap ? facts[at(r.id)].in_holes
+                                                                  : std::vector<std::int32_t>{}) {
+            hole[at(id)] |= 1;
+        }
+        for (const std::int32_t id : r.kind == RegionKind::EndCap ? facts[at(r.id)].beyond_outline
+                                                                  : std::vector<std::int32_t>{}) {
+            hole[at(id)] |= 2;
+        }
+    }
+    return hole;
+}
+
 void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2) {
+    const std::vector<char> mouths = sides_of_caps(s.regions, facts);
     for (const auto& piece : pieces_of(s.regions, facts)) {
+        int touched = 0;
+        for (const std::int32_t id : piece) {
+            touched |= mouths[at(id)];
+        }
+        if (touched == 1) {
+            for (const std::int32_t id : piece) {
+                s.regions[at(id)].kind = RegionKind::Bore;
+            }
+            continue;
+        }
         const bool blind = view_of(piece, s.regions) < kMostDirections;
         for (const std::int32_t id : piece) {
             Region& r = s.regions[at(id)];
@@ -563,6 +601,11 @@ Segmentation segment(const TriangleSoup& soup) {
             s.regions[at(s.region[f])].kind = cap[f] != 0         ? RegionKind::EndCap
                                               : bore_side[f] != 0 ? RegionKind::Bore
                                                                   : RegionKind::Other;
+        }
+        for (const Region& r : s.regions) {
+            if (r.kind == RegionKind::EndCap) {
+                trace_outline(soup, s, r.id, facts[at(r.id)]);
+            }
         }
     }
     look_around(soup, normals, facts, face_area, visibility, s.regions);
