@@ -165,6 +165,14 @@ void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
         mandrel.remarks.push_back("the winding surface consists of " + std::to_string(open_shells) +
                                   " separate pieces; keep one with keep_regions");
     }
+    constexpr double kRoundShare = 0.02;  // of its radius: a rim further off is worth a word
+    for (const Rim& rim : mandrel.rims) {
+        if (rim.circularity_mm > kRoundShare * rim.radius_mm) {
+            mandrel.remarks.push_back("rim " + std::to_string(rim.id) + " is no circle: up to " +
+                                      fixed(rim.circularity_mm, 2) + " mm off radius " +
+                                      fixed(rim.radius_mm, 2) + " mm");
+        }
+    }
     if (mandrel.axis.rule == "principal") {
         mandrel.remarks.push_back(
             "no coaxial rims and no axis of revolution: the spindle is a principal axis of "

@@ -13,6 +13,7 @@
 
 #include "core/parallel.h"
 #include "mesh/edge_table.h"
+#include "mesh/end_caps.h"
 #include "mesh/feature_edges.h"
 #include "mesh/visibility.h"
 
@@ -26,39 +27,17 @@ constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothi
 // its very mouth half of the directions meet the opposite wall.
 constexpr double kMostDirections = 0.5;
 
-// An end face: most of its area in one plane, by distance (of its size) and by normal (8 deg). The
-// rest may be rounded or notched, but faces the same way on the whole; a dome does neither.
-constexpr double kPlanarAreaShare = 0.5;
-constexpr double kSameWayShare = 0.93;  // |mean normal|
-constexpr double kMouthShare =
-    0.6;  // of its directions: seen by a wall beside an end face, not a bore
-constexpr double kPlaneShare = 2e-3;
-constexpr double kPlaneCosine = 0.99;
-constexpr double kConvexShare = 0.9;  // of an end cap's boundary length; notches are concave
+// Of the directions of a wall beside an end face; on a bore beside it fewer escape.
+constexpr double kMouthShare = 0.6;
 
-// End caps against other plateaus such as the tops of letters, by radius relative to the largest.
-constexpr double kCapRadiusShare = 0.25;
-constexpr double kBoreAreaShare =
-    0.01;  // a blind region smaller than this of the part may be a nook
+constexpr double kBlindShare = 0.05;  // of its area, from which a blind region may see
+
+// A blind region smaller than this share of the part may be a nook of the wall.
+constexpr double kBoreAreaShare = 0.01;
 
 std::size_t at(std::int32_t index) {
     return static_cast<std::size_t>(index);
 }
-
-struct Facts {
-    double area_mm2 = 0.0;
-    Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
-    Eigen::AlignedBox3d box;
-    double boundary_mm = 0.0;
-    double convex_mm = 0.0;
-    bool open = false;         // has open edges
-    double planar_mm2 = 0.0;   // area that lies in the region's plane
-    double outline_mm2 = 0.0;  // area within its outline, holes included
-    std::vector<std::int32_t> faces;
-    std::vector<std::int32_t> beside;          // regions across its edges, sorted
-    std::vector<std::int32_t> beyond_outline;  // of a plateau: regions outside, one entry per edge
-    std::vector<std::int32_t> in_holes;        // of a plateau: regions in its holes
-};
 
 std::vector<std::int32_t> label_faces(const Segmentation& s) {
     std::vector<std::int32_t> label(s.neighbours.size(), -1);
@@ -106,147 +85,6 @@ void sort_labels(std::vector<std::int32_t>& label, const std::vector<double>& fa
     }
 }
 
-// Walks the region's boundary loops: the outline turns left about the region's normal, holes right.
-// Notes the area within the outline and which regions lie beyond it and in the holes.
-void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t id, Facts& facts) {
-    struct Step {
-        std::int32_t to = 0;
-        std::int32_t beyond = 0;
-    };
-    std::map<std::int32_t, Step> next;
-    for (const std::int32_t f : facts.faces) {
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t g = s.neighbours[at(f)][e];
-            if (g >= 0 && s.region[at(g)] != id) {
-                next.emplace(soup.faces[at(f)][e],
-                             Step{soup.faces[at(f)][(e + 1) % 3], s.region[at(g)]});
-            }
-        }
-    }
-    const Eigen::Vector3d normal = facts.area_normal.normalized();
-    while (!next.empty()) {
-        const auto first = next.begin();
-        const Eigen::Vector3d origin = soup.points_mm[at(first->first)];
-        std::vector<std::int32_t> beyond;
-        double enclosed = 0.0;
-        for (auto step = first; step != next.end();) {
-            const Eigen::Vector3d from = soup.points_mm[at(step->first)] - origin;
-            const Eigen::Vector3d to = soup.points_mm[at(step->second.to)] - origin;
-            enclosed += 0.5 * normal.dot(from.cross(to));
-            beyond.push_back(step->second.beyond);
-            const std::int32_t onward = step->second.to;
-            next.erase(step);
-            step = next.find(onward);
-        }
-        auto& side = enclosed > 0.0 ? facts.beyond_outline : facts.in_holes;
-        side.insert(side.end(), beyond.begin(), beyond.end());
-        facts.outline_mm2 = std::max(facts.outline_mm2, enclosed);
-    }
-}
-
-// Area of the faces in the plane through the region's median height along its mean normal.
-double planar_area(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
-                   const std::vector<double>& face_area, const Facts& r) {
-    const Eigen::Vector3d normal = r.area_normal.normalized();
-    if (r.area_normal.norm() < 0.5 * r.area_mm2) {
-        return 0.0;
-    }
-    std::vector<std::pair<double, std::int32_t>> heights;
-    for (const std::int32_t f : r.faces) {
-        const auto& [a, b, c] = soup.faces[at(f)];
-        heights.emplace_back(
-            normal.dot(soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0,
-            f);
-    }
-    std::sort(heights.begin(), heights.end());
-    double below = 0.0;
-    double median = heights.back().first;
-    for (const auto& [height, f] : heights) {
-        below += face_area[at(f)];
-        if (2.0 * below >= r.area_mm2) {
-            median = height;
-            break;
-        }
-    }
-    const double tolerance = kPlaneShare * r.box.diagonal().norm();
-    double planar = 0.0;
-    for (const auto& [height, f] : heights) {
-        const bool inside =
-            std::abs(height - median) <= tolerance && normals[at(f)].dot(normal) >= kPlaneCosine;
-        planar += inside ? face_area[at(f)] : 0.0;
-    }
-    return planar;
-}
-
-std::vector<Facts> facts_of(const TriangleSoup& soup, const Segmentation& s,
-                            const std::vector<Eigen::Vector3d>& normals,
-                            const std::vector<double>& face_area) {
-    const std::int32_t count = *std::max_element(s.region.begin(), s.region.end()) + 1;
-    std::vector<Facts> facts(at(count));
-    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
-        Facts& r = facts[at(s.region[f])];
-        r.faces.push_back(static_cast<std::int32_t>(f));
-        r.area_mm2 += face_area[f];
-        r.area_normal += face_area[f] * normals[f];
-        for (std::size_t e = 0; e < 3; ++e) {
-            const Eigen::Vector3d& from = soup.points_mm[at(soup.faces[f][e])];
-            const Eigen::Vector3d along = soup.points_mm[at(soup.faces[f][(e + 1) % 3])] - from;
-            const std::int32_t g = s.neighbours[f][e];
-            r.box.extend(from);
-            if (g < 0) {
-                r.open = true;
-            } else if (s.region[at(g)] != s.region[f]) {
-                r.boundary_mm += along.norm();
-                r.convex_mm +=
-                    normals[f].cross(normals[at(g)]).dot(along) > 0.0 ? along.norm() : 0.0;
-                r.beside.push_back(s.region[at(g)]);
-            }
-        }
-    }
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        Facts& r = facts[id];
-        std::sort(r.beside.begin(), r.beside.end());
-        r.beside.erase(std::unique(r.beside.begin(), r.beside.end()), r.beside.end());
-        r.planar_mm2 = planar_area(soup, normals, face_area, r);
-    }
-    return facts;
-}
-
-bool is_plateau(const Facts& r) {
-    return !r.open && r.boundary_mm > 0.0 && r.convex_mm >= kConvexShare * r.boundary_mm &&
-           r.area_normal.norm() >= kSameWayShare * r.area_mm2 &&
-           r.planar_mm2 >= kPlanarAreaShare * r.area_mm2;
-}
-
-// A disc beside another plateau is the flat of a box, not an end.
-void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Facts>& facts) {
-    std::vector<char> plateau(facts.size(), 0);
-    double largest = 0.0;
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (is_plateau(facts[id])) {
-            plateau[id] = 1;
-            trace_outline(soup, s, static_cast<std::int32_t>(id), facts[id]);
-        }
-    }
-    std::vector<char> cap(facts.size(), 0);
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        const bool disc = facts[id].outline_mm2 < 1.01 * facts[id].area_mm2;
-        const bool flat_of_box =
-            disc &&
-            std::any_of(facts[id].beside.begin(), facts[id].beside.end(), [&](std::int32_t other) {
-                return plateau[at(other)] != 0 &&
-                       facts[at(other)].area_mm2 > 0.1 * facts[id].area_mm2;
-            });
-        cap[id] = static_cast<char>(plateau[id] != 0 && !flat_of_box);
-        largest = std::max(largest, cap[id] != 0 ? facts[id].outline_mm2 : 0.0);
-    }
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (cap[id] != 0 && facts[id].outline_mm2 >= kCapRadiusShare * kCapRadiusShare * largest) {
-            s.regions[id].kind = RegionKind::EndCap;
-        }
-    }
-}
-
 struct Sample {
     std::int32_t face = 0;
     std::int32_t region = 0;
@@ -255,13 +93,13 @@ struct Sample {
 
 // Evenly over the region's area, in face order; inside a face by an additive (plastic-number)
 // sequence.
-std::vector<Sample> samples_of(const std::vector<Facts>& facts,
+std::vector<Sample> samples_of(const std::vector<RegionFacts>& facts,
                                const std::vector<double>& face_area) {
     constexpr double kStep[2] = {0.7548776662466927, 0.5698402909980532};
     const double total = std::accumulate(face_area.begin(), face_area.end(), 0.0);
     std::vector<Sample> samples;
     for (std::size_t id = 0; id < facts.size(); ++id) {
-        const Facts& r = facts[id];
+        const RegionFacts& r = facts[id];
         const double count = std::max(kSamplesPerRegion, std::round(kSamples * r.area_mm2 / total));
         double before = 0.0;
         double next = 0.5;
@@ -279,7 +117,7 @@ std::vector<Sample> samples_of(const std::vector<Facts>& facts,
 }
 
 void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
-                 const std::vector<Facts>& facts, const std::vector<double>& face_area,
+                 const std::vector<RegionFacts>& facts, const std::vector<double>& face_area,
                  const Visibility& visibility, std::vector<Region>& regions) {
     const std::vector<Sample> samples = samples_of(facts, face_area);
     std::vector<char> sees(samples.size(), 0);
@@ -307,7 +145,7 @@ void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& n
 
 // Regions that hang together without crossing an end cap or a bore.
 std::vector<std::vector<std::int32_t>> pieces_of(const std::vector<Region>& regions,
-                                                 const std::vector<Facts>& facts) {
+                                                 const std::vector<RegionFacts>& facts) {
     const auto blocks = [&](std::int32_t id) {
         return regions[at(id)].kind == RegionKind::EndCap ||
                regions[at(id)].kind == RegionKind::Bore;
@@ -350,7 +188,7 @@ struct Mouth {
     std::vector<std::int32_t> inner;
 };
 
-Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const Facts& cap,
+Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const RegionFacts& cap,
                const std::vector<Eigen::Vector3d>& normals, const Visibility& visibility) {
     Mouth mouth;
     for (const std::int32_t f : cap.faces) {
@@ -413,7 +251,7 @@ std::vector<char> spread(const TriangleSoup& soup, const Segmentation& s,
 // Such pieces touch one end cap from both sides; they are parted halfway between the two. Returns
 // per face 1 where it is on the bore's side; empty when nothing runs together.
 std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
-                             const std::vector<Facts>& facts,
+                             const std::vector<RegionFacts>& facts,
                              const std::vector<Eigen::Vector3d>& normals,
                              const Visibility& visibility) {
     constexpr std::size_t kFew = 8;  // of the faces around a cap, one in so many may be misjudged
@@ -460,7 +298,7 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
 // Per region 1 where it lies in the hole of an end cap, plus 2 where it lies on the outline of one.
 // A piece in holes only is the wall of a bore, however short and well lit.
 std::vector<char> sides_of_caps(const std::vector<Region>& regions,
-                                const std::vector<Facts>& facts) {
+                                const std::vector<RegionFacts>& facts) {
     std::vector<char> hole(regions.size(), 0);
     for (const Region& r : regions) {
         for (const std::int32_t id : r.kind == RegionKind::EndCap ? facts[at(r.id)].in_holes
@@ -475,7 +313,7 @@ std::vector<char> sides_of_caps(const std::vector<Region>& regions,
     return hole;
 }
 
-void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2) {
+void classify(Segmentation& s, const std::vector<RegionFacts>& facts, double total_mm2) {
     const std::vector<char> mouths = sides_of_caps(s.regions, facts);
     for (const auto& piece : pieces_of(s.regions, facts)) {
         int touched = 0;
@@ -492,7 +330,7 @@ void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2
         for (const std::int32_t id : piece) {
             Region& r = s.regions[at(id)];
             const bool large = r.area_mm2 >= kBoreAreaShare * total_mm2;
-            const bool is_bore = r.visible_fraction <= 0.05 && large;
+            const bool is_bore = r.visible_fraction <= kBlindShare && large;
             if (is_bore || (blind && r.visible_fraction < kMostDirections)) {
                 r.kind = RegionKind::Bore;
             }
@@ -526,7 +364,7 @@ void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2
     }
 }
 
-void make_regions(Segmentation& s, const std::vector<Facts>& facts) {
+void make_regions(Segmentation& s, const std::vector<RegionFacts>& facts) {
     s.regions.clear();
     for (std::size_t id = 0; id < facts.size(); ++id) {
         s.regions.push_back({.id = static_cast<std::int32_t>(id),
@@ -584,7 +422,7 @@ Segmentation segment(const TriangleSoup& soup) {
     s.feature = feature_edges(normals, s.neighbours);
     s.region = label_faces(s);
     sort_labels(s.region, face_area);
-    std::vector<Facts> facts = facts_of(soup, s, normals, face_area);
+    std::vector<RegionFacts> facts = region_facts(soup, s, normals, face_area);
     make_regions(s, facts);
     mark_end_caps(soup, s, facts);
     const std::vector<char> bore_side = bore_sides(soup, s, facts, normals, visibility);
@@ -595,7 +433,7 @@ Segmentation segment(const TriangleSoup& soup) {
         }
         part_regions(s.region, bore_side);
         sort_labels(s.region, face_area);
-        facts = facts_of(soup, s, normals, face_area);
+        facts = region_facts(soup, s, normals, face_area);
         make_regions(s, facts);
         for (std::size_t f = 0; f < cap.size(); ++f) {
             s.regions[at(s.region[f])].kind = cap[f] != 0         ? RegionKind::EndCap

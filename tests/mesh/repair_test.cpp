@@ -152,6 +152,39 @@ TEST(Repair, PartsTwoSolidsThatShareAnEdge) {
     EXPECT_NEAR(volume(soup), 2000.0, 1e-9);
 }
 
+// Cells of a grid, two full layers and between them two that touch along one edge: both ends of
+// that edge have a single fan, so splitting vertices alone cannot part the four faces at it.
+TEST(Repair, PartsSheetsThatTouchAlongAnInnerEdge) {
+    const auto full = [](int x, int y, int z) {
+        return x >= 0 && x < 2 && y >= 0 && y < 2 && z >= 0 && z < 3 && (z != 1 || x == y);
+    };
+    TriangleSoup soup;
+    for (int i = 0; i < 36; ++i) {
+        soup.points_mm.emplace_back(10.0 * (i % 3), 10.0 * (i / 3 % 3), 10.0 * (i / 9));
+    }
+    const auto vertex = [](const Eigen::Vector3i& p) { return p.x() + 3 * p.y() + 9 * p.z(); };
+    for (int cell = 0; cell < 12; ++cell) {
+        const Eigen::Vector3i low(cell % 2, cell / 2 % 2, cell / 4);
+        for (int side = 0; side < 6 && full(low.x(), low.y(), low.z()); ++side) {
+            const Eigen::Vector3i u = Eigen::Vector3i::Unit((side + 1) % 3);
+            const Eigen::Vector3i v = Eigen::Vector3i::Unit((side + 2) % 3);
+            const Eigen::Vector3i out = Eigen::Vector3i::Unit(side % 3) * (side < 3 ? 1 : -1);
+            const Eigen::Vector3i next = low + out;
+            if (full(next.x(), next.y(), next.z())) {
+                continue;
+            }
+            const Eigen::Vector3i p = side < 3 ? next : low;
+            const Eigen::Vector3i q = side < 3 ? p + u : p + v;
+            const Eigen::Vector3i r = side < 3 ? p + v : p + u;
+            soup.faces.push_back({vertex(p), vertex(q), vertex(r)});
+            soup.faces.push_back({vertex(q), vertex(p + u + v), vertex(r)});
+        }
+    }
+    EXPECT_EQ(repaired(soup).components, 1);
+    EXPECT_EQ(open_edges(soup), 0);
+    EXPECT_NEAR(volume(soup), 10000.0, 1e-9);
+}
+
 TEST(Repair, CutsAnEdgeWhereThreeSheetsMeet) {
     TriangleSoup soup;
     soup.points_mm = {{0, 0, 0}, {0, 0, 10}, {10, 0, 5}, {-10, 0, 5}, {0, 10, 5}};
