@@ -17,6 +17,10 @@
 namespace meshwind {
 namespace {
 
+// Beyond these no part is real and single precision (Embree) would overflow or lose all digits.
+constexpr double kLargestCoordinate = 1e9;  // file units
+constexpr double kSmallestDiagonal = 1e-6;  // file units
+
 constexpr double kSmallestInMm = 10.0;  // a part shorter than this many units is taken for metres
 
 void check_options(const MandrelOptions& options, const std::string& name) {
@@ -48,6 +52,15 @@ void check_triangles(const TriangleSoup& soup, const std::string& name) {
                                      " has a coordinate that is no finite number, export again");
             }
         }
+    }
+    const bool far_out = std::any_of(
+        soup.points_mm.begin(), soup.points_mm.end(),
+        [](const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() > kLargestCoordinate; });
+    if (far_out || (!soup.faces.empty() && diagonal_mm(soup) < kSmallestDiagonal)) {
+        throw InputError("mesh.size_out_of_range", name,
+                         far_out ? "has coordinates beyond 1e9 units, the file is damaged: export "
+                                   "it again"
+                                 : "is smaller than 1e-6 units, export it in another unit");
     }
     if (soup.faces.empty()) {
         throw InputError("mesh.no_triangles", name,

@@ -145,6 +145,21 @@ TEST(BuildMandrel, TakesSmallFilesForMetres) {
     EXPECT_NEAR(given.rims.at(0).radius_mm, 0.1, 1e-12);
 }
 
+TEST(BuildMandrel, RefusesCoordinatesOutOfAnyRange) {
+    TriangleSoup soup = test::tube(10.0, 40.0, 24);
+    soup.points_mm[5].x() = 1e37;
+    EXPECT_THROW((void)build_mandrel(soup, "tube"), InputError);
+    EXPECT_THROW((void)build_mandrel(test::tube(1e-9, 1e-8, 24), "tube"), InputError);
+}
+
+TEST(BuildMandrel, HollowSquareTubeKeepsItsFourSides) {
+    TriangleSoup soup = test::pipe(30.0, 25.0, 150.0, 4);
+    const Mandrel m = build_mandrel(soup, "square");
+    EXPECT_EQ(m.rims.size(), 2U);
+    EXPECT_EQ(count_kind(m, RegionKind::EndCap), 2);
+    EXPECT_EQ(count_kind(m, RegionKind::OuterWall), 4);
+}
+
 TEST(BuildMandrel, SameInputGivesTheSameBytes) {
     const TriangleSoup soup = test::moved(test::pipe(20.0, 17.0, 200.0, 24), somewhere());
     const Mandrel a = build_mandrel(soup, "pipe");
