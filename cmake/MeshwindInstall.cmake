@@ -9,6 +9,14 @@ install(
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshwind)
 install(TARGETS meshwind_umbrella EXPORT meshwindTargets)
 install(TARGETS meshwind_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The meshes and machines that bare names on the command line stand for.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data DESTINATION ${CMAKE_INSTALL_DATADIR}/meshwind OPTIONAL)
+install(
+    DIRECTORY ${PROJECT_SOURCE_DIR}/machines
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/meshwind
+    FILES_MATCHING
+    PATTERN "*.json"
+    PATTERN "*.stl")
 install(
     EXPORT meshwindTargets
     NAMESPACE meshwind::

@@ -2,24 +2,50 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "mesh/ray_query.h"
+#include "winding/free_fibre.h"
+#include "winding/plan.h"
 
 namespace meshwind {
 
 /// One landing point and its eye. Mandrel frame; directions unit.
 struct EyePoint {
-    std::int32_t piece = 0;      ///< index of the course or transition in winding order
-    std::int32_t point = 0;      ///< index within the piece
-    double s_mm = 0.0;           ///< fibre laid since the start of the program
-    Eigen::Vector3d landing_mm;  ///< P, where the fibre touches down
-    Eigen::Vector3d tangent;     ///< tau, from the landing point along the free fibre to the eye
-    Eigen::Vector3d binormal;    ///< across the band; the roller is to be parallel to it, sign free
-    Eigen::Vector3d eye_mm;      ///< E = P + free_length tau
-    double free_length_mm = 0.0;
+    std::int32_t piece = 0;  ///< index of the course or transition in winding order
+    std::int32_t point = 0;  ///< index within the piece
+    double s_mm = 0.0;       ///< fibre laid since the start of the program
+    Eigen::Vector3d landing_mm = Eigen::Vector3d::Zero();  ///< P, where the fibre touches down
+    Eigen::Vector3d tangent =
+        Eigen::Vector3d::Zero();  ///< tau, from the landing point along the free fibre to the eye
+    Eigen::Vector3d binormal = Eigen::Vector3d::Zero();  ///< across the band; the roller is to be
+                                                         ///< parallel to it, sign free
+    Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();    ///< E = P + free_length tau
+    double free_length_mm = 0.0;                         ///< L
 };
 
 using EyePath = std::vector<EyePoint>;
+
+/// Change of the free length per fibre laid (no unit): at a half, fibre always runs out of the eye,
+/// so it never goes slack while the free length shortens.
+inline constexpr double kFreeLengthRate = 0.5;
+
+/// Eye points, and where no free length was possible.
+struct EyePathResult {
+    EyePath path;
+    std::vector<std::size_t>
+        blocked;               ///< eye points for which no allowed length is free of collision
+    double shortest_mm = 0.0;  ///< free lengths used
+    double longest_mm = 0.0;
+};
+
+/// Rule equal-free-length (fu_2009_post_processing, sec. 1): L is the preferred length wherever
+/// free fibre and head are clear, and leaves it only as far as it must, at most by kFreeLengthRate.
+/// Stations under a bridge are taken on the taut string. One eye point per station of the pieces.
+[[nodiscard]] EyePathResult equal_free_length(std::span<const Piece> pieces,
+                                              const RayQuery& obstacles, const FreeFibreRule& rule);
 
 }  // namespace meshwind

@@ -1,0 +1,92 @@
+/// The user's request: what to wind on the mandrel, and how. docs/files.md describes the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace meshwind {
+
+/// Length of a unit of the mandrel's file.
+enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
+
+/// How the fibre turns round beyond a rim.
+enum class TurnKind { Friction, Pins, Pole };
+
+enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported };
+
+/// Which point of the free fibre the eye takes.
+enum class EyeRule { EqualFreeLength, Cylinder, HorizontalPlane, VerticalPlane, Adaptive };
+
+/// Who decides the mandrel's turn where several would do.
+enum class RedundancyRule { CentralAngle, Hold, Optimal };
+
+/// One layer; each kind reads what concerns it.
+struct LayerJob {
+    LayerKind kind = LayerKind::Auto;
+    double angle_deg = 45.0;     ///< 0 (axial) .. 90 (hoop), from the local axial direction
+    double target_layers = 1.0;  ///< > 0; how often each place is to be covered
+    std::string file;            ///< landing points of an Imported layer; empty for all others
+};
+
+struct Job {
+    struct MandrelAxis {
+        Eigen::Vector3d origin;     ///< in the file's frame and units
+        Eigen::Vector3d direction;  ///< not zero, any length
+    };
+    struct MandrelJob {
+        LengthUnit units = LengthUnit::Millimetre;
+        std::optional<MandrelAxis> axis;         ///< none: found
+        std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
+        double extension_mm = 100.0;             ///< >= 0; room for turns beyond each rim
+        TurnKind turn = TurnKind::Friction;
+    };
+    struct TowJob {
+        double width_mm = 6.0;       ///< > 0
+        double thickness_mm = 0.25;  ///< > 0
+        double friction = 0.2;       ///< >= 0; dry carbon on a moulded surface, on the safe side
+        double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
+    };
+    struct EyeJob {
+        EyeRule rule = EyeRule::EqualFreeLength;
+        double free_length_mm = 200.0;  ///< > 0
+    };
+    struct ToleranceJob {
+        double laydown_mm = 0.2;    ///< > 0; laid fibre against planned fibre
+        double clearance_mm = 5.0;  ///< >= 0; machine and free fibre against mandrel
+    };
+    struct SpeedJob {
+        double fibre_m_min = 30.0;  ///< > 0
+    };
+
+    MandrelJob mandrel;
+    TowJob tow;
+    std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
+    EyeJob eye;
+    RedundancyRule redundancy = RedundancyRule::CentralAngle;
+    ToleranceJob tolerance;
+    SpeedJob speed;
+};
+
+/// Millimetres per unit; 0 for Auto, which leaves the choice to the reader of the mandrel.
+[[nodiscard]] double mm_per(LengthUnit unit);
+
+/// Reads a job from text; what the text leaves out keeps its default.
+/// \param name file name for messages
+/// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
+///         job.file_missing, job.file_unused; each with file and JSON pointer
+[[nodiscard]] Job parse_job(std::string_view text, const std::string& name);
+
+/// `parse_job` of a file. \throws IoError io.cannot_read; InputError as parse_job
+[[nodiscard]] Job read_job(const std::filesystem::path& file);
+
+/// The job as a complete job file: every key present, always in the same order, so that equal jobs
+/// give equal text. Reads back as the same job.
+[[nodiscard]] std::string job_text(const Job& job);
+
+}  // namespace meshwind

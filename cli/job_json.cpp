@@ -1,0 +1,291 @@
+#include "cli/job.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "core/text_number.h"
+#include "machines/strict_json.h"
+
+namespace meshwind {
+namespace {
+
+// The words of the file, in the order of the enumerators.
+const std::initializer_list<std::string_view> kUnitWords = {"auto", "um", "mm", "cm", "m", "in"};
+const std::initializer_list<std::string_view> kTurnWords = {"friction", "pins", "pole"};
+const std::initializer_list<std::string_view> kLayerWords = {"auto",  "helical", "hoop",
+                                                             "polar", "cover",   "imported"};
+const std::initializer_list<std::string_view> kEyeWords = {
+    "equal-free-length", "cylinder", "horizontal-plane", "vertical-plane", "adaptive"};
+const std::initializer_list<std::string_view> kRedundancyWords = {"central-angle", "hold",
+                                                                  "optimal"};
+
+constexpr JsonRange kPositive = {.min = 0.0, .above_min = true};
+constexpr JsonRange kNotNegative = {.min = 0.0};
+constexpr JsonRange kAngleDeg = {.min = 0.0, .max = 90.0};
+
+/// Leaves `target` as it is where the key is absent.
+void read_number(const JsonObject& object, std::string_view key, const JsonRange& range,
+                 double& target) {
+    if (const auto value = object.optional(key)) {
+        target = value->number(range);
+    }
+}
+
+template <typename Enum>
+void read_word(const JsonObject& object, std::string_view key,
+               std::initializer_list<std::string_view> words, Enum& target) {
+    if (const auto value = object.optional(key)) {
+        target = static_cast<Enum>(value->one_of(words));
+    }
+}
+
+template <typename Enum>
+std::string_view word_of(Enum value, std::initializer_list<std::string_view> words) {
+    return words.begin()[static_cast<std::size_t>(value)];
+}
+
+std::optional<Job::MandrelAxis> read_axis(const JsonValue& value) {
+    if (value.is_string()) {
+        (void)value.one_of({"auto"});
+        return std::nullopt;
+    }
+    const JsonObject object = value.object({"origin", "direction"});
+    const JsonValue direction = object.required("direction");
+    const Job::MandrelAxis axis{object.required("origin").vector3(), direction.vector3()};
+    if (axis.direction.isZero(0.0)) {
+        direction.fail("job.zero_direction",
+                       "all three numbers are 0; give the direction of the spindle");
+    }
+    return axis;
+}
+
+std::vector<std::int32_t> read_regions(const JsonValue& value) {
+    std::vector<std::int32_t> regions;
+    if (value.is_string()) {
+        (void)value.one_of({"auto"});
+        return regions;
+    }
+    for (const JsonValue& id : value.array()) {
+        regions.push_back(
+            static_cast<std::int32_t>(id.integer(0, std::numeric_limits<std::int32_t>::max())));
+    }
+    if (regions.empty()) {
+        value.fail("json.out_of_range", "is empty; list region ids or write \"auto\"");
+    }
+    return regions;
+}
+
+Job::MandrelJob read_mandrel(const JsonValue& value) {
+    Job::MandrelJob mandrel;
+    const JsonObject object = value.object({"units", "axis", "keep_regions", "extension", "turn"});
+    read_word(object, "units", kUnitWords, mandrel.units);
+    if (const auto axis = object.optional("axis")) {
+        mandrel.axis = read_axis(*axis);
+    }
+    if (const auto regions = object.optional("keep_regions")) {
+        mandrel.keep_regions = read_regions(*regions);
+    }
+    read_number(object, "extension", kNotNegative, mandrel.extension_mm);
+    read_word(object, "turn", kTurnWords, mandrel.turn);
+    return mandrel;
+}
+
+Job::TowJob read_tow(const JsonValue& value) {
+    Job::TowJob tow;
+    const JsonObject object =
+        value.object({"width", "thickness", "friction", "bridging_tolerance"});
+    read_number(object, "width", kPositive, tow.width_mm);
+    read_number(object, "thickness", kPositive, tow.thickness_mm);
+    read_number(object, "friction", kNotNegative, tow.friction);
+    read_number(object, "bridging_tolerance", kNotNegative, tow.bridging_tolerance_mm);
+    return tow;
+}
+
+LayerJob read_layer(const JsonValue& value) {
+    LayerJob layer;
+    const JsonObject object = value.object({"kind", "angle", "target_layers", "file"});
+    read_word(object, "kind", kLayerWords, layer.kind);
+    read_number(object, "angle", kAngleDeg, layer.angle_deg);
+    read_number(object, "target_layers", kPositive, layer.target_layers);
+    const auto file = object.optional("file");
+    if (file) {
+        layer.file = file->string();
+    }
+    if (layer.kind == LayerKind::Imported && layer.file.empty()) {
+        value.fail("job.file_missing",
+                   "an imported layer needs \"file\", the CSV of its landing points");
+    }
+    if (layer.kind != LayerKind::Imported && file) {
+        file->fail(
+            "job.file_unused",
+            "only an imported layer reads a file; remove it or write \"kind\": \"imported\"");
+    }
+    return layer;
+}
+
+std::vector<LayerJob> read_layers(const JsonValue& value) {
+    std::vector<LayerJob> layers;
+    for (const JsonValue& layer : value.array()) {
+        layers.push_back(read_layer(layer));
+    }
+    if (layers.empty()) {
+        value.fail("json.out_of_range", "is empty; give one layer at least, or leave it out");
+    }
+    return layers;
+}
+
+Job job_of(const JsonDocument& document) {
+    const JsonObject root = document.root().object(
+        {"mandrel", "tow", "layers", "eye", "redundancy", "tolerance", "speed"});
+    Job job;
+    if (const auto mandrel = root.optional("mandrel")) {
+        job.mandrel = read_mandrel(*mandrel);
+    }
+    if (const auto tow = root.optional("tow")) {
+        job.tow = read_tow(*tow);
+    }
+    if (const auto layers = root.optional("layers")) {
+        job.layers = read_layers(*layers);
+    }
+    if (const auto eye = root.optional("eye")) {
+        const JsonObject object = eye->object({"rule", "free_length"});
+        read_word(object, "rule", kEyeWords, job.eye.rule);
+        read_number(object, "free_length", kPositive, job.eye.free_length_mm);
+    }
+    read_word(root, "redundancy", kRedundancyWords, job.redundancy);
+    if (const auto tolerance = root.optional("tolerance")) {
+        const JsonObject object = tolerance->object({"laydown", "clearance"});
+        read_number(object, "laydown", kPositive, job.tolerance.laydown_mm);
+        read_number(object, "clearance", kNotNegative, job.tolerance.clearance_mm);
+    }
+    if (const auto speed = root.optional("speed")) {
+        read_number(speed->object({"fibre"}), "fibre", kPositive, job.speed.fibre_m_min);
+    }
+    return job;
+}
+
+void append_member(std::string& text, std::string_view key, std::string_view value) {
+    if (text.back() != '{') {
+        text += ", ";
+    }
+    text += '"';
+    text += key;
+    text += "\":";
+    text += value;
+}
+
+void append_member(std::string& text, std::string_view key, double value) {
+    std::string digits;
+    append_shortest(digits, value);
+    append_member(text, key, digits);
+}
+
+/// JSON string: quotes, backslashes and control characters escaped.
+std::string json_string(std::string_view raw) {
+    constexpr std::string_view kHexDigits = "0123456789abcdef";
+    std::string text = "\"";
+    for (const char c : raw) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            text += '\\';
+            text += c;
+        } else if (code < 0x20) {
+            text += "\\u00";
+            text += kHexDigits[code >> 4U];
+            text += kHexDigits[code & 15U];
+        } else {
+            text += c;
+        }
+    }
+    return text + '"';
+}
+
+std::string vector_text(const Eigen::Vector3d& vector) {
+    std::string text = "[";
+    for (int i = 0; i < 3; ++i) {
+        append_shortest(text, vector[i]);
+        text += i < 2 ? "," : "]";
+    }
+    return text;
+}
+
+std::string mandrel_text(const Job::MandrelJob& mandrel) {
+    std::string text = "{";
+    append_member(text, "units", json_string(word_of(mandrel.units, kUnitWords)));
+    append_member(text, "axis",
+                  mandrel.axis ? "{\"origin\":" + vector_text(mandrel.axis->origin) +
+                                     ", \"direction\":" + vector_text(mandrel.axis->direction) + "}"
+                               : "\"auto\"");
+    std::string regions = "\"auto\"";
+    if (!mandrel.keep_regions.empty()) {
+        regions = "[";
+        for (const std::int32_t id : mandrel.keep_regions) {
+            regions += (regions.size() > 1 ? "," : "") + std::to_string(id);
+        }
+        regions += "]";
+    }
+    append_member(text, "keep_regions", regions);
+    append_member(text, "extension", mandrel.extension_mm);
+    append_member(text, "turn", json_string(word_of(mandrel.turn, kTurnWords)));
+    return text + "}";
+}
+
+std::string tow_text(const Job::TowJob& tow) {
+    std::string text = "{";
+    append_member(text, "width", tow.width_mm);
+    append_member(text, "thickness", tow.thickness_mm);
+    append_member(text, "friction", tow.friction);
+    append_member(text, "bridging_tolerance", tow.bridging_tolerance_mm);
+    return text + "}";
+}
+
+std::string layers_text(std::span<const LayerJob> layers) {
+    std::string text = "[";
+    for (const LayerJob& layer : layers) {
+        text += text.size() > 1 ? ",\n             {" : "{";
+        append_member(text, "kind", json_string(word_of(layer.kind, kLayerWords)));
+        append_member(text, "angle", layer.angle_deg);
+        append_member(text, "target_layers", layer.target_layers);
+        if (!layer.file.empty()) {
+            append_member(text, "file", json_string(layer.file));
+        }
+        text += "}";
+    }
+    return text + "]";
+}
+
+}  // namespace
+
+double mm_per(LengthUnit unit) {
+    constexpr std::array<double, 6> kMillimetres = {0.0, 1e-3, 1.0, 10.0, 1e3, 25.4};
+    return kMillimetres[static_cast<std::size_t>(unit)];
+}
+
+Job parse_job(std::string_view text, const std::string& name) {
+    return job_of(JsonDocument::parse(text, name));
+}
+
+Job read_job(const std::filesystem::path& file) {
+    return job_of(JsonDocument::load(file.string()));
+}
+
+std::string job_text(const Job& job) {
+    std::string eye = "{";
+    append_member(eye, "rule", json_string(word_of(job.eye.rule, kEyeWords)));
+    append_member(eye, "free_length", job.eye.free_length_mm);
+    std::string tolerance = "{";
+    append_member(tolerance, "laydown", job.tolerance.laydown_mm);
+    append_member(tolerance, "clearance", job.tolerance.clearance_mm);
+    std::string speed = "{";
+    append_member(speed, "fibre", job.speed.fibre_m_min);
+
+    return "{ \"mandrel\":" + mandrel_text(job.mandrel) + ",\n  \"tow\":" + tow_text(job.tow) +
+           ",\n  \"layers\":" + layers_text(job.layers) + ",\n  \"eye\":" + eye +
+           "},\n  \"redundancy\":" + json_string(word_of(job.redundancy, kRedundancyWords)) +
+           ",\n  \"tolerance\":" + tolerance + "},\n  \"speed\":" + speed + "} }\n";
+}
+
+}  // namespace meshwind

@@ -1,0 +1,19 @@
+/// Where the meshes and machines that come with the program are found.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace meshwind {
+
+/// The folder that holds data/ and machines/: $MESHWIND_HOME when set (the launcher sets it), else
+/// the installed share/meshwind when it is there, else the source folder that the program was built
+/// from.
+[[nodiscard]] std::filesystem::path project_home();
+
+/// The file a user means by `name`: that path when it exists; else, for a bare name such as
+/// "tee.stl", the file of this name in data/meshes, data or machines of `project_home()`; else
+/// `name` as given.
+[[nodiscard]] std::filesystem::path find_input(const std::string& name);
+
+}  // namespace meshwind

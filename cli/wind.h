@@ -1,0 +1,72 @@
+/// The main job: mandrel, machine and job in; plan, program and report out.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli/job.h"
+#include "machines/machine.h"
+#include "mesh/mandrel.h"
+#include "postproc/block.h"
+#include "postproc/collision.h"
+#include "postproc/eye_path.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+struct WindRequest {
+    std::filesystem::path mandrel;
+    std::filesystem::path machine;
+    std::filesystem::path job;  ///< empty: the defaults
+    std::filesystem::path out = "meshwind-out";
+    double unit_mm = 0.0;  ///< overrides the job's units where > 0
+    std::uint64_t seed = 1;
+    bool force = false;  ///< write the program although a check failed
+    std::function<void(const std::string& step, double share)> progress;
+};
+
+/// One check of the report. The place is empty where the check passed.
+struct Check {
+    std::string name;  ///< key in report.json
+    bool ok = true;
+    std::string words;  ///< where it failed: one line with the place, the number and the limit
+    std::map<std::string, double> numbers;  ///< further keys of the check, e.g. "worst", "limit"
+};
+
+/// Everything that was found, for the report.
+struct WindResult {
+    Mandrel mandrel;
+    Machine machine;
+    Job job;
+    Plan plan;
+    EyePathResult eyes;
+    BlockList blocks;
+    std::string program;       ///< text; empty when nothing can be written
+    std::string program_file;  ///< name, e.g. "program.ngc"
+    double duration_s = 0.0;
+    std::vector<BindingLimit> binding;
+    std::vector<std::string> notes;
+    std::vector<Check> checks;
+    std::map<std::string, double> timing_s;
+    bool program_written = false;
+
+    [[nodiscard]] bool passed() const {
+        for (const Check& check : checks) {
+            if (!check.ok) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+
+/// Runs the job and writes the output folder, whole or not at all: path.csv, motion.csv, layup.vtu,
+/// report.json, and the program if every check passed or `force` is set.
+/// \throws InputError, IoError for input that cannot be used; nothing is written then
+[[nodiscard]] WindResult wind(const WindRequest& request);
+
+}  // namespace meshwind

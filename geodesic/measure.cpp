@@ -1,0 +1,193 @@
+#include "geodesic/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Chords of three edges: the scatter of a crossing (a small share of one edge) divided by the
+// square of the window stays below the curvature that friction can hold.
+constexpr double kWindowEdges = 3.0;
+
+// Position noise of a path over the smooth surface as a share of the edge length: chordal sag is
+// normal to the surface and does not count; the lateral scatter of the walk was measured below
+// this.
+constexpr double kLateralNoiseShare = 2e-3;
+
+// Height of the path over the straight line, and its slope after each station.
+struct Profile {
+    std::vector<double> height_mm;
+    std::vector<double> slope;  // of the path at the station
+};
+
+Profile profile_of(const SurfacePath& path) {
+    Profile profile{{0.0}, {0.0}};
+    double slope = 0.0;
+    double height = 0.0;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double ds = path[i].s_mm - path[i - 1].s_mm;
+        if (ds <= 0.0) {
+            // A feature edge: the same place with the tangent of the other side.
+            slope += path[i].tangent.dot(path[i - 1].normal);
+        } else {
+            const double k0 = path[i - 1].kn_per_mm;
+            const double k1 = path[i].kn_per_mm;
+            height += slope * ds - ds * ds * (2.0 * k0 + k1) / 6.0;
+            slope -= 0.5 * (k0 + k1) * ds;
+        }
+        profile.height_mm.push_back(height);
+        profile.slope.push_back(slope);
+    }
+    return profile;
+}
+
+// Indices of the upper hull of (s, height), first and last included.
+std::vector<std::size_t> upper_hull(const SurfacePath& path, const std::vector<double>& height) {
+    std::vector<std::size_t> hull;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        while (hull.size() >= 2) {
+            const std::size_t a = hull[hull.size() - 2];
+            const std::size_t b = hull.back();
+            const double cross = (path[b].s_mm - path[a].s_mm) * (height[i] - height[a]) -
+                                 (height[b] - height[a]) * (path[i].s_mm - path[a].s_mm);
+            if (cross < 0.0) {
+                break;
+            }
+            hull.pop_back();
+        }
+        hull.push_back(i);
+    }
+    return hull;
+}
+
+// Walks along a path by arc length with linear interpolation of positions.
+class Positions {
+public:
+    explicit Positions(const SurfacePath& path) : path_(path) {}
+
+    // Queries must ascend.
+    Vector3d at(double s_mm) {
+        while (index_ + 2 < path_.size() && path_[index_ + 1].s_mm < s_mm) {
+            ++index_;
+        }
+        const PathPoint& a = path_[index_];
+        const PathPoint& b = path_[index_ + 1];
+        const double span = b.s_mm - a.s_mm;
+        const double share = span > 0.0 ? std::clamp((s_mm - a.s_mm) / span, 0.0, 1.0) : 0.0;
+        return a.position_mm + share * (b.position_mm - a.position_mm);
+    }
+
+private:
+    const SurfacePath& path_;
+    std::size_t index_ = 0;
+};
+
+// Integral of kn over s up to each station.
+std::vector<double> total_kn(const SurfacePath& path) {
+    std::vector<double> total(path.size(), 0.0);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        total[i] = total[i - 1] + 0.5 * (path[i - 1].kn_per_mm + path[i].kn_per_mm) *
+                                      (path[i].s_mm - path[i - 1].s_mm);
+    }
+    return total;
+}
+
+double value_at(const SurfacePath& path, const std::vector<double>& values, double s_mm) {
+    const auto after = std::upper_bound(path.begin(), path.end(), s_mm,
+                                        [](double s, const PathPoint& p) { return s < p.s_mm; });
+    if (after == path.begin()) {
+        return values.front();
+    }
+    if (after == path.end()) {
+        return values.back();
+    }
+    const auto i = static_cast<std::size_t>(after - path.begin());
+    const double span = path[i].s_mm - path[i - 1].s_mm;
+    const double share = span > 0.0 ? (s_mm - path[i - 1].s_mm) / span : 0.0;
+    return values[i - 1] + share * (values[i] - values[i - 1]);
+}
+
+}  // namespace
+
+TautString taut_string(const SurfacePath& path) {
+    TautString string;
+    string.gap_mm.assign(path.size(), 0.0);
+    string.slope.assign(path.size(), 0.0);
+    const Profile profile = profile_of(path);
+    const std::vector<std::size_t> hull = upper_hull(path, profile.height_mm);
+    for (std::size_t h = 0; h + 1 < hull.size(); ++h) {
+        const std::size_t a = hull[h];
+        const std::size_t b = hull[h + 1];
+        if (b == a + 1) {
+            continue;
+        }
+        const double rise =
+            (profile.height_mm[b] - profile.height_mm[a]) / (path[b].s_mm - path[a].s_mm);
+        for (std::size_t i = a + 1; i < b; ++i) {
+            const double line = profile.height_mm[a] + rise * (path[i].s_mm - path[a].s_mm);
+            string.gap_mm[i] = std::max(0.0, line - profile.height_mm[i]);
+            string.slope[i] = rise - profile.slope[i];
+            if (string.gap_mm[i] > string.worst_gap_mm) {
+                string.worst_gap_mm = string.gap_mm[i];
+                string.worst_station = i;
+            }
+        }
+    }
+    return string;
+}
+
+SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path, const TautString& string,
+                         const SlipOptions& options) {
+    SlipMeasure measure;
+    measure.slip.assign(path.size(), 0.0);
+    measure.kg_per_mm.assign(path.size(), 0.0);
+    if (path.size() < 2) {
+        return measure;
+    }
+    const double edge = surface.mean_edge_mm;
+    const double window = options.window_mm > 0.0 ? options.window_mm : kWindowEdges * edge;
+    // Lateral noise e at three points a window apart reads as a curvature of 4 e / window^2.
+    const double noise_per_mm = 4.0 * kLateralNoiseShare * edge / (window * window);
+    const double straight_kn_per_mm = noise_per_mm / std::max(options.friction, 1e-3);
+    const std::vector<double> total = total_kn(path);
+    const double length = path.back().s_mm;
+    Positions behind(path);
+    Positions ahead(path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const double s = path[i].s_mm;
+        if (s < window || s > length - window) {
+            continue;
+        }
+        const Vector3d& here = path[i].position_mm;
+        const Vector3d in = here - behind.at(s - window);
+        const Vector3d out = ahead.at(s + window) - here;
+        const Vector3d& n = path[i].normal;
+        const Vector3d flat_in = in - n * n.dot(in);
+        const Vector3d flat_out = out - n * n.dot(out);
+        const double turn = std::atan2(n.dot(flat_in.cross(flat_out)), flat_in.dot(flat_out));
+        const double kg = turn / window;
+        measure.kg_per_mm[i] = kg;
+        if (string.gap_mm[i] > 0.0) {
+            continue;  // lifted: nothing to slip on
+        }
+        const double kn = (value_at(path, total, s + window) - value_at(path, total, s - window)) /
+                          (2.0 * window);
+        if (kn < straight_kn_per_mm && std::abs(kg) <= noise_per_mm) {
+            continue;
+        }
+        const double slip = std::abs(kg) / std::max(kn, straight_kn_per_mm);
+        measure.slip[i] = slip;
+        if (slip > measure.worst) {
+            measure.worst = slip;
+            measure.worst_station = i;
+        }
+    }
+    return measure;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,46 @@
+/// What a finished path does under tension: bridging as a height, slip as a ratio.
+#pragma once
+
+#include <vector>
+
+#include "geodesic/surface_path.h"
+
+namespace meshwind {
+
+/// The taut string over a path: where the fibre really is. One entry per station.
+struct TautString {
+    std::vector<double> gap_mm;  ///< height of the string over the surface, >= 0
+    std::vector<double> slope;   ///< rise of the string against the path's tangent, mm per mm
+    double worst_gap_mm = 0.0;
+    std::size_t worst_station = 0;
+};
+
+/// The string is the least concave majorant of the path's height w(s) over the straight line, w'' =
+/// -kn with a kink of the crease angle at feature edges: the convex hull of the path in its own
+/// normal section. Exact in the flat limit; for a string that turns by theta between touching
+/// points the height is off by theta^2 / 4 of itself.
+[[nodiscard]] TautString taut_string(const SurfacePath& path);
+
+/// Slip measured from the positions of a finished path, independent of how it was steered.
+struct SlipMeasure {
+    std::vector<double> slip;  ///< per station, |kg| / kn; 0 where the fibre is straight or lifted
+    std::vector<double> kg_per_mm;  ///< per station, measured
+    double worst = 0.0;
+    std::size_t worst_station = 0;
+};
+
+struct SlipOptions {
+    double window_mm = 0.0;  ///< half length of the chords; 0: three mean edges of the mesh
+    double friction = 0.2;   ///< where kn is too small for a ratio, the limit that must hold
+};
+
+/// kg from the turn between the chords of +-window about each station, seen along the smooth
+/// normal; kn from the smooth shape operator, averaged over the same window. Where kn is so small
+/// that a string with it sags less than the position noise of the path over the window, a ratio has
+/// no meaning: there the station counts as straight if its |kg| is within the same noise, and with
+/// the ratio of |kg| to the noise curvature otherwise. Accuracy: second order in edge length
+/// (tests/geodesic/measure_test.cpp).
+[[nodiscard]] SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path,
+                                       const TautString& string, const SlipOptions& options = {});
+
+}  // namespace meshwind

@@ -1,0 +1,254 @@
+#include "machines/kinematics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/error.h"
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+// Directions in machine files are unit vectors of about six digits, normalised when read; axes that
+// are meant to be parallel to X, Y or Z are exactly so.
+constexpr double kParallel = 1e-9;
+// Determinant of the three linear directions below which they do not span space in practice.
+constexpr double kLeastVolume = 1e-3;
+constexpr double kPointTolerance_mm = 1e-9;
+
+Eigen::Isometry3d exponential(const Axis& axis, double value) {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    if (axis.type == AxisType::Linear) {
+        motion.translation() = value * axis.direction;
+        return motion;
+    }
+    motion.linear() = Eigen::AngleAxisd(value, axis.direction).toRotationMatrix();
+    motion.translation() = axis.point_mm - motion.linear() * axis.point_mm;
+    return motion;
+}
+
+// +1 or -1 when the axis runs along +-`line`, else 0.
+double sign_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& line) {
+    if (direction.cross(line).norm() > kParallel) {
+        return 0.0;
+    }
+    return direction.dot(line) > 0.0 ? 1.0 : -1.0;
+}
+
+double distance_to_axis(const Axis& axis, const Eigen::Vector3d& point_mm) {
+    return axis.direction.cross(point_mm - axis.point_mm).norm();
+}
+
+[[noreturn]] void unsupported(const Machine& machine, const std::string& words) {
+    throw InputError("machine.unsupported_chain", machine.name,
+                     words +
+                         "; the closed form needs a spindle along Z, three linear axes, a head "
+                         "roll along X and at most a head swing along Y, both through the eye");
+}
+
+[[noreturn]] void missing(const Machine& machine, const std::string& words) {
+    throw InputError("machine.missing_axis", machine.name, words);
+}
+
+std::string name_of(const Axis& axis) {
+    return std::string("axis ") + axis.letter;
+}
+
+// The value among `value + k * period` nearest to `reference`.
+double nearest_turn(double value, double reference, double period) {
+    return value + period * std::round((reference - value) / period);
+}
+
+}  // namespace
+
+Eigen::Isometry3d base_from_mandrel(const Machine& machine, std::span<const double> q) {
+    assert(q.size() == machine.axis_count());
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (std::size_t i = 0; i < machine.mandrel_chain.size(); ++i) {
+        pose = pose * exponential(machine.mandrel_chain[i], q[i]);
+    }
+    return pose;
+}
+
+Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double> q, char link) {
+    assert(q.size() == machine.axis_count());
+    const std::size_t first = machine.mandrel_chain.size();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (std::size_t i = 0; i < machine.eye_chain.size(); ++i) {
+        pose = pose * exponential(machine.eye_chain[i], q[first + i]);
+        if (machine.eye_chain[i].letter == link) {
+            return pose;
+        }
+    }
+    assert(false && "link is not in the eye chain");
+    return pose;
+}
+
+Eigen::Isometry3d base_from_eye(const Machine& machine, std::span<const double> q) {
+    return base_from_link(machine, q, machine.eye_chain.back().letter) *
+           Eigen::Translation3d(machine.eye.position_mm);
+}
+
+Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q) {
+    return base_from_mandrel(machine, q).inverse() * base_from_eye(machine, q);
+}
+
+SpindleWristInverse::SpindleWristInverse(const Machine& machine)
+    : eye_zero_mm_(machine.eye.position_mm) {
+    recognise_spindle(machine);
+    recognise_linear(machine);
+    recognise_wrist(machine);
+    if (sign_along(machine.eye.roller, Eigen::Vector3d::UnitZ()) == 0.0) {
+        unsupported(machine, "the roller is not along Z at zero");
+    }
+    if (sign_along(machine.eye.exit, Eigen::Vector3d::UnitX()) != -1.0) {
+        unsupported(machine, "the exit is not along -X at zero");
+    }
+}
+
+void SpindleWristInverse::recognise_spindle(const Machine& machine) {
+    if (machine.mandrel_chain.empty()) {
+        missing(machine, "the mandrel chain has no axis; add the spindle");
+    }
+    const Axis& spindle = machine.mandrel_chain.front();
+    if (machine.mandrel_chain.size() != 1 || spindle.type != AxisType::Rotary) {
+        unsupported(machine, "the mandrel chain is not one rotary axis");
+    }
+    spindle_sign_ = sign_along(spindle.direction, Eigen::Vector3d::UnitZ());
+    if (spindle_sign_ == 0.0 ||
+        distance_to_axis(spindle, Eigen::Vector3d::Zero()) > kPointTolerance_mm) {
+        unsupported(machine, name_of(spindle) + " is not the Z axis of the machine frame");
+    }
+}
+
+void SpindleWristInverse::recognise_linear(const Machine& machine) {
+    std::size_t count = 0;
+    while (count < machine.eye_chain.size() && machine.eye_chain[count].type == AxisType::Linear) {
+        ++count;
+    }
+    if (count < 3) {
+        missing(machine, "the eye chain starts with " + std::to_string(count) +
+                             " linear axes; three are needed before the rotary ones");
+    }
+    if (count > 3) {
+        unsupported(machine, "the eye chain has more than three linear axes");
+    }
+    Eigen::Matrix3d directions;
+    for (std::size_t i = 0; i < 3; ++i) {
+        linear_[i] = machine.mandrel_chain.size() + i;
+        directions.col(static_cast<Eigen::Index>(i)) = machine.eye_chain[i].direction;
+    }
+    if (std::abs(directions.determinant()) < kLeastVolume) {
+        unsupported(machine, "the three linear axes lie in one plane");
+    }
+    linear_from_machine_ = directions.inverse();
+}
+
+void SpindleWristInverse::recognise_wrist(const Machine& machine) {
+    const auto rotary = [&](std::size_t link, const Eigen::Vector3d& line, const char* words) {
+        const Axis& axis = machine.eye_chain[link];
+        RotaryJoint joint{.joint = machine.mandrel_chain.size() + link,
+                          .sign = sign_along(axis.direction, line),
+                          .min = axis.min,
+                          .max = axis.max};
+        if (axis.type != AxisType::Rotary || joint.sign == 0.0) {
+            unsupported(machine, name_of(axis) + " is not a rotary axis along " + words);
+        }
+        if (distance_to_axis(axis, eye_zero_mm_) > kPointTolerance_mm) {
+            unsupported(machine, name_of(axis) + " does not pass through the eye");
+        }
+        return joint;
+    };
+    const std::size_t links = machine.eye_chain.size();
+    if (links < 4) {
+        missing(machine, "the eye chain has no head roll; add a rotary axis along X");
+    }
+    roll_ = rotary(3, Eigen::Vector3d::UnitX(), "X (head roll)");
+    has_swing_ = links > 4;
+    if (has_swing_) {
+        swing_ = rotary(4, Eigen::Vector3d::UnitY(), "Y (head swing)");
+    }
+    if (links > 5) {
+        unsupported(machine, "the eye chain has more than two rotary axes");
+    }
+}
+
+struct SpindleWristInverse::Choice {
+    double previous_roll = 0.0;
+    double previous_swing = 0.0;
+    bool within_limits = false;
+    double step_rad = std::numeric_limits<double>::infinity();
+    double roll = 0.0;
+    double swing = 0.0;
+};
+
+void SpindleWristInverse::consider(double roll_rad, double swing_rad, Choice& best) const {
+    const double swing = nearest_turn(swing_.sign * swing_rad, best.previous_swing, 2.0 * kPi);
+    const double nearest = nearest_turn(roll_.sign * roll_rad, best.previous_roll, 2.0 * kPi);
+    const bool swing_ok = !has_swing_ || (swing >= swing_.min && swing <= swing_.max);
+    // An end stop of the roll may forbid the nearest turn and allow a neighbour.
+    for (const double turns : {0.0, -1.0, 1.0}) {
+        const double roll = nearest + turns * 2.0 * kPi;
+        const bool within = swing_ok && roll >= roll_.min && roll <= roll_.max;
+        const double step =
+            std::max(std::abs(roll - best.previous_roll), std::abs(swing - best.previous_swing));
+        if (within == best.within_limits ? step < best.step_rad : within) {
+            best.within_limits = within;
+            best.step_rad = step;
+            best.roll = roll;
+            best.swing = swing;
+        }
+    }
+}
+
+WristState SpindleWristInverse::solve(const EyeTarget& target, double turn_rad,
+                                      std::span<const double> previous,
+                                      std::span<double> joints) const {
+    const Eigen::Matrix3d machine_from_mandrel =
+        Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    Choice best{.previous_roll = previous[roll_.joint],
+                .previous_swing = has_swing_ ? previous[swing_.joint] : 0.0};
+    const Eigen::Vector3d tau = machine_from_mandrel * target.tangent;
+    const Eigen::Vector3d binormal = machine_from_mandrel * target.binormal;
+    const Eigen::Vector3d wanted =
+        has_swing_ ? binormal : Eigen::Vector3d(Eigen::Vector3d::UnitX().cross(tau));
+
+    WristState state;
+    state.singular_sine = std::hypot(wanted.y(), wanted.z());
+    state.held = state.singular_sine < kSingularSine;
+    const double held_roll = roll_.sign * best.previous_roll;
+    const double roll = state.held ? held_roll : std::atan2(-wanted.y(), wanted.z());
+    if (has_swing_) {
+        // atan2 keeps full accuracy where asin loses half the digits, near +-90 degrees.
+        const double swing = std::atan2(wanted.x(), state.singular_sine);
+        const double other_roll = state.held ? held_roll : roll + kPi;
+        consider(roll, swing, best);
+        consider(other_roll, kPi - swing, best);
+        consider(other_roll, -swing, best);
+        consider(roll, swing + kPi, best);
+    } else {
+        consider(roll, 0.0, best);
+        consider(state.held ? roll : roll + kPi, 0.0, best);
+        const double a = roll_.sign * best.roll;
+        const Eigen::Vector3d roller(0.0, -std::sin(a), std::cos(a));
+        state.twist_rad = std::atan2(roller.cross(binormal).norm(), std::abs(roller.dot(binormal)));
+    }
+    state.flip = std::abs(best.roll - best.previous_roll) > 0.5 * kPi;
+
+    const Eigen::Vector3d linear =
+        linear_from_machine_ * (machine_from_mandrel * target.eye_mm - eye_zero_mm_);
+    joints[0] = spindle_sign_ * turn_rad;
+    for (std::size_t i = 0; i < 3; ++i) {
+        joints[linear_[i]] = linear[static_cast<Eigen::Index>(i)];
+    }
+    joints[roll_.joint] = best.roll;
+    if (has_swing_) {
+        joints[swing_.joint] = best.swing;
+    }
+    return state;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,110 @@
+/// Forward kinematics of any machine and the closed-form inverse of the spindle-and-wrist class.
+///
+/// Joint vectors: mandrel chain, then eye chain, each from the base outward; mm and rad. The
+/// mandrel frame is the machine frame carried along by the mandrel chain: both coincide at zero.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "machines/machine.h"
+
+namespace meshwind {
+
+/// Product of exponentials of the mandrel chain. \pre q has machine.axis_count() entries
+[[nodiscard]] Eigen::Isometry3d base_from_mandrel(const Machine& machine,
+                                                  std::span<const double> q);
+
+/// The same of the eye chain up to and with axis `link`: it carries what is given "at zero" to
+/// where it is. \pre `link` is a letter of the eye chain
+[[nodiscard]] Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double> q,
+                                               char link);
+
+/// Pose of the eye: its origin is the eye point, its axes are those of the machine at zero, so that
+/// `roller` and `exit` of the machine are directions in it.
+[[nodiscard]] Eigen::Isometry3d base_from_eye(const Machine& machine, std::span<const double> q);
+
+/// inverse(base_from_mandrel) * base_from_eye.
+[[nodiscard]] Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q);
+
+/// Where the eye must be, mandrel frame.
+struct EyeTarget {
+    Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();
+    Eigen::Vector3d tangent = Eigen::Vector3d::UnitY();  ///< unit, along the free fibre to the eye
+    /// Unit, normal to the tangent: the roller is to be parallel to it, sign free.
+    Eigen::Vector3d binormal = Eigen::Vector3d::UnitZ();
+};
+
+/// What one inverse solution has to tell.
+struct WristState {
+    /// Sine of the angle between the machine's X axis and the vector that sets A (the roller axis
+    /// with A and B, the fibre with A alone), 0..1. Small: a small move asks for much of A.
+    double singular_sine = 1.0;
+    bool held = false;       ///< singular_sine below kSingularSine: A is undefined and kept
+    bool flip = false;       ///< A had to jump by about half a turn against the previous joints
+    double twist_rad = 0.0;  ///< angle between roller and binormal, 0..pi/2; 0 with A and B
+};
+
+/// Below this sine the direction of A is rounding noise of unit vectors, and keeping A turns the
+/// roller by no more than this angle.
+inline constexpr double kSingularSine = 1e-10;
+
+/// The class that has a closed form, recognised from the chains: one rotary axis along +-Z through
+/// the origin in the mandrel chain (spindle); in the eye chain three linear axes in any order that
+/// span space, then a rotary axis along +-X (head roll, "A") and perhaps one along +-Y (head swing,
+/// "B"), both through the eye; roller along +-Z and exit along -X at zero. Letters are free.
+///
+/// With roll a and swing b about +X and +Y the roller is u = (sin b, -sin a cos b, cos a cos b).
+///  - roll only: u = (X x tau)/|X x tau| is at a right angle to the fibre: a = atan2(tau_z, tau_y),
+///    tau turned into the machine frame, up to half turns because the sign of u is free;
+///  - roll and swing: u = +-binormal, b = asin(u_x), a = atan2(-u_y, u_z), or (a + pi, pi - b).
+/// Among these and their whole turns the solution is the one nearest to the previous joints in the
+/// largest rotary step, those within the axes' limits first.
+/// Accuracy: forward(inverse(pose)) = pose within 1e-9 mm and 1e-9 rad (kinematics_test.cpp).
+class SpindleWristInverse {
+public:
+    /// \throws InputError machine.missing_axis, machine.unsupported_chain
+    explicit SpindleWristInverse(const Machine& machine);
+
+    /// Joints that bring the eye to `target` with the mandrel turned by `turn_rad` about +Z.
+    /// \param turn_rad any real value; kept as it is, without wrapping
+    /// \param previous joints to stay near to, axis_count() entries; all zero when there are none
+    /// \param joints result, axis_count() entries, may be `previous` itself
+    WristState solve(const EyeTarget& target, double turn_rad, std::span<const double> previous,
+                     std::span<double> joints) const;
+
+    /// Turn of the mandrel about +Z in a joint vector.
+    [[nodiscard]] double turn_rad(std::span<const double> joints) const {
+        return spindle_sign_ * joints[0];
+    }
+
+    [[nodiscard]] bool has_swing() const { return has_swing_; }
+
+private:
+    struct RotaryJoint {
+        std::size_t joint = 0;
+        double sign = 1.0;  ///< +1: positive values turn right-handed about +X or +Y
+        double min = 0.0;
+        double max = 0.0;
+    };
+    struct Choice;
+
+    void recognise_spindle(const Machine& machine);
+    void recognise_linear(const Machine& machine);
+    void recognise_wrist(const Machine& machine);
+    void consider(double roll_rad, double swing_rad, Choice& best) const;
+
+    double spindle_sign_ = 1.0;
+    std::array<std::size_t, 3> linear_{};
+    Eigen::Matrix3d linear_from_machine_ = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d eye_zero_mm_ = Eigen::Vector3d::Zero();
+    RotaryJoint roll_;
+    RotaryJoint swing_;
+    bool has_swing_ = false;
+};
+
+}  // namespace meshwind

@@ -1,0 +1,47 @@
+/// The kinds of `meshwind make` as a table: names, parameters, and meshes by name.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "mesh/analytic.h"
+#include "mesh/make.h"
+
+namespace meshwind {
+
+/// Lengths are mm and angles rad here; a command line shows angles in degrees.
+enum class MakeUnit { Length, Angle };
+
+struct MakeParameter {
+    std::string_view name;  ///< as on the command line, without dashes: "run-radius"
+    MakeUnit unit = MakeUnit::Length;
+    double value_default = 0.0;  ///< mm or rad
+    std::string_view meaning;    ///< one line without a full stop
+};
+
+struct MakeKind {
+    std::string_view name;
+    std::string_view meaning;
+    std::span<const MakeParameter> parameters;
+};
+
+/// Values by parameter name, mm or rad; what is missing takes its default.
+using MakeValues = std::map<std::string, double, std::less<>>;
+
+/// cylinder, cone, vessel, elbow, tee, combination, frame, torus, ellipsoid.
+[[nodiscard]] std::span<const MakeKind> make_kinds();
+
+/// \throws InputError make.unknown_kind, make.unknown_parameter; what the kind's make function
+/// throws
+[[nodiscard]] TriangleSoup make_mandrel(std::string_view kind, const MakeValues& values = {},
+                                        const MakeOptions& options = {});
+
+/// Nearest point of the kind's ideal outer surface, see mesh/analytic.h.
+/// \throws InputError make.unknown_kind, make.unknown_parameter; what the shape's validate throws
+[[nodiscard]] ShapeFoot mandrel_foot(std::string_view kind, const MakeValues& values,
+                                     const Eigen::Vector3d& point_mm);
+
+}  // namespace meshwind

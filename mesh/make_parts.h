@@ -1,0 +1,39 @@
+/// Building blocks of made meshes: rows of vertices and the triangles between them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/triangle_soup.h"
+
+namespace meshwind {
+
+using VertexRow = std::vector<std::int32_t>;
+
+[[nodiscard]] inline std::size_t at(std::int32_t index) {
+    return static_cast<std::size_t>(index);
+}
+
+/// length / step rounded, but at least `least`.
+[[nodiscard]] std::int32_t steps_of(double length_mm, double step_mm, std::int32_t least);
+
+/// Distance of the rows of equilateral triangles of this edge.
+[[nodiscard]] double row_step_mm(double edge_mm);
+
+/// Triangles between two rows by the shorter diagonal each time; `upper` lies left of `lower`'s
+/// direction seen from outside, both run the same way. Rows of one vertex make a fan.
+void stitch_open(TriangleSoup& soup, const VertexRow& lower, const VertexRow& upper);
+
+/// The same between two rings; the last vertex of each is followed by its first.
+void stitch_rings(TriangleSoup& soup, const VertexRow& lower, VertexRow upper);
+
+/// The boundary loops in the direction of the faces' half-edges, ordered by their least vertex,
+/// which comes first. \pre soup is manifold and oriented
+[[nodiscard]] std::vector<VertexRow> boundary_loops(const TriangleSoup& soup);
+
+/// Outer wall, inner wall turned over, and a face between each rim and the nearest rim inside: a
+/// watertight solid, or two closed walls when there are no rims. Faces between rims have one row of
+/// triangles, as CAD tessellates them. \pre both walls face outward and have equally many rims
+[[nodiscard]] TriangleSoup shell_between(const TriangleSoup& outer, const TriangleSoup& inner);
+
+}  // namespace meshwind

@@ -1,0 +1,45 @@
+#include "mesh/nearest_parameter.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace meshwind {
+
+double nearest_parameter(const ParameterRange& range, const std::function<double(double)>& distance,
+                         const std::function<double(double)>& slope) {
+    // A curve that turns by a right angle bends little in a sixteenth of it: the nearest sample's
+    // neighbours bracket the minimum.
+    constexpr int kSteps = 16;
+    const auto parameter = [&](int step) {
+        return range.low + (range.high - range.low) * step / kSteps;
+    };
+    int best = 0;
+    double least = std::numeric_limits<double>::max();
+    for (int step = 0; step <= kSteps; ++step) {
+        const double value = distance(parameter(step));
+        if (value < least) {
+            least = value;
+            best = step;
+        }
+    }
+    const double low = parameter(std::max(best - 1, 0));
+    const double high = parameter(std::min(best + 1, kSteps));
+    const double slope_low = slope(low);
+    const double slope_high = slope(high);
+    if (slope_low >= 0.0) {
+        return low;
+    }
+    if (slope_high <= 0.0) {
+        return high;
+    }
+    std::uintmax_t iterations = 100;
+    const auto [a, b] = boost::math::tools::toms748_solve(
+        slope, low, high, slope_low, slope_high, boost::math::tools::eps_tolerance<double>(52),
+        iterations);
+    return 0.5 * (a + b);
+}
+
+}  // namespace meshwind

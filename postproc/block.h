@@ -1,0 +1,67 @@
+/// The neutral program: what every dialect writes and every reader returns.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/eye_path.h"
+#include "postproc/joint_path.h"
+#include "postproc/time_law.h"
+
+namespace meshwind {
+
+/// Nano units per mm or degree: positions are integers of 1e-9 mm or deg, so that sums are exact.
+inline constexpr std::int64_t kNanoPerUnit = 1'000'000'000;
+
+struct BlockAxis {
+    char letter = '?';
+    AxisType type = AxisType::Linear;
+    std::int64_t resolution_nano = 1;  ///< positions of this axis are multiples of it
+
+    friend bool operator==(const BlockAxis&, const BlockAxis&) = default;
+};
+
+/// One line of motion; all axes arrive together after its duration.
+struct Block {
+    double duration_s = 0.0;
+    std::int32_t piece = -1;  ///< course or transition in winding order; -1 unknown
+    std::int32_t point = -1;  ///< landing point within the piece at the block's end; -1 unknown
+    std::int32_t line = 0;    ///< line of the file it was read from, from 1; 0 when planned
+};
+
+/// Blocks with the absolute axis positions at their ends. Block 0 is the start position, which the
+/// machine takes before the fibre is tied on; its duration is 0.
+struct BlockList {
+    std::vector<BlockAxis> axes;     ///< in the order of the machine's joint vector
+    std::vector<Block> blocks;       ///< n
+    std::vector<std::int64_t> nano;  ///< n x axes by rows: absolute, 1e-9 mm or 1e-9 deg
+
+    [[nodiscard]] std::span<const std::int64_t> row(std::size_t block) const {
+        return {nano.data() + block * axes.size(), axes.size()};
+    }
+    /// Absolute position in output units: mm or **deg**.
+    [[nodiscard]] double value(std::size_t block, std::size_t axis) const {
+        return static_cast<double>(nano[block * axes.size() + axis]) /
+               static_cast<double>(kNanoPerUnit);
+    }
+    [[nodiscard]] double duration_s() const;
+};
+
+/// Absolute position of block `block` as a joint vector (mm, rad).
+[[nodiscard]] std::vector<double> joints_at(const BlockList& list, std::size_t block);
+
+/// Rounds the absolute positions to each axis' resolution, so that the sum of increments stays
+/// within half a step of the plan over any number of blocks. Steps that move no axis by a whole
+/// step are merged into the next one that does, with their time; at the end into the last. \throws
+/// InputError block.too_far beyond +-4e9 mm or deg
+[[nodiscard]] BlockList make_blocks(const Machine& machine, const EyePath& path,
+                                    const JointPath& joints, const TimedPath& timed);
+
+/// Decimals that print every multiple of the resolution exactly, 0..9.
+[[nodiscard]] int decimals_of(std::int64_t resolution_nano);
+
+}  // namespace meshwind

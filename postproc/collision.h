@@ -1,0 +1,65 @@
+/// Collisions of the free fibre and of the machine's head with the mandrel, at the blocks and
+/// between.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "machines/machine.h"
+#include "mesh/ray_query.h"
+#include "postproc/eye_path.h"
+#include "postproc/joint_path.h"
+
+namespace meshwind {
+
+/// Envelope parts as what is swept: capsules, and meshes as triangles (machine frame at zero).
+struct HeadEnvelope {
+    struct Part {
+        char link = '?';
+        Capsule capsule;  ///< where `triangles` is empty
+        TriangleSoup triangles;
+    };
+    std::vector<Part> parts;
+};
+
+/// \param load_mesh reads the triangles of an envelope mesh file, in mm
+[[nodiscard]] HeadEnvelope head_envelope(const Machine& machine,
+                                         TriangleSoup (*load_mesh)(const std::string& file));
+
+struct CollisionRule {
+    double clearance_mm = 5.0;   ///< kept between the head and anything
+    FreeFibreRule free_fibre;    ///< of which stand-off and start concern the ray
+    double fibre_step_mm = 2.0;  ///< the eye moves no further than this between two fibre rays
+};
+
+/// What the motion touches. A step leads from eye point i - 1 to eye point i.
+struct CollisionReport {
+    std::vector<std::size_t> fibre_hits;  ///< steps in which the free fibre meets the mandrel
+    std::vector<std::size_t>
+        head_hits;  ///< steps in which the head comes nearer than the clearance
+    double min_clearance_mm =
+        0.0;  ///< least distance of the head at the eye points, up to kClearanceCap_mm
+    std::size_t min_clearance_point = 0;
+};
+
+/// Clearances beyond this are not told apart.
+inline constexpr double kClearanceCap_mm = 100.0;
+
+/// Checks every eye point and every step with linear joint interpolation in between.
+/// The head: pieces of the envelope are split, and the step halved, until a ball around each piece,
+/// grown by all that it can move in its share of the step, is clear of the mandrel or a centre is
+/// within the clearance: nothing slips through between points (conservative to
+/// kSweepResolution_mm). The free fibre: rays from landing point to eye, so close that the eye
+/// moves at most `fibre_step_mm`. \param tied_on eye points before which the machine moves without
+/// fibre: those steps are not checked
+[[nodiscard]] CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
+                                               const RayQuery& obstacles, const EyePath& path,
+                                               const JointPath& joints, const CollisionRule& rule,
+                                               std::span<const std::size_t> tied_on = {});
+
+/// Pieces and steps smaller than this are not split further and count as a hit.
+inline constexpr double kSweepResolution_mm = 0.25;
+
+}  // namespace meshwind

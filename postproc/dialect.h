@@ -1,0 +1,56 @@
+/// What every controller language offers: blocks to text and text to blocks.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/block.h"
+
+namespace meshwind {
+
+/// What the head of a program tells the operator; empty texts are left out.
+struct ProgramHeader {
+    std::string version{};         ///< of meshwind
+    std::string mandrel{};         ///< file name
+    std::string mandrel_digest{};  ///< e.g. "sha256 1f2e.."
+    std::string job_digest{};
+    double fibre_length_mm = 0.0;
+    std::vector<std::string> notes{};  ///< a line each, e.g. that a failed check was overruled
+};
+
+/// One controller language. Stateless; positions survive write and read to the last digit,
+/// durations to six digits.
+class Dialect {
+public:
+    virtual ~Dialect() = default;
+
+    [[nodiscard]] virtual std::string name() const = 0;
+    /// With the point, e.g. ".ngc".
+    [[nodiscard]] virtual std::string extension() const = 0;
+
+    /// The blocks as the controller needs them: what it would execute wrongly is written in another
+    /// way (more blocks, same positions). Tables beside the program are made from this result.
+    /// prepare(prepare(list)) = prepare(list).
+    [[nodiscard]] virtual BlockList prepare(BlockList list) const = 0;
+
+    /// The program of prepare(list).
+    /// \pre list has the axes of the machine and at least one block
+    /// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line, dialect.duration
+    [[nodiscard]] virtual std::string write(const Machine& machine, const BlockList& list,
+                                            const ProgramHeader& header) const = 0;
+
+    /// Reads a program of the subset that `write` uses (and what is harmless besides).
+    /// \param file name used in messages
+    /// \return positions and durations; `piece` from the course marks, `line` of each block
+    /// \throws InputError nc.* with the place "file:line" for anything else
+    [[nodiscard]] virtual BlockList read(std::string_view text, const std::string& file,
+                                         const Machine& machine) const = 0;
+};
+
+/// \throws InputError dialect.unknown with the names that exist
+[[nodiscard]] std::unique_ptr<Dialect> make_dialect(std::string_view name);
+
+}  // namespace meshwind

@@ -1,0 +1,127 @@
+#include "postproc/joint_path.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/units.h"
+#include "machines/kinematics.h"
+
+namespace meshwind {
+namespace {
+
+// A wrist within 1 degree of its singular pose asks for 57 times the speed of the fibre's turn.
+constexpr double kNearSingularSine = 0.0175;
+// An eye this near to the axis asks for a quarter turn of the spindle per few mm of path.
+constexpr double kNearAxis_mm = 5.0;
+// Axis::resolution_nano counts these per mm or degree.
+constexpr double kNanoPerUnit = 1e9;
+
+double eye_radius_mm(const EyePoint& point) {
+    return std::hypot(point.eye_mm.x(), point.eye_mm.y());
+}
+
+// Extends the latest note of this kind when it ends just before `point`, else opens a new one.
+void note(JointPath& path, JointNoteKind kind, std::size_t point, double measure) {
+    const auto latest = std::find_if(path.notes.rbegin(), path.notes.rend(),
+                                     [kind](const JointNote& other) { return other.kind == kind; });
+    if (latest != path.notes.rend() && latest->last + 1 == point) {
+        latest->last = point;
+        latest->measure = kind == JointNoteKind::WristFlip ? std::max(latest->measure, measure)
+                                                           : std::min(latest->measure, measure);
+    } else {
+        path.notes.push_back({.kind = kind, .first = point, .last = point, .measure = measure});
+    }
+}
+
+// Half of the smallest increment in axis units: what is less beyond a limit is not written.
+double half_step(const Axis& axis) {
+    const double step = static_cast<double>(axis.resolution_nano) / kNanoPerUnit;
+    return 0.5 * (axis.type == AxisType::Rotary ? rad_from_deg(step) : step);
+}
+
+// Appends the runs in which `joint` passes one end of its travel.
+void find_violations(const Axis& axis, std::size_t joint, JointPath& path) {
+    const double slack = half_step(axis);
+    for (const double side : {-1.0, 1.0}) {
+        const double limit = side < 0.0 ? axis.min : axis.max;
+        bool open = false;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const double value = path.row(i)[joint];
+            if (!(side * (value - limit) > slack)) {
+                open = false;
+                continue;
+            }
+            if (!open) {
+                path.violations.push_back({.axis = axis.letter,
+                                           .first = i,
+                                           .last = i,
+                                           .point = i,
+                                           .value = value,
+                                           .limit = limit});
+                open = true;
+            }
+            LimitViolation& latest = path.violations.back();
+            latest.last = i;
+            if (side * (value - latest.value) > 0.0) {
+                latest.point = i;
+                latest.value = value;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) {
+    std::vector<double> turns(path.size(), 0.0);
+    double turn = 0.0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const bool moves = i == 0 || policy == RedundancyPolicy::CentralAngle;
+        if (moves && eye_radius_mm(path[i]) > kLeastEyeRadius_mm) {
+            const double central = -std::atan2(path[i].eye_mm.y(), path[i].eye_mm.x());
+            turn += std::remainder(central - turn, 2.0 * kPi);
+        }
+        turns[i] = turn;
+    }
+    return turns;
+}
+
+JointPath solve_joints(const Machine& machine, const EyePath& path,
+                       std::span<const double> turns_rad) {
+    assert(turns_rad.size() == path.size());
+    const SpindleWristInverse inverse(machine);
+    JointPath result;
+    result.axis_count = machine.axis_count();
+    result.joints.resize(path.size() * result.axis_count);
+    std::vector<double> joints(result.axis_count, 0.0);
+    const std::size_t roll = machine.mandrel_chain.size() + 3;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const double roll_before = joints[roll];
+        const EyeTarget target{
+            .eye_mm = path[i].eye_mm, .tangent = path[i].tangent, .binormal = path[i].binormal};
+        const WristState state = inverse.solve(target, turns_rad[i], joints, joints);
+        std::copy(joints.begin(), joints.end(),
+                  result.joints.begin() + static_cast<std::ptrdiff_t>(i * result.axis_count));
+        result.worst_twist_rad = std::max(result.worst_twist_rad, state.twist_rad);
+        if (state.singular_sine < kNearSingularSine) {
+            note(result, JointNoteKind::WristNearSingular, i, state.singular_sine);
+        }
+        if (state.flip && i > 0) {
+            note(result, JointNoteKind::WristFlip, i, std::abs(joints[roll] - roll_before));
+        }
+        if (eye_radius_mm(path[i]) < kNearAxis_mm) {
+            note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
+        }
+    }
+    for (std::size_t joint = 0; joint < result.axis_count; ++joint) {
+        find_violations(machine.axis(joint), joint, result);
+    }
+    return result;
+}
+
+JointPath solve_joints(const Machine& machine, const EyePath& path, RedundancyPolicy policy) {
+    return solve_joints(machine, path, spindle_turns(path, policy));
+}
+
+}  // namespace meshwind

@@ -1,0 +1,81 @@
+/// Axis values along the eye path, with the redundant spindle angle chosen by a policy.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/eye_path.h"
+
+namespace meshwind {
+
+/// How the turn of the mandrel is chosen; the eye position leaves it free.
+enum class RedundancyPolicy {
+    /// The eye stays in the half-plane y = 0, x > 0 of the machine: the mandrel turns about +Z by
+    /// -atan2(E_y, E_x), unwrapped so that each step is within half a turn.
+    CentralAngle,
+    /// The mandrel stands still at the central angle of the first eye point.
+    Hold,
+};
+
+/// A run of neighbouring points at which one axis is beyond one end of its travel by more than half
+/// of its resolution.
+struct LimitViolation {
+    char axis = '?';
+    std::size_t first = 0;  ///< index of the run's first point in the eye path
+    std::size_t last = 0;   ///< and of its last
+    std::size_t point = 0;  ///< the worst of them
+    double value = 0.0;     ///< there, axis units (mm or rad)
+    double limit = 0.0;     ///< the end that it passes, axis units
+};
+
+enum class JointNoteKind {
+    WristNearSingular,   ///< measure: least WristState::singular_sine of the run
+    WristFlip,           ///< measure: step of the roll joint in rad, above a quarter turn
+    EyeNearSpindleAxis,  ///< measure: least distance of the run in mm
+};
+
+/// Something about a run of neighbouring points that slows the machine or hints at a bad set-up.
+struct JointNote {
+    JointNoteKind kind = JointNoteKind::WristNearSingular;
+    std::size_t first = 0;
+    std::size_t last = 0;
+    double measure = 0.0;
+};
+
+struct JointPath {
+    std::size_t axis_count = 0;
+    std::vector<double> joints;  ///< n x axis_count by rows, one row per eye point; mm and rad
+    std::vector<LimitViolation> violations;
+    std::vector<JointNote> notes;
+    double worst_twist_rad = 0.0;  ///< largest angle between roller and binormal; 0 with A and B
+
+    [[nodiscard]] std::size_t size() const {
+        return axis_count == 0 ? 0 : joints.size() / axis_count;
+    }
+    [[nodiscard]] std::span<const double> row(std::size_t point) const {
+        return {joints.data() + point * axis_count, axis_count};
+    }
+};
+
+/// Below this distance the direction of the eye from the spindle axis is rounding noise of
+/// positions of some metres; the policy CentralAngle then keeps the previous turn.
+inline constexpr double kLeastEyeRadius_mm = 1e-6;
+
+/// Turn of the mandrel about +Z of the machine at each eye point, in rad; n values, unwrapped.
+/// The first one is within half a turn of zero.
+[[nodiscard]] std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy);
+
+/// Axis values with the spindle turns given (n values). Steps of the wrist are the smallest
+/// possible, starting from all axes at zero. Source: fu_2009_post_processing, machine transform;
+/// the turn has the opposite sign of its C, which counts the eye around the mandrel. \throws
+/// InputError machine.missing_axis, machine.unsupported_chain
+[[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
+                                     std::span<const double> turns_rad);
+
+/// The same with the turns of a policy.
+[[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
+                                     RedundancyPolicy policy);
+
+}  // namespace meshwind

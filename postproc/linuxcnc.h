@@ -1,0 +1,44 @@
+/// Programs for LinuxCNC (RS274/NGC): incremental, inverse-time feed.
+#pragma once
+
+#include "postproc/dialect.h"
+
+namespace meshwind {
+
+/// Form of a program: header comments, G21 G90 and the controller's header lines, the start
+/// position in rapid moves (rotary axes first, then the linear ones together), the stop M0 for the
+/// tie-on, then G91 G93 and one line per block: `G1`, the increments of the axes that move, and F =
+/// 60 / duration.
+/// `(course 3)` marks where piece 3 begins. The footer lines and M2 close it; nothing homes.
+///
+/// Kept because the interpreter asks for it: lines of at most 252 characters, ASCII without nested
+/// brackets in comments, no exponents, F with six digits on every G1 line and never 0.
+/// Interpreters before May 2023 run a G93 line of linear length l at a feed of at least 0.1 mm/min
+/// (l * F), so a tiny linear move beside a long turn makes the turn far too fast; `prepare` splits
+/// such blocks into a short one with the whole linear move and one that only turns.
+///
+/// The reader takes G0 G1 G21 G90 G91 G93 G94, F, N, M0 M1 M2 M30, comments, `%`, and skips G17 G40
+/// G49 G54 G61 G61.1 G64 (with P and Q) G80. Refused besides all else: a rapid move after the first
+/// feed move (it would tear the fibre), a position finer than the axis' resolution, an axis that no
+/// absolute word has placed before the first feed move, and a file without M2, M30 or a closing
+/// `%`. Source: linuxcnc_g_code, g-code.adoc (G93, G64), machining-center.adoc (feed rate).
+class LinuxCnc final : public Dialect {
+public:
+    [[nodiscard]] std::string name() const override { return "linuxcnc"; }
+    [[nodiscard]] std::string extension() const override { return ".ngc"; }
+    [[nodiscard]] BlockList prepare(BlockList list) const override;
+    [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
+                                    const ProgramHeader& header) const override;
+    [[nodiscard]] BlockList read(std::string_view text, const std::string& file,
+                                 const Machine& machine) const override;
+};
+
+/// The header and footer lines of the machine's controller must be such that the reader takes them,
+/// and must neither move nor end the program.
+/// \throws InputError dialect.header_line
+void check_linuxcnc_lines(const Machine& machine);
+
+/// Characters of a line that the interpreter still reads, comments included.
+inline constexpr std::size_t kLinuxCncLineLength = 252;
+
+}  // namespace meshwind

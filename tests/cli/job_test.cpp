@@ -1,0 +1,155 @@
+#include "cli/job.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace meshwind {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kCorpus = fs::path(MESHWIND_SOURCE_DIR) / "data/conformance/job";
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+struct Case {
+    std::string file, code, place;
+};
+
+std::vector<Case> manifest() {
+    std::ifstream stream(kCorpus / "manifest.csv");
+    std::vector<Case> cases;
+    std::string line;
+    std::getline(stream, line);
+    while (std::getline(stream, line)) {
+        std::istringstream fields(line);
+        Case entry;
+        std::getline(fields, entry.file, ',');
+        std::getline(fields, entry.code, ',');
+        std::getline(fields, entry.place, ',');
+        cases.push_back(entry);
+    }
+    return cases;
+}
+
+/// What `parse_job` throws for a text; the test fails when it throws nothing.
+InputError error_of(const std::string& text, const std::string& name = "job.json") {
+    try {
+        (void)parse_job(text, name);
+    } catch (const InputError& error) {
+        return error;
+    }
+    ADD_FAILURE() << "accepted: " << text;
+    return InputError("", "", "");
+}
+
+TEST(Job, DefaultsAreThePublishedOnes) {
+    const Job job = parse_job("{}", "job.json");
+    EXPECT_EQ(job_text(job),
+              "{ \"mandrel\":{\"units\":\"mm\", \"axis\":\"auto\", \"keep_regions\":\"auto\", "
+              "\"extension\":100, \"turn\":\"friction\"},\n"
+              "  \"tow\":{\"width\":6, \"thickness\":0.25, \"friction\":0.2, "
+              "\"bridging_tolerance\":0.5},\n"
+              "  \"layers\":[{\"kind\":\"auto\", \"angle\":45, \"target_layers\":1}],\n"
+              "  \"eye\":{\"rule\":\"equal-free-length\", \"free_length\":200},\n"
+              "  \"redundancy\":\"central-angle\",\n"
+              "  \"tolerance\":{\"laydown\":0.2, \"clearance\":5},\n"
+              "  \"speed\":{\"fibre\":30} }\n");
+}
+
+TEST(Job, EveryKeyReachesItsField) {
+    const Job job = read_job(kCorpus / "valid/all_keys.json");
+    EXPECT_EQ(job.mandrel.units, LengthUnit::Millimetre);
+    ASSERT_TRUE(job.mandrel.axis.has_value());
+    EXPECT_EQ(job.mandrel.axis->direction, Eigen::Vector3d(0, 0, 2));
+    EXPECT_EQ(job.mandrel.keep_regions, (std::vector<std::int32_t>{0, 3}));
+    EXPECT_EQ(job.mandrel.extension_mm, 120.5);
+    EXPECT_EQ(job.mandrel.turn, TurnKind::Pins);
+    EXPECT_EQ(job.tow.width_mm, 8.0);
+    EXPECT_EQ(job.tow.thickness_mm, 0.3);
+    EXPECT_EQ(job.tow.friction, 0.25);
+    EXPECT_EQ(job.tow.bridging_tolerance_mm, 0.0);
+    ASSERT_EQ(job.layers.size(), 3U);
+    EXPECT_EQ(job.layers[0].kind, LayerKind::Hoop);
+    EXPECT_EQ(job.layers[0].target_layers, 2.0);
+    EXPECT_EQ(job.layers[1].angle_deg, 54.7);
+    EXPECT_EQ(job.layers[2].file, "points \"A\".csv");
+    EXPECT_EQ(job.eye.rule, EyeRule::Cylinder);
+    EXPECT_EQ(job.eye.free_length_mm, 180.0);
+    EXPECT_EQ(job.redundancy, RedundancyRule::Optimal);
+    EXPECT_EQ(job.tolerance.laydown_mm, 0.1);
+    EXPECT_EQ(job.tolerance.clearance_mm, 0.0);
+    EXPECT_EQ(job.speed.fibre_m_min, 45.0);
+}
+
+TEST(Job, TextReadsBackAsTheSameJob) {
+    for (const auto& entry : fs::directory_iterator(kCorpus / "valid")) {
+        const std::string text = job_text(read_job(entry.path()));
+        EXPECT_EQ(job_text(parse_job(text, "again.json")), text) << entry.path();
+    }
+}
+
+TEST(Job, CorpusFailsWithTheStatedCodeAndPlace) {
+    const std::vector<Case> cases = manifest();
+    ASSERT_GT(cases.size(), 40U);
+    for (const Case& entry : cases) {
+        SCOPED_TRACE(entry.file);
+        const std::string name = fs::path(entry.file).filename().string();
+        const std::string text = text_of(kCorpus / entry.file);
+        if (entry.code == "ok") {
+            EXPECT_NO_THROW((void)parse_job(text, name));
+            continue;
+        }
+        const InputError error = error_of(text, name);
+        EXPECT_EQ(error.code(), entry.code);
+        EXPECT_EQ(error.place(), name + entry.place);
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+}
+
+TEST(Job, ManifestNamesEveryFile) {
+    std::set<fs::path> named;
+    for (const Case& entry : manifest()) {
+        named.insert(kCorpus / entry.file);
+    }
+    for (const std::string folder : {"valid", "invalid"}) {
+        for (const auto& entry : fs::directory_iterator(kCorpus / folder)) {
+            EXPECT_TRUE(named.contains(entry.path())) << entry.path();
+        }
+    }
+}
+
+TEST(Job, SuggestsTheNearestKeyAndWord) {
+    EXPECT_STREQ(error_of(R"({"tow": {"widht": 6}})").what(),
+                 "job.json: /tow/widht: unknown key; did you mean \"width\"?");
+    EXPECT_NE(std::string(error_of(R"({"redundancy": "optimum"})").what()).find("\"optimal\""),
+              std::string::npos);
+}
+
+TEST(Job, MissingFileIsAnIoError) {
+    EXPECT_THROW((void)read_job("no/such/job.json"), IoError);
+}
+
+TEST(LengthUnit, MillimetresOfEachUnit) {
+    EXPECT_EQ(mm_per(LengthUnit::Auto), 0.0);
+    EXPECT_EQ(mm_per(LengthUnit::Micrometre), 1e-3);
+    EXPECT_EQ(mm_per(LengthUnit::Millimetre), 1.0);
+    EXPECT_EQ(mm_per(LengthUnit::Centimetre), 10.0);
+    EXPECT_EQ(mm_per(LengthUnit::Metre), 1000.0);
+    EXPECT_EQ(mm_per(LengthUnit::Inch), 25.4);
+}
+
+}  // namespace
+}  // namespace meshwind

@@ -1,0 +1,133 @@
+// Programs read by LinuxCNC's own interpreter against the plan and against our reader.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "machines/machine_json.h"
+#include "postproc/linuxcnc.h"
+#include "postproc/motion_csv.h"
+#include "tests/postproc/synthetic_paths.h"
+
+namespace meshwind {
+namespace {
+
+const std::string kSource = MESHWIND_SOURCE_DIR;
+constexpr int kUnavailable = 77;
+
+int run(const std::string& command) {
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void save(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    ASSERT_TRUE(stream.flush());
+}
+
+class LinuxCncOracle : public testing::Test {
+protected:
+    void SetUp() override {
+        if (run(kSource + "/tests/tools/run_rs274.sh --setup") == kUnavailable) {
+            GTEST_SKIP() << "LinuxCNC's interpreter is unavailable; see tests/tools/run_rs274.sh";
+        }
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("meshwind-oracle-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+
+    void TearDown() override {
+        if (!folder_.empty()) {
+            std::filesystem::remove_all(folder_);
+        }
+    }
+
+    // Writes program and table, compares ours and theirs.
+    void check(const std::string& machine_file, const BlockList& blocks) {
+        const Machine machine = read_machine(machine_file);
+        const LinuxCnc dialect;
+        const BlockList prepared = dialect.prepare(blocks);
+        const std::string text =
+            dialect.write(machine, prepared, {.version = "test", .mandrel = "synthetic (no file)"});
+        EXPECT_EQ(dialect.read(text, "program.ngc", machine).nano, prepared.nano);
+        save(folder_ / "program.ngc", text);
+        save(folder_ / "motion.csv", motion_csv(machine, prepared));
+        const int code =
+            run(kSource + "/tests/tools/check_program.py " + (folder_ / "program.ngc").string() +
+                " " + (folder_ / "motion.csv").string() + " " + machine_file);
+        if (code == kUnavailable) {
+            GTEST_SKIP() << "LinuxCNC's interpreter is unavailable";
+        }
+        EXPECT_EQ(code, 0);
+    }
+
+    static BlockList plan(const std::string& machine_file, const EyePath& path) {
+        const Machine machine = read_machine(machine_file);
+        const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
+        EXPECT_TRUE(joints.violations.empty());
+        return make_blocks(machine, path, joints, time_path(machine, path, joints));
+    }
+
+    std::string six_axis_ = kSource + "/machines/six_axis.json";
+    std::string five_axis_ = kSource + "/data/conformance/machine/valid/five_axis_roll_only.json";
+    std::filesystem::path folder_;
+};
+
+TEST_F(LinuxCncOracle, HelixForwardAndReturn) {
+    const EyePath path = test::strokes(70.0, 200.0, 2.0, 600.0, 8);
+    check(six_axis_, plan(six_axis_, path));
+    check(five_axis_, plan(five_axis_, path));
+}
+
+TEST_F(LinuxCncOracle, BodyWithoutRotationalSymmetry) {
+    check(six_axis_, plan(six_axis_, test::elliptic_helix(5000)));
+}
+
+TEST_F(LinuxCncOracle, HundredThousandBlocks) {
+    check(six_axis_, plan(six_axis_, test::helix(70.0, rad_from_deg(89.0), 200.0, 1.0, 100'001)));
+}
+
+TEST_F(LinuxCncOracle, LongTurnBesideATinyLinearMove) {
+    BlockList list = plan(six_axis_, test::helix(70.0, rad_from_deg(45.0), 200.0, 5.0, 1));
+    std::vector<std::int64_t> row(list.row(0).begin(), list.row(0).end());
+    for (int i = 0; i < 20; ++i) {
+        row[0] += 360 * kNanoPerUnit;
+        row[3] += 1'000'000 * (i % 4);
+        list.blocks.push_back({.duration_s = 0.7 + i, .piece = 0, .point = i + 1});
+        list.nano.insert(list.nano.end(), row.begin(), row.end());
+    }
+    check(six_axis_, list);
+}
+
+// The comparison itself must be able to fail: each program differs from its table in one thing.
+TEST_F(LinuxCncOracle, ComparisonFindsWrongPrograms) {
+    const std::string start = "G21 G90\nG0 A0 B0 C0\nG0 X100 Y0 Z0\nG91 G93\n";
+    save(folder_ / "motion.csv",
+         "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,course,point\n"
+         "0,0.0,0,0,0,100,0,0,0,0,0,0,0\n1,1.0,360,0,0,100.001,0,0,0,0,0,0,1\n"
+         "2,2.0,360,1,0,100.001,0,0,0,0,0,0,2\n");
+    const auto verdict = [&](const std::string& moves) {
+        save(folder_ / "program.ngc", start + moves);
+        return run(kSource + "/tests/tools/check_program.py " + (folder_ / "program.ngc").string() +
+                   " " + (folder_ / "motion.csv").string() + " " + six_axis_);
+    };
+    const int faster = verdict("G1 X0.001 C360 F120\nG1 Z1 F60\nM2\n");
+    if (faster == kUnavailable) {
+        GTEST_SKIP() << "LinuxCNC's interpreter is unavailable";
+    }
+    EXPECT_EQ(faster, 1);                                          // twice as fast
+    EXPECT_EQ(verdict("G1 X0.001 C360 F60\nG1 Z1 F60\nM2\n"), 1);  // caught by the feed floor
+    EXPECT_EQ(verdict("G1 C360 F60\nG1 Z1 F60\nM2\n"), 1);         // X one step off
+    EXPECT_EQ(verdict("G1 X0.001 C360 F60\nM2\n"), 1);             // a block less
+    EXPECT_EQ(verdict("G1 X0.001 C360\nG1 Z1 F60\nM2\n"), 1);      // refused: no F
+    EXPECT_EQ(verdict("G1 X0.001 C360 F60\nG1 Z1 F60\n"), 1);      // cut off
+}
+
+}  // namespace
+}  // namespace meshwind

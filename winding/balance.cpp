@@ -1,0 +1,218 @@
+#include "winding/balance.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <deque>
+#include <limits>
+
+namespace meshwind {
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+bool can_wind(const Member& member, bool backward) {
+    return backward ? member.windable_backward : member.windable_forward;
+}
+
+class Balancer {
+public:
+    Balancer(std::span<const Member> members, std::span<const char> allowed, std::size_t rims,
+             const SelectOptions& options, Selection& selection)
+        : members_(members),
+          allowed_(allowed),
+          rims_(rims),
+          nodes_(2 * rims),
+          options_(options),
+          selection_(selection) {
+        for (const std::int32_t i : selection.chosen) {
+            laid_.push_back({i, !members[at(i)].windable_forward});
+        }
+    }
+
+    std::vector<LaidCourse> run() {
+        direct();
+        // Each chain mends two nodes; the guard is only against a library that could not.
+        for (std::size_t guard = 0; guard <= 2 * laid_.size() + nodes_; ++guard) {
+            if (!add_chain()) {
+                break;
+            }
+        }
+        return std::move(laid_);
+    }
+
+private:
+    [[nodiscard]] const RimCrossing& start(const LaidCourse& c) const {
+        return start_of(members_[at(c.member)], c.backward);
+    }
+    [[nodiscard]] const RimCrossing& end(const LaidCourse& c) const {
+        return end_of(members_[at(c.member)], c.backward);
+    }
+
+    // Reverses courses until departures and arrivals agree at every rim, as far as they can: each
+    // pass reverses a shortest chain of reversible courses from a rim with too many departures.
+    void direct() {
+        std::vector<int> excess(rims_, 0);
+        for (const LaidCourse& c : laid_) {
+            ++excess[at(start(c).rim)];
+            --excess[at(end(c).rim)];
+        }
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (std::size_t r = 0; r < rims_ && !changed; ++r) {
+                if (excess[r] > 0) {
+                    changed = reverse_chain(static_cast<std::int32_t>(r), excess,
+                                            excess[r] >= 2 ? -1 : -2);
+                }
+            }
+        }
+    }
+
+    // From `from` along reversible courses to the nearest rim whose excess is <= `limit`.
+    bool reverse_chain(std::int32_t from, std::vector<int>& excess, int limit) {
+        std::vector<std::size_t> came_by(rims_, kNone);
+        std::deque<std::int32_t> queue{from};
+        while (!queue.empty()) {
+            const std::int32_t rim = queue.front();
+            queue.pop_front();
+            if (excess[at(rim)] <= limit) {
+                for (std::int32_t r = rim; r != from;) {
+                    LaidCourse& c = laid_[came_by[at(r)]];
+                    r = start(c).rim;
+                    c.backward = !c.backward;
+                }
+                excess[at(from)] -= 2;
+                excess[at(rim)] += 2;
+                return true;
+            }
+            for (std::size_t c = 0; c < laid_.size(); ++c) {
+                const std::int32_t next = end(laid_[c]).rim;
+                if (start(laid_[c]).rim == rim && next != from && came_by[at(next)] == kNone &&
+                    can_wind(members_[at(laid_[c].member)], !laid_[c].backward)) {
+                    came_by[at(next)] = c;
+                    queue.push_back(next);
+                }
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] std::vector<int> surplus_arrivals() const {
+        std::vector<int> surplus(nodes_, 0);
+        for (const LaidCourse& c : laid_) {
+            ++surplus[arrival_node(end(c))];
+            --surplus[departure_node(start(c))];
+        }
+        return surplus;
+    }
+
+    [[nodiscard]] double cost(std::int32_t i) const {
+        const Member& member = members_[at(i)];
+        double waste = 0.0;
+        for (const std::int32_t sample : member.footprint) {
+            waste += std::max(0, selection_.layers[at(sample)] - options_.target_layers + 1);
+        }
+        // Overlap counts as a share of the member's own fibre.
+        const auto own = static_cast<double>(std::max<std::size_t>(1, member.footprint.size()));
+        return options_.turn_mm + member.length_mm * (1.0 + options_.overlap_weight * waste / own);
+    }
+
+    struct Way {
+        double cost = std::numeric_limits<double>::infinity();
+        LaidCourse course;        // direct course between the nodes
+        std::size_t via = kNone;  // or the first node of a chain
+    };
+
+    // Cheapest course from node to node, then chains (Floyd and Warshall's all shortest paths).
+    [[nodiscard]] std::vector<Way> cheapest_ways() const {
+        std::vector<Way> ways(nodes_ * nodes_);
+        for (std::int32_t i = 0; at(i) < members_.size(); ++i) {
+            if (allowed_[at(i)] == 0) {
+                continue;
+            }
+            const double value = cost(i);
+            for (const bool backward : {false, true}) {
+                const LaidCourse c{i, backward};
+                Way& way = ways[departure_node(start(c)) * nodes_ + arrival_node(end(c))];
+                if (can_wind(members_[at(i)], backward) && value < way.cost) {
+                    way = {value, c, kNone};
+                }
+            }
+        }
+        for (std::size_t k = 0; k < nodes_; ++k) {
+            for (std::size_t i = 0; i < nodes_; ++i) {
+                for (std::size_t j = 0; j < nodes_; ++j) {
+                    const double sum = ways[i * nodes_ + k].cost + ways[k * nodes_ + j].cost;
+                    if (sum < ways[i * nodes_ + j].cost) {
+                        ways[i * nodes_ + j] = {sum, {}, k};
+                    }
+                }
+            }
+        }
+        return ways;
+    }
+
+    void lay_way(const std::vector<Way>& ways, std::size_t from, std::size_t to) {
+        const Way& way = ways[from * nodes_ + to];
+        if (way.via != kNone) {
+            lay_way(ways, from, way.via);
+            lay_way(ways, way.via, to);
+            return;
+        }
+        laid_.push_back(way.course);
+        selection_.chosen.push_back(way.course.member);
+        for (const std::int32_t sample : members_[at(way.course.member)].footprint) {
+            ++selection_.layers[at(sample)];
+        }
+    }
+
+    // Adds the cheapest chain from a node where fibres arrive in vain to one where they are
+    // missing.
+    bool add_chain() {
+        const std::vector<int> surplus = surplus_arrivals();
+        int loose = 0;
+        for (const int s : surplus) {
+            loose += std::abs(s);
+        }
+        if (loose <= 2) {
+            return false;
+        }
+        const std::vector<Way> ways = cheapest_ways();
+        double least = std::numeric_limits<double>::infinity();
+        std::pair<std::size_t, std::size_t> best;
+        for (std::size_t i = 0; i < nodes_; ++i) {
+            for (std::size_t j = 0; j < nodes_; ++j) {
+                if (surplus[i] > 0 && surplus[j] < 0 && ways[i * nodes_ + j].cost < least) {
+                    least = ways[i * nodes_ + j].cost;
+                    best = {i, j};
+                }
+            }
+        }
+        if (least == std::numeric_limits<double>::infinity()) {
+            return false;
+        }
+        lay_way(ways, best.first, best.second);
+        return true;
+    }
+
+    std::span<const Member> members_;
+    std::span<const char> allowed_;
+    std::size_t rims_;
+    std::size_t nodes_;
+    const SelectOptions& options_;
+    Selection& selection_;
+    std::vector<LaidCourse> laid_;
+};
+
+}  // namespace
+
+std::vector<LaidCourse> balance_courses(std::span<const Member> members,
+                                        std::span<const char> allowed, std::size_t rims,
+                                        const SelectOptions& options, Selection& selection) {
+    return Balancer(members, allowed, rims, options, selection).run();
+}
+
+}  // namespace meshwind

@@ -1,0 +1,453 @@
+#include "winding/cover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Geometry>
+
+#include "core/parallel.h"
+#include "core/units.h"
+#include "winding/order.h"
+#include "winding/random.h"
+
+namespace meshwind {
+namespace {
+
+// Steering of the candidates as shares of the friction: geodesic, and three strengths to either
+// side. The strongest leaves room for the error of measuring slip on the mesh.
+constexpr std::array<double, 7> kSteering = {0.0, 0.31, -0.31, 0.62, -0.62, 0.92, -0.92};
+
+// Samples per band width: a gap of a quarter band is seen.
+constexpr double kSamplesPerBand = 4.0;
+
+// A candidate whose half is longer than this many bounding boxes circles without meeting a rim.
+constexpr double kMaxHalfLengthBoxes = 8.0;
+
+// Times that rejected courses are replaced by others before the plan does without.
+constexpr int kMaxReplacements = 12;
+
+// Distance of the stations of a plan: what the machine is told of the curve between them is below
+// its own following error.
+constexpr double kStation_mm = 4.0;
+
+// Streams of random numbers, so that one draw never depends on another.
+enum Stream : std::uint64_t { Sampling = 1, Seeds = 2, Angles = 3, Steerings = 4 };
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+// Keeps stations at least kStation_mm apart, both ends, and both sides of a feature edge.
+void thin_out(Piece& piece) {
+    std::vector<std::size_t> kept{0};
+    const std::size_t last = piece.path.size() - 1;
+    for (std::size_t i = 1; i <= last; ++i) {
+        const double s = piece.path[i].s_mm;
+        const bool crease =
+            s <= piece.path[i - 1].s_mm || (i < last && piece.path[i + 1].s_mm <= s);
+        const bool room = piece.path[last].s_mm - s >= kStation_mm;
+        if (i == last || crease || (room && s - piece.path[kept.back()].s_mm >= kStation_mm)) {
+            kept.push_back(i);
+        }
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+        piece.path[k] = piece.path[kept[k]];
+        piece.slip[k] = piece.slip[kept[k]];
+        piece.string.gap_mm[k] = piece.string.gap_mm[kept[k]];
+        piece.string.slope[k] = piece.string.slope[kept[k]];
+    }
+    piece.path.resize(kept.size());
+    piece.slip.resize(kept.size());
+    piece.string.gap_mm.resize(kept.size());
+    piece.string.slope.resize(kept.size());
+}
+
+enum class Verdict : char { Unknown, Accepted, Rejected };
+
+class CoverPlanner {
+public:
+    CoverPlanner(const Mandrel& mandrel, const RayQuery& obstacles, const CoverOptions& options)
+        : mandrel_(mandrel),
+          options_(options),
+          samples_(sample_surface(mandrel.surface, options.tow.width_mm / kSamplesPerBand,
+                                  stream(Sampling))),
+          footprints_(mandrel.surface, samples_, options.tow.width_mm),
+          rules_{mandrel,
+                 obstacles,
+                 footprints_,
+                 options.tow,
+                 options.turn,
+                 options.free_fibre,
+                 max_half_length_mm(mandrel.surface)} {
+        rules_.turn.friction = options.tow.friction;
+        rules_.turn.band_mm = options.tow.width_mm;
+        reached_.assign(samples_.size(), 0);
+        closest_miss_.assign(samples_.size(), Refusal::None);
+        plan_.planner = "cover";
+    }
+
+    Plan run() {
+        if (mandrel_.rims.empty()) {
+            plan_.failure =
+                "the mandrel has no rim: courses have nowhere to turn back (a closed body needs a "
+                "polar opening or an open end)";
+            return std::move(plan_);
+        }
+        grow_library();
+        if (members_.empty()) {
+            plan_.failure = "no admissible course: " + commonest_refusal();
+            describe_uncovered();
+            return std::move(plan_);
+        }
+        choose();
+        if (selection_.chosen.empty()) {
+            plan_.failure = "every course was refused by the machine or by its measured slip";
+            describe_uncovered();
+            return std::move(plan_);
+        }
+        lay_out();
+        measure();
+        return std::move(plan_);
+    }
+
+private:
+    static double max_half_length_mm(const Surface& surface) {
+        Eigen::AlignedBox3d box;
+        for (const Eigen::Vector3d& p : surface.position_mm) {
+            box.extend(p);
+        }
+        return kMaxHalfLengthBoxes * box.diagonal().norm();
+    }
+
+    [[nodiscard]] std::uint64_t stream(Stream which) const { return options_.seed * 16 + which; }
+
+    void tell(const char* step, double share) const {
+        if (options_.progress) {
+            options_.progress(step, share);
+        }
+    }
+
+    // A candidate through a given sample; `draw` numbers the random draws of the whole run.
+    Candidate candidate_at(std::int32_t sample, std::uint64_t draw) const {
+        const auto pick = random_bits(stream(Steerings), draw) % kSteering.size();
+        return {samples_.at[at(sample)], kPi * random_unit(stream(Angles), draw),
+                kSteering[pick] * options_.tow.friction};
+    }
+
+    void try_candidates(const std::vector<std::int32_t>& seeds) {
+        std::vector<Candidate> candidates;
+        candidates.reserve(seeds.size());
+        for (const std::int32_t sample : seeds) {
+            candidates.push_back(candidate_at(sample, draws_++));
+        }
+        LibraryPart part = build_library(rules_, candidates);
+        for (std::size_t i = 0; i < seeds.size(); ++i) {
+            closest_miss_[at(seeds[i])] = std::max(closest_miss_[at(seeds[i])], part.outcome[i]);
+        }
+        plan_.effort.candidates += static_cast<std::int64_t>(candidates.size());
+        for (const Refusal refusal : part.outcome) {
+            ++plan_.effort.refusals[static_cast<std::size_t>(refusal)];
+        }
+        for (Member& member : part.members) {
+            for (const std::int32_t sample : member.footprint) {
+                reached_[at(sample)] = 1;
+            }
+            members_.push_back(std::move(member));
+        }
+    }
+
+    void grow_library() {
+        std::vector<std::int32_t> seeds;
+        for (int i = 0; i < options_.candidates; ++i) {
+            seeds.push_back(static_cast<std::int32_t>(
+                random_bits(stream(Seeds), static_cast<std::uint64_t>(i)) % samples_.size()));
+        }
+        tell("library", 0.0);
+        try_candidates(seeds);
+        for (int round = 0; round < options_.rounds; ++round) {
+            tell("library", (round + 1.0) / (options_.rounds + 1.0));
+            const std::vector<std::int32_t> missed = unreached();
+            if (missed.empty()) {
+                break;
+            }
+            seeds.clear();
+            for (int i = 0; i < options_.aimed_candidates; ++i) {
+                const auto draw = static_cast<std::uint64_t>(i) << 8U;
+                seeds.push_back(missed[random_bits(stream(Seeds),
+                                                   draw + 1 + static_cast<std::uint64_t>(round)) %
+                                       missed.size()]);
+            }
+            try_candidates(seeds);
+        }
+        tell("library", 1.0);
+    }
+
+    [[nodiscard]] std::vector<std::int32_t> unreached() const {
+        std::vector<std::int32_t> missed;
+        for (std::size_t i = 0; i < reached_.size(); ++i) {
+            if (reached_[i] == 0) {
+                missed.push_back(static_cast<std::int32_t>(i));
+            }
+        }
+        return missed;
+    }
+
+    [[nodiscard]] std::string commonest_refusal() const {
+        const auto& refusals = plan_.effort.refusals;
+        const auto most = std::max_element(refusals.begin() + 1, refusals.end());
+        return std::to_string(*most) + " of " + std::to_string(plan_.effort.candidates) +
+               " candidates: " + name_of(static_cast<Refusal>(most - refusals.begin()));
+    }
+
+    // The finished course of a member, wound in one direction, with its measured slip.
+    [[nodiscard]] Piece course_of(const Member& member, bool backward) const {
+        Piece piece;
+        piece.kind = PieceKind::Course;
+        piece.path = trace_both_ways(rules_, member.candidate);
+        if (backward) {
+            piece.path = reversed(piece.path);
+        }
+        piece.string = taut_string(piece.path);
+        SlipMeasure slip = measure_slip(mandrel_.surface, piece.path, piece.string,
+                                        {.friction = options_.tow.friction});
+        piece.slip = std::move(slip.slip);
+        piece.worst_slip = slip.worst;
+        piece.start_rim = start_of(member, backward).rim;
+        piece.end_rim = end_of(member, backward).rim;
+        return piece;
+    }
+
+    // Checks the slip of a member as measured and asks the machine; direction by direction.
+    Verdict verify(Member& member) const {
+        for (const bool backward : {false, true}) {
+            bool& windable = backward ? member.windable_backward : member.windable_forward;
+            if (!windable) {
+                continue;
+            }
+            Piece piece = course_of(member, backward);
+            thin_out(piece);
+            if (piece.worst_slip > options_.tow.friction) {
+                return Verdict::Rejected;
+            }
+            windable = !options_.accept || options_.accept(piece);
+        }
+        return member.windable_forward || member.windable_backward ? Verdict::Accepted
+                                                                   : Verdict::Rejected;
+    }
+
+    // Verifies what is chosen and not yet known; false when any of it was rejected.
+    bool verify_chosen() {
+        std::vector<std::int32_t> unknown;
+        for (const std::int32_t i : selection_.chosen) {
+            if (verdict_[at(i)] == Verdict::Unknown) {
+                unknown.push_back(i);
+                verdict_[at(i)] = Verdict::Accepted;  // listed once, even where laid twice
+            }
+        }
+        parallel_for(unknown.size(), 1, [&](std::size_t begin, std::size_t) {
+            const std::int32_t i = unknown[begin];
+            verdict_[at(i)] = verify(members_[at(i)]);
+        });
+        bool all = true;
+        for (const std::int32_t i : unknown) {
+            if (verdict_[at(i)] == Verdict::Rejected) {
+                all = false;
+                ++plan_.effort.rejected_courses;
+            }
+        }
+        return all;
+    }
+
+    void choose() {
+        verdict_.assign(members_.size(), Verdict::Unknown);
+        std::vector<char> allowed(members_.size(), 1);
+        for (int round = 0; round <= kMaxReplacements; ++round) {
+            tell("choose", static_cast<double>(round) / kMaxReplacements);
+            for (std::size_t i = 0; i < members_.size(); ++i) {
+                const bool known_only = round == kMaxReplacements;
+                allowed[i] = static_cast<char>(verdict_[i] == Verdict::Accepted ||
+                                               (verdict_[i] == Verdict::Unknown && !known_only));
+            }
+            selection_ = select_courses(members_, allowed, samples_.size(), options_.select);
+            laid_ = balance_courses(members_, allowed, mandrel_.rims.size(), options_.select,
+                                    selection_);
+            if (verify_chosen()) {
+                return;
+            }
+        }
+    }
+
+    void lay_out() {
+        const std::vector<OrderedCourse> order =
+            order_courses(mandrel_.rims, members_, laid_, rules_.turn);
+        bool fresh = true;
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const auto [member, backward] = order[i].course;
+            Piece piece = course_of(members_[at(member)], backward);
+            thin_out(piece);
+            piece.starts_fibre = fresh;
+            plan_.fibres += fresh ? 1 : 0;
+            add_piece(std::move(piece));
+            fresh = order[i].cut_after;
+            if (!fresh) {
+                const LaidCourse& next = order[i + 1].course;
+                add_piece(turn_between(end_of(members_[at(member)], backward),
+                                       start_of(members_[at(next.member)], next.backward)));
+            }
+        }
+        plan_.courses = static_cast<int>(order.size());
+    }
+
+    [[nodiscard]] Piece turn_between(const RimCrossing& from, const RimCrossing& to) const {
+        Turn turn = make_turn(mandrel_.rims[at(from.rim)], from, to, rules_.turn, kStation_mm);
+        Piece piece;
+        piece.kind = PieceKind::Transition;
+        piece.string.gap_mm.assign(turn.path.size(), 0.0);
+        piece.string.slope.assign(turn.path.size(), 0.0);
+        for (const PathPoint& point : turn.path) {
+            piece.slip.push_back(std::abs(point.kg_per_mm) / point.kn_per_mm);
+        }
+        piece.worst_slip = turn.slip;
+        piece.path = std::move(turn.path);
+        piece.start_rim = from.rim;
+        piece.end_rim = to.rim;
+        return piece;
+    }
+
+    void add_piece(Piece piece) {
+        plan_.fibre_length_mm += piece.path.back().s_mm;
+        plan_.worst_slip = std::max(plan_.worst_slip, piece.worst_slip);
+        plan_.worst_bridge_mm = std::max(plan_.worst_bridge_mm, piece.string.worst_gap_mm);
+        plan_.pieces.push_back(std::move(piece));
+    }
+
+    void measure() {
+        Coverage& coverage = plan_.coverage;
+        double sum = 0.0;
+        double squares = 0.0;
+        for (const std::int32_t layers : selection_.layers) {
+            sum += layers;
+            squares += static_cast<double>(layers) * layers;
+            coverage.max_layers = std::max(coverage.max_layers, static_cast<int>(layers));
+        }
+        const auto n = static_cast<double>(samples_.size());
+        coverage.fraction =
+            static_cast<double>(std::count_if(selection_.layers.begin(), selection_.layers.end(),
+                                              [](std::int32_t l) { return l > 0; })) /
+            n;
+        coverage.reachable =
+            static_cast<double>(std::count(reached_.begin(), reached_.end(), 1)) / n;
+        coverage.mean_layers = sum / n;
+        coverage.cv =
+            std::sqrt(std::max(0.0, squares / n - coverage.mean_layers * coverage.mean_layers)) /
+            coverage.mean_layers;
+        describe_uncovered();
+        describe_faces();
+    }
+
+    [[nodiscard]] std::string reason_of(std::size_t sample) const {
+        if (reached_[sample] != 0) {
+            return "a course for it would lay more fibre over covered wall than it gains";
+        }
+        if (closest_miss_[sample] == Refusal::None) {
+            return "no candidate was tried here";
+        }
+        return name_of(closest_miss_[sample]);
+    }
+
+    void describe_uncovered() {
+        selection_.layers.resize(samples_.size(), 0);
+        std::map<std::pair<std::int32_t, std::string>, double> area;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            if (selection_.layers[i] == 0) {
+                const std::int32_t region = mandrel_.surface.region[at(samples_.at[i].face)];
+                area[{region, reason_of(i)}] += samples_.area_mm2;
+            }
+        }
+        for (const auto& [key, mm2] : area) {
+            plan_.uncovered.push_back({key.first, mm2, key.second});
+        }
+    }
+
+    // Mean layers and fibre angle per face; a face between samples takes its neighbours' mean.
+    void describe_faces() {
+        const Surface& surface = mandrel_.surface;
+        std::vector<double> count(surface.face.size(), 0.0);
+        plan_.face_layers.assign(surface.face.size(), 0.0);
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const std::size_t face = at(samples_.at[i].face);
+            count[face] += 1.0;
+            plan_.face_layers[face] += selection_.layers[i];
+        }
+        for (std::size_t f = 0; f < count.size(); ++f) {
+            if (count[f] > 0.0) {
+                plan_.face_layers[f] /= count[f];
+            }
+        }
+        fill_from_neighbours(count);
+        mean_angles();
+    }
+
+    void fill_from_neighbours(std::vector<double>& count) {
+        const Surface& surface = mandrel_.surface;
+        for (std::size_t f = 0; f < count.size(); ++f) {
+            if (count[f] > 0.0) {
+                continue;
+            }
+            double sum = 0.0;
+            double weight = 0.0;
+            for (const std::int32_t g : surface.neighbour[f]) {
+                if (g != kNoFace && count[at(g)] > 0.0) {
+                    sum += plan_.face_layers[at(g)];
+                    weight += 1.0;
+                }
+            }
+            plan_.face_layers[f] = weight > 0.0 ? sum / weight : 0.0;
+        }
+    }
+
+    void mean_angles() {
+        std::vector<double> length(mandrel_.surface.face.size(), 0.0);
+        plan_.face_angle_rad.assign(length.size(), 0.0);
+        for (const Piece& piece : plan_.pieces) {
+            if (piece.kind != PieceKind::Course) {
+                continue;
+            }
+            for (std::size_t i = 0; i + 1 < piece.path.size(); ++i) {
+                const std::size_t face = at(piece.path[i + 1].at.face);
+                const double ds = piece.path[i + 1].s_mm - piece.path[i].s_mm;
+                const double cosine = std::min(1.0, std::abs(piece.path[i].tangent.z()));
+                length[face] += ds;
+                plan_.face_angle_rad[face] += ds * std::acos(cosine);
+            }
+        }
+        for (std::size_t f = 0; f < length.size(); ++f) {
+            if (length[f] > 0.0) {
+                plan_.face_angle_rad[f] /= length[f];
+            }
+        }
+    }
+
+    const Mandrel& mandrel_;
+    const CoverOptions& options_;
+    CoverageSamples samples_;
+    FootprintFinder footprints_;
+    CourseRules rules_;
+    std::vector<Member> members_;
+    std::vector<Verdict> verdict_;
+    std::vector<char> reached_;
+    std::vector<Refusal> closest_miss_;  // per sample: the last check that a candidate there failed
+    Selection selection_;
+    std::vector<LaidCourse> laid_;
+    std::uint64_t draws_ = 0;
+    Plan plan_;
+};
+
+}  // namespace
+
+Plan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles, const CoverOptions& options) {
+    return CoverPlanner(mandrel, obstacles, options).run();
+}
+
+}  // namespace meshwind

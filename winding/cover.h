@@ -1,0 +1,34 @@
+/// The Cover planner: courses for a surface without an equation.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "winding/plan.h"
+#include "winding/select.h"
+
+namespace meshwind {
+
+struct CoverOptions {
+    Tow tow;
+    TurnRule turn;  ///< friction and band are taken from `tow`
+    FreeFibreRule free_fibre;
+    SelectOptions select;
+    std::uint64_t seed = 1;
+    int candidates = 40000;        ///< tried over the whole surface
+    int rounds = 3;                ///< of further candidates aimed at what is not reached yet
+    int aimed_candidates = 12000;  ///< in each such round
+    /// Asked of every course before it enters the plan, in the direction it would be wound: what
+    /// the machine says. Must be pure and thread-safe.
+    std::function<bool(const Piece&)> accept;
+    std::function<void(const char* step, double share)> progress;
+};
+
+/// Samples the wall, builds a library of admissible courses, aims further candidates at what no
+/// course reaches, chooses, balances the rims, orders and joins by friction turns. \param obstacles
+/// everything that the free fibre must not hit: mandrel with its extensions \return a plan; when
+/// nothing is admissible its `failure` says why and `pieces` is empty
+[[nodiscard]] Plan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles,
+                              const CoverOptions& options);
+
+}  // namespace meshwind

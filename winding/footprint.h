@@ -1,0 +1,37 @@
+/// Which coverage samples the band of a path covers.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geodesic/surface_path.h"
+#include "winding/samples.h"
+
+namespace meshwind {
+
+/// Finds footprints; immutable once built, so one serves all threads.
+class FootprintFinder {
+public:
+    /// \param band_mm width of the band laid down, > 0
+    FootprintFinder(const Surface& surface, const CoverageSamples& samples, double band_mm);
+
+    /// Scratch for one thread.
+    struct Scratch {
+        std::vector<double> last_seen_mm;
+    };
+    [[nodiscard]] Scratch make_scratch() const;
+
+    /// Samples within half a band of `path`, measured across it in the tangent plane, in order of
+    /// first contact. A sample that the path passes again, more than two bands later, is listed
+    /// again.
+    [[nodiscard]] std::vector<std::int32_t> footprint(const SurfacePath& path,
+                                                      Scratch& scratch) const;
+
+private:
+    const CoverageSamples& samples_;
+    double half_band_mm_;
+    std::vector<std::int32_t> begin_;  // per face: rows into near_
+    std::vector<std::int32_t> near_;   // samples within half a band of the face
+};
+
+}  // namespace meshwind

@@ -1,0 +1,152 @@
+#include "winding/library.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "core/parallel.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Distance of the stations at which the free fibre is tried: shorter than any head that could slip
+// by.
+constexpr double kWindableStep_mm = 8.0;
+
+constexpr std::size_t kCandidateChunk = 64;
+
+Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
+    const Vector3d n = smooth_normal(surface, candidate.seed);
+    const Vector3d x = n.unitOrthogonal();
+    return std::cos(candidate.angle_rad) * x + std::sin(candidate.angle_rad) * n.cross(x);
+}
+
+// Half a candidate: from its seed ahead, or behind (`side` -1) where the same curve is steered to
+// the other side of travel.
+TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, double side) {
+    const Surface& surface = rules.mandrel.surface;
+    return trace(surface, candidate.seed, side * direction_of(surface, candidate),
+                 {side * candidate.slip_ratio, 0.0}, {.max_length_mm = rules.max_half_length_mm});
+}
+
+SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {
+    SurfacePath path = reversed(behind);
+    const double offset = path.back().s_mm;
+    path.pop_back();
+    path.reserve(path.size() + ahead.size());
+    for (PathPoint point : ahead) {
+        point.s_mm += offset;
+        path.push_back(point);
+    }
+    return path;
+}
+
+bool windable(const CourseRules& rules, const SurfacePath& path, const TautString& string,
+              double travel) {
+    double next = 0.0;
+    const auto clear_at = [&](std::size_t i) {
+        if (path[i].s_mm < next && i + 1 < path.size()) {
+            return true;
+        }
+        next = path[i].s_mm + kWindableStep_mm;
+        const StringPoint fibre = string_point(path[i], string.gap_mm[i], string.slope[i]);
+        return !free_fibre_window(rules.obstacles, fibre.position_mm, path[i].normal,
+                                  travel * fibre.tangent, rules.free_fibre)
+                    .empty();
+    };
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (!clear_at(i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+const char* name_of(Refusal refusal) {
+    switch (refusal) {
+        case Refusal::None:
+            return "admissible";
+        case Refusal::NoRim:
+            return "reaches no rim";
+        case Refusal::NotTurnable:
+            return "too steep at a rim to be turned by friction on the extension";
+        case Refusal::Bridging:
+            return "bridges more than the tolerance";
+        case Refusal::NotWindable:
+            return "free fibre or eye would hit the mandrel both ways";
+    }
+    return "";
+}
+
+StringPoint string_point(const PathPoint& point, double gap_mm, double slope) {
+    return {point.position_mm + gap_mm * point.normal,
+            (point.tangent + slope * point.normal).normalized()};
+}
+
+SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate) {
+    return join_halves(trace_half(rules, candidate, -1.0).path,
+                       trace_half(rules, candidate, 1.0).path);
+}
+
+Refusal judge(const CourseRules& rules, const Candidate& candidate,
+              FootprintFinder::Scratch& scratch, Member& member) {
+    Member course;
+    course.candidate = candidate;
+    std::array<TraceResult, 2> half;
+    for (std::size_t e = 0; e < 2; ++e) {  // judged one by one: most candidates fail at one end
+        half[e] = trace_half(rules, candidate, e == 0 ? -1.0 : 1.0);
+        if (half[e].stop != TraceStop::Rim || half[e].rim < 0) {
+            return Refusal::NoRim;
+        }
+        const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(half[e].rim)];
+        const PathPoint& last = half[e].path.back();
+        course.end[e] = crossing_at(rim, last.position_mm, last.tangent);
+        if (!can_turn(rim, course.end[e], rules.turn)) {
+            return Refusal::NotTurnable;
+        }
+    }
+    const SurfacePath path = join_halves(half[0].path, half[1].path);
+    course.length_mm = path.back().s_mm;
+    const TautString string = taut_string(path);
+    if (string.worst_gap_mm > rules.tow.bridging_tolerance_mm) {
+        return Refusal::Bridging;
+    }
+    course.windable_forward = windable(rules, path, string, 1.0);
+    course.windable_backward = windable(rules, path, string, -1.0);
+    if (!course.windable_forward && !course.windable_backward) {
+        return Refusal::NotWindable;
+    }
+    course.footprint = rules.footprints.footprint(path, scratch);
+    member = std::move(course);
+    return Refusal::None;
+}
+
+LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> candidates) {
+    const std::size_t chunks = (candidates.size() + kCandidateChunk - 1) / kCandidateChunk;
+    std::vector<LibraryPart> parts(chunks);
+    parallel_for(candidates.size(), kCandidateChunk, [&](std::size_t begin, std::size_t end) {
+        LibraryPart& part = parts[begin / kCandidateChunk];
+        FootprintFinder::Scratch scratch = rules.footprints.make_scratch();
+        for (std::size_t i = begin; i < end; ++i) {
+            Member member;
+            const Refusal refusal = judge(rules, candidates[i], scratch, member);
+            part.outcome.push_back(refusal);
+            if (refusal == Refusal::None) {
+                part.members.push_back(std::move(member));
+            }
+        }
+    });
+    LibraryPart library;
+    for (LibraryPart& part : parts) {
+        std::move(part.members.begin(), part.members.end(), std::back_inserter(library.members));
+        library.outcome.insert(library.outcome.end(), part.outcome.begin(), part.outcome.end());
+    }
+    return library;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,68 @@
+/// What is wound: courses and the turns that join them, in order, with what they cover.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geodesic/measure.h"
+#include "winding/library.h"
+
+namespace meshwind {
+
+enum class PieceKind { Course, Transition };
+
+/// A stretch of the fibre in winding order. Stations are in the direction of travel, mandrel frame.
+struct Piece {
+    PieceKind kind = PieceKind::Course;
+    SurfacePath path;
+    TautString string;  ///< where the fibre is over the path
+    std::vector<double>
+        slip;  ///< per station, |kg / kn|: measured on courses, exact on transitions
+    double worst_slip = 0.0;
+    std::int32_t start_rim = -1;
+    std::int32_t end_rim = -1;
+    bool starts_fibre = false;  ///< tied on before this piece
+};
+
+/// How the wall is covered, measured on the coverage samples.
+struct Coverage {
+    double fraction = 0.0;   ///< share of the wall under at least one layer
+    double reachable = 0.0;  ///< share that an admissible course of the library passes
+    double mean_layers = 0.0;
+    int max_layers = 0;
+    double cv = 0.0;  ///< standard deviation of the layers over their mean
+};
+
+/// Bare wall with the rule that keeps it bare.
+struct Uncovered {
+    std::int32_t region = -1;
+    double area_mm2 = 0.0;
+    std::string reason;
+};
+
+/// What planning took; for reports.
+struct PlanEffort {
+    std::int64_t candidates = 0;
+    std::array<std::int64_t, kRefusals> refusals{};
+    int rejected_courses = 0;  ///< chosen, then refused by the measured slip or by the machine
+};
+
+struct Plan {
+    std::string planner;  ///< "cover"
+    std::vector<Piece> pieces;
+    int courses = 0;
+    int fibres = 0;  ///< continuous fibres: 1 unless the courses' ends left no other way
+    double fibre_length_mm = 0.0;
+    double worst_slip = 0.0;
+    double worst_bridge_mm = 0.0;
+    Coverage coverage;
+    std::vector<Uncovered> uncovered;
+    std::vector<double> face_layers;     ///< per face of the surface: mean layers
+    std::vector<double> face_angle_rad;  ///< mean angle between fibre and spindle axis, 0..pi/2
+    PlanEffort effort;
+    std::string failure;  ///< empty, or in words why nothing can be wound
+};
+
+}  // namespace meshwind

@@ -1,0 +1,180 @@
+#include "winding/turn.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Steeper than this the run onto the extension circles the mandrel more than twice before it is
+// hoop.
+constexpr double kMaxTurnAngle_rad = 84.0 * kPi / 180.0;
+
+// Share of the friction that a turn uses when the extension is long enough: less would waste fibre,
+// more leaves nothing for a wet or worn surface.
+constexpr double kEasyShare = 0.85;
+
+// Steered with just this share where the extension is short: the rest is the margin of measurement.
+constexpr double kFullShare = 0.98;
+
+double usable_run_mm(const TurnRule& rule) {
+    return rule.extension_mm - 0.5 * rule.band_mm;
+}
+
+// Run that both ends of a turn share: each is steered with the slip that makes it just hoop there.
+double common_run_mm(const Rim& rim, const RimCrossing& a, const RimCrossing& b,
+                     const TurnRule& rule) {
+    const double steepest = std::min(a.angle_rad, b.angle_rad);
+    const double easy = turn_run_mm(rim.radius_mm, steepest, kEasyShare * rule.friction);
+    return std::min(easy, usable_run_mm(rule));
+}
+
+// Angle wound while turning from beta to hoop: (1 / slip) ln cot(beta / 2).
+double turn_angle_rad(double angle_rad, double slip) {
+    return -std::log(std::tan(0.5 * angle_rad)) / slip;
+}
+
+double slip_for(const Rim& rim, double angle_rad, double run_mm) {
+    return rim.radius_mm * (1.0 / std::sin(angle_rad) - 1.0) / run_mm;
+}
+
+double positive_angle(double rad) {
+    const double turn = 2.0 * kPi;
+    const double rest = std::fmod(rad, turn);
+    return rest < 0.0 ? rest + turn : rest;
+}
+
+class TurnPath {
+public:
+    TurnPath(const Rim& rim, int sense, double step_mm)
+        : rim_(rim),
+          sense_(sense),
+          step_mm_(step_mm),
+          x_(rim_reference(rim)),
+          y_(rim.axis.cross(x_)) {}
+
+    // A station at height z over the rim; beta in (0, pi), over pi / 2 on the way back.
+    void add(double azimuth, double z, double beta, double kg_over_kn) {
+        const Vector3d radial = std::cos(azimuth) * x_ + std::sin(azimuth) * y_;
+        const Vector3d around = sense_ * rim_.axis.cross(radial);
+        PathPoint point;
+        point.position_mm = rim_.centre_mm + z * rim_.axis + rim_.radius_mm * radial;
+        point.normal = radial;
+        point.tangent = std::sin(beta) * around + std::cos(beta) * rim_.axis;
+        point.kn_per_mm = std::sin(beta) * std::sin(beta) / rim_.radius_mm;
+        point.kg_per_mm = kg_over_kn * point.kn_per_mm;
+        point.s_mm = s_mm_;
+        path_.push_back(point);
+    }
+
+    // From beta0 to hoop (or from hoop to beta0 when `back`): z(beta) and azimuth(beta) in closed
+    // form.
+    void steer(double azimuth0, double beta0, double slip, bool back) {
+        const double length = rim_.radius_mm / (slip * std::tan(beta0));
+        const int steps = std::max(2, static_cast<int>(std::ceil(length / step_mm_)));
+        // kg turns the tangent away from the axis: to the right for a counter-clockwise fibre.
+        const double kg_over_kn = -sense_ * slip;
+        const double s0 = s_mm_;
+        for (int i = 0; i <= steps; ++i) {
+            if (i == 0 && !path_.empty()) {
+                continue;
+            }
+            const double share = static_cast<double>(back ? steps - i : i) / steps;
+            // Fibre length from beta0: (R / slip)(cot beta0 - cot beta).
+            const double beta = std::atan2(1.0, (1.0 - share) / std::tan(beta0));
+            const double z =
+                (rim_.radius_mm / slip) * (1.0 / std::sin(beta0) - 1.0 / std::sin(beta));
+            const double angle = turn_angle_rad(beta0, slip) - turn_angle_rad(beta, slip);
+            s_mm_ = s0 + length * (back ? 1.0 - share : share);
+            add(azimuth0 + sense_ * (back ? -angle : angle), z, back ? kPi - beta : beta,
+                kg_over_kn);
+        }
+    }
+
+    void dwell(double azimuth0, double z, double angle) {
+        const double length = angle * rim_.radius_mm;
+        const int steps = static_cast<int>(std::ceil(length / step_mm_));
+        const double s0 = s_mm_;
+        for (int i = 1; i <= steps; ++i) {
+            const double share = static_cast<double>(i) / steps;
+            s_mm_ = s0 + share * length;
+            add(azimuth0 + sense_ * share * angle, z, 0.5 * kPi, 0.0);
+        }
+    }
+
+    SurfacePath take() { return std::move(path_); }
+
+private:
+    const Rim& rim_;
+    double sense_;
+    double step_mm_;
+    Vector3d x_;
+    Vector3d y_;
+    SurfacePath path_;
+    double s_mm_ = 0.0;
+};
+
+}  // namespace
+
+Vector3d rim_reference(const Rim& rim) {
+    return rim.axis.unitOrthogonal();
+}
+
+RimCrossing crossing_at(const Rim& rim, const Vector3d& position_mm, const Vector3d& outward) {
+    const Vector3d x = rim_reference(rim);
+    const Vector3d y = rim.axis.cross(x);
+    const Vector3d d = position_mm - rim.centre_mm;
+    RimCrossing crossing;
+    crossing.rim = rim.id;
+    crossing.azimuth_rad = std::atan2(d.dot(y), d.dot(x));
+    const Vector3d around = rim.axis.cross(d).normalized();
+    const double turning = outward.dot(around);
+    crossing.angle_rad = std::atan2(std::abs(turning), outward.dot(rim.axis));
+    crossing.sense = turning >= 0.0 ? 1 : -1;
+    return crossing;
+}
+
+double turn_run_mm(double radius_mm, double angle_rad, double slip) {
+    return radius_mm / slip * (1.0 / std::sin(angle_rad) - 1.0);
+}
+
+bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule) {
+    return crossing.angle_rad > 0.0 && crossing.angle_rad <= kMaxTurnAngle_rad &&
+           turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) <=
+               usable_run_mm(rule);
+}
+
+double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+                 const TurnRule& rule) {
+    const double run = common_run_mm(rim, from, to, rule);
+    const double steering = turn_angle_rad(from.angle_rad, slip_for(rim, from.angle_rad, run)) +
+                            turn_angle_rad(to.angle_rad, slip_for(rim, to.angle_rad, run));
+    return positive_angle(from.sense * (to.azimuth_rad - from.azimuth_rad) - steering);
+}
+
+Turn make_turn(const Rim& rim, const RimCrossing& from, const RimCrossing& to, const TurnRule& rule,
+               double step_mm) {
+    Turn turn;
+    turn.run_mm = common_run_mm(rim, from, to, rule);
+    turn.dwell_rad = dwell_rad(rim, from, to, rule);
+    const double slip_in = slip_for(rim, from.angle_rad, turn.run_mm);
+    const double slip_out = slip_for(rim, to.angle_rad, turn.run_mm);
+    turn.slip = std::max(slip_in, slip_out);
+    TurnPath path(rim, from.sense, step_mm);
+    path.steer(from.azimuth_rad, from.angle_rad, slip_in, false);
+    const double hoop = from.azimuth_rad + from.sense * turn_angle_rad(from.angle_rad, slip_in);
+    path.dwell(hoop, turn.run_mm, turn.dwell_rad);
+    const double end =
+        hoop + from.sense * (turn.dwell_rad + turn_angle_rad(to.angle_rad, slip_out));
+    path.steer(end, to.angle_rad, slip_out, true);
+    turn.path = path.take();
+    return turn;
+}
+
+}  // namespace meshwind

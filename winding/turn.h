@@ -1,0 +1,61 @@
+/// Friction turns: how a fibre that leaves over a rim comes back, on the mandrel's cylindrical
+/// extension.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geodesic/surface_path.h"
+#include "mesh/mandrel.h"
+
+namespace meshwind {
+
+/// How a course meets a rim, seen with the rim's axis pointing away from the mandrel.
+struct RimCrossing {
+    std::int32_t rim = -1;
+    double azimuth_rad = 0.0;  ///< about the axis, counter-clockwise, from `rim_reference`
+    double angle_rad = 0.0;    ///< beta between fibre and axis, 0 = axial, pi/2 = hoop
+    int sense = 0;             ///< +1 when the fibre leaves the mandrel counter-clockwise, else -1
+};
+
+struct TurnRule {
+    double friction = 0.2;        ///< |slip ratio| that holds
+    double extension_mm = 100.0;  ///< axial length of the extension, > 0
+    double band_mm = 6.0;         ///< the band must stay on the extension with its full width
+};
+
+/// Unit vector perpendicular to the rim's axis from which azimuths count.
+[[nodiscard]] Eigen::Vector3d rim_reference(const Rim& rim);
+
+/// \param position_mm on the rim \param outward unit tangent of the course, leaving the mandrel
+[[nodiscard]] RimCrossing crossing_at(const Rim& rim, const Eigen::Vector3d& position_mm,
+                                      const Eigen::Vector3d& outward);
+
+/// Axial run in mm that a turn from `angle_rad` to the hoop direction takes with constant slip
+/// ratio on a cylinder: (R / slip)(1 / sin(beta) - 1). Source: geometry.md's closed form, see
+/// docs/winding.md.
+[[nodiscard]] double turn_run_mm(double radius_mm, double angle_rad, double slip);
+
+/// True when the fibre can be turned by friction within the extension.
+[[nodiscard]] bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule);
+
+/// A turn from one course's end to another's start at the same rim.
+struct Turn {
+    SurfacePath path;        ///< on the extension; faces are kNoFace; slip ratios are kg / kn
+    double slip = 0.0;       ///< largest |slip ratio| in it
+    double run_mm = 0.0;     ///< how far onto the extension the fibre goes
+    double dwell_rad = 0.0;  ///< angle wound along the hoop
+};
+
+/// Dwell angle in [0, 2 pi) between the ends of two courses; independent of the direction of
+/// travel. \pre the crossings have opposite senses and both can turn
+[[nodiscard]] double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+                               const TurnRule& rule);
+
+/// The turn itself: steered with constant slip to hoop, dwelling, and steered back.
+/// \param from crossing of the course that ends \param to of the course that begins
+/// \param step_mm largest distance of stations \pre as for dwell_rad
+[[nodiscard]] Turn make_turn(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+                             const TurnRule& rule, double step_mm);
+
+}  // namespace meshwind
