@@ -68,8 +68,10 @@ bool mend_cap(OpenTriMesh& mesh, const Shape& shape, OpenMesh::FaceHandle face) 
 
 int remove_degenerate_faces(TriangleSoup& soup, double height_mm) {
     OpenTriMesh mesh = open_mesh_of(soup);
-    const auto before = static_cast<int>(mesh.n_faces());
     std::vector<OpenMesh::FaceHandle> suspects(mesh.faces_begin(), mesh.faces_end());
+    const auto degenerate = static_cast<int>(std::count_if(
+        suspects.begin(), suspects.end(),
+        [&](OpenMesh::FaceHandle face) { return shape_of(mesh, face).height_mm <= height_mm; }));
     bool changed = false;
     for (int round = 0; round < kRounds && !suspects.empty(); ++round) {
         std::vector<OpenMesh::FaceHandle> next;
@@ -104,7 +106,7 @@ int remove_degenerate_faces(TriangleSoup& soup, double height_mm) {
         return 0;
     }
     soup = soup_of(mesh);
-    return before - static_cast<int>(soup.faces.size());
+    return degenerate;
 }
 
 }  // namespace meshwind

@@ -17,6 +17,10 @@
 namespace meshwind {
 namespace {
 
+// Beyond these no part is real and single precision (Embree) would overflow or lose all digits.
+constexpr double kLargestCoordinate = 1e9;  // file units
+constexpr double kSmallestDiagonal = 1e-6;  // file units
+
 constexpr double kSmallestInMm = 10.0;  // a part shorter than this many units is taken for metres
 
 void check_options(const MandrelOptions& options, const std::string& name) {
@@ -48,6 +52,15 @@ void check_triangles(const TriangleSoup& soup, const std::string& name) {
                                      " has a coordinate that is no finite number, export again");
             }
         }
+    }
+    const bool far_out = std::any_of(
+        soup.points_mm.begin(), soup.points_mm.end(),
+        [](const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() > kLargestCoordinate; });
+    if (far_out || (!soup.faces.empty() && diagonal_mm(soup) < kSmallestDiagonal)) {
+        throw InputError("mesh.size_out_of_range", name,
+                         far_out ? "has coordinates beyond 1e9 units, the file is damaged: export "
+                                   "it again"
+                                 : "is smaller than 1e-6 units, export it in another unit");
     }
     if (soup.faces.empty()) {
         throw InputError("mesh.no_triangles", name,
@@ -164,6 +177,14 @@ void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
     if (open_shells > 1) {
         mandrel.remarks.push_back("the winding surface consists of " + std::to_string(open_shells) +
                                   " separate pieces; keep one with keep_regions");
+    }
+    constexpr double kRoundShare = 0.02;  // of its radius: a rim further off is worth a word
+    for (const Rim& rim : mandrel.rims) {
+        if (rim.circularity_mm > kRoundShare * rim.radius_mm) {
+            mandrel.remarks.push_back("rim " + std::to_string(rim.id) + " is no circle: up to " +
+                                      fixed(rim.circularity_mm, 2) + " mm off radius " +
+                                      fixed(rim.radius_mm, 2) + " mm");
+        }
     }
     if (mandrel.axis.rule == "principal") {
         mandrel.remarks.push_back(

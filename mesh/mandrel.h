@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -35,8 +35,8 @@ struct Rim {
     std::int32_t id = 0;
     Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, pointing away from the mandrel
-    double radius_mm = 0.0;                           ///< mean distance of the loop from the axis
-    double circularity_mm = 0.0;         ///< largest distance of a vertex from that circle
+    double radius_mm = 0.0;       ///< mean distance of the loop from the axis, notches left out
+    double circularity_mm = 0.0;  ///< largest distance of a vertex from that circle
     std::vector<std::int32_t> vertices;  ///< surface vertices in loop order
 };
 

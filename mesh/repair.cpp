@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -236,6 +237,52 @@ int split_fans(TriangleSoup& soup, const std::vector<Joint>& joints) {
     return splits;
 }
 
+// Two sheets may touch along an edge whose ends they share: then two pairs of faces still use the
+// same two vertices. Each pair gets a middle point of its own. Returns false when there was none to
+// part.
+bool part_doubled_edges(TriangleSoup& soup, const std::vector<Joint>& joints) {
+    std::vector<std::array<std::int32_t, 3>> partner(soup.faces.size(), {-1, -1, -1});
+    for (const auto& [a, b] : joints) {
+        partner[at(a.face)][at(a.edge)] = b.face;
+        partner[at(b.face)][at(b.edge)] = a.face;
+    }
+    const std::vector<EdgeUse> uses = edge_uses(soup.faces);
+    std::vector<char> touched(soup.faces.size(), 0);
+    bool found = false;
+    for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
+        while (last < uses.size() && uses[last].low == uses[first].low &&
+               uses[last].high == uses[first].high) {
+            ++last;
+        }
+        const std::span<const EdgeUse> group = std::span(uses).subspan(first, last - first);
+        // A face split a moment ago has to wait for the next round.
+        if (group.size() < 3 || std::any_of(group.begin(), group.end(), [&](const EdgeUse& use) {
+                return touched[at(use.face)] != 0;
+            })) {
+            continue;
+        }
+        found = true;
+        const Eigen::Vector3d middle =
+            0.5 * (soup.points_mm[at(group[0].low)] + soup.points_mm[at(group[0].high)]);
+        std::map<std::int32_t, std::int32_t> middle_of_pair;
+        for (const EdgeUse& use : group) {
+            const std::int32_t other = partner[at(use.face)][at(use.edge)];
+            const auto [entry, is_new] =
+                middle_of_pair.try_emplace(other < 0 ? use.face : std::min(use.face, other),
+                                           static_cast<std::int32_t>(soup.points_mm.size()));
+            if (is_new) {
+                soup.points_mm.push_back(middle);
+            }
+            std::array<std::int32_t, 3> rest = soup.faces[at(use.face)];
+            rest[at(use.edge)] = entry->second;
+            soup.faces[at(use.face)][at((use.edge + 1) % 3)] = entry->second;
+            soup.faces.push_back(rest);
+            touched[at(use.face)] = 1;
+        }
+    }
+    return found;
+}
+
 Eigen::Vector3d area_normal(const TriangleSoup& soup, std::int32_t f) {
     const auto& [a, b, c] = soup.faces[at(f)];
     const Eigen::Vector3d& origin = soup.points_mm[at(a)];
@@ -323,11 +370,20 @@ void repair(TriangleSoup& soup, const std::string& name, RepairReport& report) {
     report.duplicate_faces_removed += drop_duplicates(soup.faces);
     require_faces(soup, name);
     const double diagonal = diagonal_mm(soup);
-    const std::vector<Joint> joints = joints_of(soup);
-    const Links links(soup.faces.size(), joints);
+    std::vector<Joint> joints = joints_of(soup);
     std::vector<std::int8_t> turned(soup.faces.size(), 0);
-    const Components components = orient(soup, links, name, turned);
+    Components components = orient(soup, Links(soup.faces.size(), joints), name, turned);
     report.non_manifold_vertices_split += split_fans(soup, joints);
+    for (bool parted = false; part_doubled_edges(soup, parted ? joints_of(soup) : joints);) {
+        parted = true;
+    }
+    if (turned.size() < soup.faces.size()) {
+        joints = joints_of(soup);
+        turned.resize(soup.faces.size(), 0);
+        std::vector<std::int8_t> unturned(soup.faces.size(), 0);
+        components = orient(soup, Links(soup.faces.size(), joints), name, unturned);
+    }
+    const Links links(soup.faces.size(), joints);
     turn_outward(soup, components, links, turned);
     report.faces_flipped += static_cast<int>(std::count(turned.begin(), turned.end(), 1));
     report.components = static_cast<int>(components.faces.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Dense>
 
@@ -91,43 +92,104 @@ Circle fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<
     return circle;
 }
 
-void measure(const TriangleSoup& soup, Rim& rim) {
-    const std::size_t n = rim.vertices.size();
-    const auto point = [&](std::size_t i) -> const Eigen::Vector3d& {
-        return soup.points_mm[at(rim.vertices[i % n])];
-    };
-    std::vector<double> weights(n, 0.0);
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    double length = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const double edge = (point(i + 1) - point(i)).norm();
-        weights[i] += edge / 2.0;
-        weights[(i + 1) % n] += edge / 2.0;
-        middle += edge * 0.5 * (point(i) + point(i + 1));
-        length += edge;
-    }
-    middle /= length;
+struct LoopPoints {
+    std::vector<Eigen::Vector3d> points;
+    std::vector<double> weights;  // half the boundary length on both sides
     Eigen::Vector3d area = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < n; ++i) {
-        area += 0.5 * (point(i) - middle).cross(point(i + 1) - middle);
+};
+
+LoopPoints points_of(const TriangleSoup& soup, const std::vector<std::int32_t>& vertices) {
+    LoopPoints loop;
+    const std::size_t n = vertices.size();
+    loop.weights.assign(n, 0.0);
+    for (const std::int32_t v : vertices) {
+        loop.points.push_back(soup.points_mm[at(v)]);
     }
-    rim.axis = area.norm() > 0.0 ? Eigen::Vector3d(area.normalized()) : Eigen::Vector3d::UnitZ();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Eigen::Vector3d& from = loop.points[i];
+        const Eigen::Vector3d& to = loop.points[(i + 1) % n];
+        const double edge = (to - from).norm();
+        loop.weights[i] += edge / 2.0;
+        loop.weights[(i + 1) % n] += edge / 2.0;
+        loop.area += 0.5 * (from - loop.points[0]).cross(to - loop.points[0]);
+    }
+    return loop;
+}
+
+// Circle in the plane of the weighted points, its axis on the side of `outward`.
+void fit(const LoopPoints& loop, const std::vector<double>& weights, Rim& rim) {
+    const std::size_t n = loop.points.size();
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    double total = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        middle += weights[i] * loop.points[i];
+        total += weights[i];
+    }
+    middle /= total;
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Eigen::Vector3d arm = loop.points[i] - middle;
+        spread += weights[i] * arm * arm.transpose();
+    }
+    rim.axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    rim.axis *= rim.axis.dot(loop.area) < 0.0 ? -1.0 : 1.0;
     const Eigen::Vector3d u = rim.axis.unitOrthogonal();
     const Eigen::Vector3d v = rim.axis.cross(u);
     std::vector<Eigen::Vector2d> flat(n);
     for (std::size_t i = 0; i < n; ++i) {
-        flat[i] = {u.dot(point(i) - middle), v.dot(point(i) - middle)};
+        flat[i] = {u.dot(loop.points[i] - middle), v.dot(loop.points[i] - middle)};
     }
     const Circle circle = fit_circle(flat, weights);
     rim.centre_mm = middle + circle.centre.x() * u + circle.centre.y() * v;
     rim.radius_mm = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-        rim.radius_mm += weights[i] * (flat[i] - circle.centre).norm() / length;
+        rim.radius_mm += weights[i] * (flat[i] - circle.centre).norm() / total;
     }
-    for (std::size_t i = 0; i < n; ++i) {
-        const double across = (flat[i] - circle.centre).norm() - rim.radius_mm;
-        const double along = rim.axis.dot(point(i) - middle);
-        rim.circularity_mm = std::max(rim.circularity_mm, std::hypot(across, along));
+}
+
+double off_circle(const Rim& rim, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d arm = point - rim.centre_mm;
+    const double along = rim.axis.dot(arm);
+    return std::hypot((arm - along * rim.axis).norm() - rim.radius_mm, along);
+}
+
+// Points of a notch would pull the circle: those far off compared with the others are left out.
+void measure(const TriangleSoup& soup, Rim& rim) {
+    constexpr int kRounds = 8;
+    constexpr double kFarOff = 4.0;       // times the median distance from the circle
+    constexpr double kRoundShare = 1e-3;  // of the radius: a loop this good keeps all its points
+    const LoopPoints loop = points_of(soup, rim.vertices);
+    std::vector<double> weights = loop.weights;
+    std::vector<double> off(loop.points.size());
+    fit(loop, weights, rim);
+    for (int round = 0; round < kRounds; ++round) {
+        std::transform(loop.points.begin(), loop.points.end(), off.begin(),
+                       [&](const Eigen::Vector3d& p) { return off_circle(rim, p); });
+        // The median by length: many short edges in a notch must not outvote the circle.
+        std::vector<std::size_t> order(off.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return off[a] < off[b]; });
+        const double total = std::accumulate(loop.weights.begin(), loop.weights.end(), 0.0);
+        double length = 0.0;
+        std::size_t middle = 0;
+        while (middle + 1 < order.size() && 2.0 * (length + loop.weights[order[middle]]) < total) {
+            length += loop.weights[order[middle++]];
+        }
+        const double limit = std::max(kFarOff * off[order[middle]], kRoundShare * rim.radius_mm);
+        std::vector<double> trimmed = loop.weights;
+        for (std::size_t i = 0; i < off.size(); ++i) {
+            trimmed[i] = off[i] > limit ? 0.0 : trimmed[i];
+        }
+        if (trimmed == weights) {
+            break;
+        }
+        weights = std::move(trimmed);
+        fit(loop, weights, rim);
+    }
+    rim.circularity_mm = 0.0;
+    for (const Eigen::Vector3d& p : loop.points) {
+        rim.circularity_mm = std::max(rim.circularity_mm, off_circle(rim, p));
     }
 }
 

@@ -18,11 +18,11 @@ struct Rims {
     int holes = 0;                                     ///< loops too small to be rims
 };
 
-/// Loops run counter-clockwise seen along `Rim::axis` from outside. The axis is the normal of the
-/// area the loop encloses; centre and radius come from a least-squares circle in that plane with
-/// each vertex weighted by the boundary length beside it, so uneven spacing does not pull.
-/// Accuracy: exact to rounding on a loop of points on a circle (tests/mesh/rims_test.cpp).
-/// \pre soup is an oriented manifold, one fan per vertex
+/// Loops run counter-clockwise seen along `Rim::axis` from outside. The circle is a least-squares
+/// fit in the loop's plane with each vertex weighted by the boundary length beside it, so uneven
+/// spacing does not pull; points far off it, in notches, are left out of the fit but not of the
+/// circularity. Accuracy: exact to rounding on a loop of points on a circle
+/// (tests/mesh/rims_test.cpp). \pre soup is an oriented manifold, one fan per vertex
 [[nodiscard]] Rims find_rims(const TriangleSoup& soup);
 
 }  // namespace meshwind

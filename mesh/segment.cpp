@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
+#include <queue>
 #include <string_view>
+#include <tuple>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
 #include "mesh/edge_table.h"
+#include "mesh/end_caps.h"
 #include "mesh/feature_edges.h"
 #include "mesh/visibility.h"
 
@@ -19,35 +23,21 @@ namespace {
 constexpr double kSamples = 4000.0;      // over the whole part, shared out by area
 constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothing alone
 
-// A point sees the outside when most directions escape. The wall of a bore never does: even at the
-// very mouth half of its directions meet the opposite wall.
+// A point sees the outside when most directions escape. The wall of a long bore never does: even at
+// its very mouth half of the directions meet the opposite wall.
 constexpr double kMostDirections = 0.5;
 
-constexpr double kPlaneShare = 2e-3;         // distance of a planar region's points, of its size
-constexpr double kPlaneNormalSpread = 0.02;  // 1 - |mean normal| of a planar region: 11 deg
-constexpr double kConvexShare = 0.98;        // of an end cap's boundary length
+// Of the directions of a wall beside an end face; on a bore beside it fewer escape.
+constexpr double kMouthShare = 0.6;
 
-// End caps against other plateaus such as the tops of letters, by radius relative to the largest.
-constexpr double kCapRadiusShare = 0.25;
-constexpr double kBoreAreaShare =
-    0.01;  // a blind region smaller than this of the part may be a nook
+constexpr double kBlindShare = 0.05;  // of its area, from which a blind region may see
+
+// A blind region smaller than this share of the part may be a nook of the wall.
+constexpr double kBoreAreaShare = 0.01;
 
 std::size_t at(std::int32_t index) {
     return static_cast<std::size_t>(index);
 }
-
-struct Facts {
-    double area_mm2 = 0.0;
-    Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
-    Eigen::AlignedBox3d box;
-    double boundary_mm = 0.0;
-    double convex_mm = 0.0;
-    bool open = false;  // has open edges
-    double plane_error_mm = 0.0;
-    double outline_mm2 = 0.0;  // area within its outline, holes included
-    std::vector<std::int32_t> faces;
-    std::vector<std::int32_t> beside;  // regions across its edges, sorted
-};
 
 std::vector<std::int32_t> label_faces(const Segmentation& s) {
     std::vector<std::int32_t> label(s.neighbours.size(), -1);
@@ -95,111 +85,6 @@ void sort_labels(std::vector<std::int32_t>& label, const std::vector<double>& fa
     }
 }
 
-// Area that the longest of the region's boundary loops encloses, seen along the region's normal.
-// The signed sum over all loops is the area itself; holes have the other sign and are left out by
-// taking the hull's view: the enclosed area is summed per loop.
-double outline_area(const TriangleSoup& soup, const Segmentation& s, const Facts& facts,
-                    std::int32_t id) {
-    std::map<std::int32_t, std::int32_t> next;
-    for (const std::int32_t f : facts.faces) {
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t g = s.neighbours[at(f)][e];
-            if (g < 0 || s.region[at(g)] != id) {
-                next.emplace(soup.faces[at(f)][e], soup.faces[at(f)][(e + 1) % 3]);
-            }
-        }
-    }
-    const Eigen::Vector3d normal = facts.area_normal.normalized();
-    double largest = 0.0;
-    while (!next.empty()) {
-        const auto first = next.begin();
-        const Eigen::Vector3d origin = soup.points_mm[at(first->first)];
-        double enclosed = 0.0;
-        for (auto step = first; step != next.end();) {
-            const Eigen::Vector3d from = soup.points_mm[at(step->first)] - origin;
-            const Eigen::Vector3d to = soup.points_mm[at(step->second)] - origin;
-            enclosed += 0.5 * normal.dot(from.cross(to));
-            const std::int32_t onward = step->second;
-            next.erase(step);
-            step = next.find(onward);
-        }
-        largest = std::max(largest, enclosed);
-    }
-    return largest;
-}
-
-std::vector<Facts> facts_of(const TriangleSoup& soup, const Segmentation& s,
-                            const std::vector<Eigen::Vector3d>& normals,
-                            const std::vector<double>& face_area) {
-    const std::int32_t count = *std::max_element(s.region.begin(), s.region.end()) + 1;
-    std::vector<Facts> facts(at(count));
-    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
-        Facts& r = facts[at(s.region[f])];
-        r.faces.push_back(static_cast<std::int32_t>(f));
-        r.area_mm2 += face_area[f];
-        r.area_normal += face_area[f] * normals[f];
-        for (std::size_t e = 0; e < 3; ++e) {
-            const Eigen::Vector3d& from = soup.points_mm[at(soup.faces[f][e])];
-            const Eigen::Vector3d along = soup.points_mm[at(soup.faces[f][(e + 1) % 3])] - from;
-            const std::int32_t g = s.neighbours[f][e];
-            r.box.extend(from);
-            if (g < 0) {
-                r.open = true;
-            } else if (s.region[at(g)] != s.region[f]) {
-                r.boundary_mm += along.norm();
-                r.convex_mm +=
-                    normals[f].cross(normals[at(g)]).dot(along) > 0.0 ? along.norm() : 0.0;
-                r.beside.push_back(s.region[at(g)]);
-            }
-        }
-    }
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        Facts& r = facts[id];
-        std::sort(r.beside.begin(), r.beside.end());
-        r.beside.erase(std::unique(r.beside.begin(), r.beside.end()), r.beside.end());
-        const Eigen::Vector3d normal = r.area_normal.normalized();
-        for (const std::int32_t f : r.faces) {
-            for (const std::int32_t v : soup.faces[at(f)]) {
-                const double height = normal.dot(soup.points_mm[at(v)] - r.box.center());
-                r.plane_error_mm = std::max(r.plane_error_mm, std::abs(height));
-            }
-        }
-    }
-    return facts;
-}
-
-bool is_plateau(const Facts& r) {
-    return !r.open && r.boundary_mm > 0.0 && r.convex_mm >= kConvexShare * r.boundary_mm &&
-           r.area_normal.norm() >= (1.0 - kPlaneNormalSpread) * r.area_mm2 &&
-           r.plane_error_mm <= kPlaneShare * r.box.diagonal().norm();
-}
-
-// A disc beside another plateau is the flat of a box, not an end.
-void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Facts>& facts) {
-    std::vector<char> plateau(facts.size(), 0);
-    double largest = 0.0;
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (is_plateau(facts[id])) {
-            plateau[id] = 1;
-            facts[id].outline_mm2 = outline_area(soup, s, facts[id], static_cast<std::int32_t>(id));
-        }
-    }
-    std::vector<char> cap(facts.size(), 0);
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        const bool disc = facts[id].outline_mm2 < 1.01 * facts[id].area_mm2;
-        const bool flat_of_box =
-            disc && std::any_of(facts[id].beside.begin(), facts[id].beside.end(),
-                                [&](std::int32_t other) { return plateau[at(other)] != 0; });
-        cap[id] = static_cast<char>(plateau[id] != 0 && !flat_of_box);
-        largest = std::max(largest, cap[id] != 0 ? facts[id].outline_mm2 : 0.0);
-    }
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (cap[id] != 0 && facts[id].outline_mm2 >= kCapRadiusShare * kCapRadiusShare * largest) {
-            s.regions[id].kind = RegionKind::EndCap;
-        }
-    }
-}
-
 struct Sample {
     std::int32_t face = 0;
     std::int32_t region = 0;
@@ -208,13 +93,13 @@ struct Sample {
 
 // Evenly over the region's area, in face order; inside a face by an additive (plastic-number)
 // sequence.
-std::vector<Sample> samples_of(const std::vector<Facts>& facts,
+std::vector<Sample> samples_of(const std::vector<RegionFacts>& facts,
                                const std::vector<double>& face_area) {
     constexpr double kStep[2] = {0.7548776662466927, 0.5698402909980532};
     const double total = std::accumulate(face_area.begin(), face_area.end(), 0.0);
     std::vector<Sample> samples;
     for (std::size_t id = 0; id < facts.size(); ++id) {
-        const Facts& r = facts[id];
+        const RegionFacts& r = facts[id];
         const double count = std::max(kSamplesPerRegion, std::round(kSamples * r.area_mm2 / total));
         double before = 0.0;
         double next = 0.5;
@@ -232,9 +117,8 @@ std::vector<Sample> samples_of(const std::vector<Facts>& facts,
 }
 
 void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
-                 const std::vector<Facts>& facts, const std::vector<double>& face_area,
-                 std::vector<Region>& regions) {
-    const Visibility visibility(soup);
+                 const std::vector<RegionFacts>& facts, const std::vector<double>& face_area,
+                 const Visibility& visibility, std::vector<Region>& regions) {
     const std::vector<Sample> samples = samples_of(facts, face_area);
     std::vector<char> sees(samples.size(), 0);
     parallel_for(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -261,7 +145,7 @@ void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& n
 
 // Regions that hang together without crossing an end cap or a bore.
 std::vector<std::vector<std::int32_t>> pieces_of(const std::vector<Region>& regions,
-                                                 const std::vector<Facts>& facts) {
+                                                 const std::vector<RegionFacts>& facts) {
     const auto blocks = [&](std::int32_t id) {
         return regions[at(id)].kind == RegionKind::EndCap ||
                regions[at(id)].kind == RegionKind::Bore;
@@ -298,13 +182,155 @@ double view_of(const std::vector<std::int32_t>& piece, const std::vector<Region>
     return area > 0.0 ? seen / area : 0.0;
 }
 
-void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2) {
+// Faces across the edges of the end caps; the inner ones, on the wall of a bore, see at most half.
+struct Mouth {
+    std::vector<std::int32_t> outer;
+    std::vector<std::int32_t> inner;
+};
+
+Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const RegionFacts& cap,
+               const std::vector<Eigen::Vector3d>& normals, const Visibility& visibility) {
+    Mouth mouth;
+    for (const std::int32_t f : cap.faces) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const std::int32_t g = s.neighbours[at(f)][e];
+            if (g < 0 || s.regions[at(s.region[at(g)])].kind == RegionKind::EndCap) {
+                continue;
+            }
+            const Eigen::Vector3d middle =
+                0.5 * (soup.points_mm[at(soup.faces[at(f)][e])] +
+                       soup.points_mm[at(soup.faces[at(f)][(e + 1) % 3])]);
+            const std::size_t opposite =
+                (static_cast<std::size_t>(shared_edge(s.neighbours[at(g)], f)) + 2) % 3;
+            // Just inside the neighbour, not at its centroid: it may be a long triangle.
+            const Eigen::Vector3d point =
+                0.9 * middle + 0.1 * soup.points_mm[at(soup.faces[at(g)][opposite])];
+            const bool sees = visibility.escape_fraction(point, normals[at(g)]) > kMouthShare;
+            (sees ? mouth.outer : mouth.inner).push_back(g);
+        }
+    }
+    return mouth;
+}
+
+// Spreads the sides of the mouths over their pieces, nearest first: 1 = outer, 2 = inner, 0 =
+// neither.
+std::vector<char> spread(const TriangleSoup& soup, const Segmentation& s,
+                         const std::vector<std::int32_t>& piece_of_region, const Mouth& seeds) {
+    const auto centre = [&](std::int32_t f) {
+        const auto& [a, b, c] = soup.faces[at(f)];
+        return Eigen::Vector3d(
+            (soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0);
+    };
+    using Entry = std::tuple<double, std::int32_t, char>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    std::vector<char> side(soup.faces.size(), 0);
+    for (const std::int32_t f : seeds.outer) {
+        queue.emplace(0.0, f, char{1});
+    }
+    for (const std::int32_t f : seeds.inner) {
+        queue.emplace(0.0, f, char{2});
+    }
+    while (!queue.empty()) {
+        const auto [distance, f, label] = queue.top();
+        queue.pop();
+        if (side[at(f)] != 0) {
+            continue;
+        }
+        side[at(f)] = label;
+        for (const std::int32_t g : s.neighbours[at(f)]) {
+            if (g >= 0 && side[at(g)] == 0 &&
+                piece_of_region[at(s.region[at(g)])] == piece_of_region[at(s.region[at(f)])]) {
+                queue.emplace(distance + (centre(g) - centre(f)).norm(), g, label);
+            }
+        }
+    }
+    return side;
+}
+
+// Where an end face is notched or its lip rounded in places, wall and bore run into each other.
+// Such pieces touch one end cap from both sides; they are parted halfway between the two. Returns
+// per face 1 where it is on the bore's side; empty when nothing runs together.
+std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
+                             const std::vector<RegionFacts>& facts,
+                             const std::vector<Eigen::Vector3d>& normals,
+                             const Visibility& visibility) {
+    constexpr std::size_t kFew = 8;  // of the faces around a cap, one in so many may be misjudged
+    std::vector<std::int32_t> piece_of_region(s.regions.size(), -1);
+    const auto pieces = pieces_of(s.regions, facts);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        for (const std::int32_t id : pieces[p]) {
+            piece_of_region[at(id)] = static_cast<std::int32_t>(p);
+        }
+    }
+    const auto piece_of = [&](std::int32_t f) { return piece_of_region[at(s.region[at(f)])]; };
+    Mouth all;
+    std::vector<char> joined(pieces.size(), 0);
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        if (s.regions[id].kind != RegionKind::EndCap) {
+            continue;
+        }
+        const Mouth mouth = mouth_of(soup, s, facts[id], normals, visibility);
+        std::map<std::int32_t, std::array<std::size_t, 2>> counts;
+        for (const std::int32_t f : mouth.outer) {
+            ++counts[piece_of(f)][0];
+        }
+        for (const std::int32_t f : mouth.inner) {
+            ++counts[piece_of(f)][1];
+        }
+        const std::size_t few = (mouth.outer.size() + mouth.inner.size()) / kFew;
+        for (const auto& [piece, count] : counts) {
+            joined[at(piece)] |= static_cast<char>(std::min(count[0], count[1]) > few);
+        }
+        all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
+        all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
+    }
+    if (std::count(joined.begin(), joined.end(), 1) == 0) {
+        return {};
+    }
+    std::vector<char> side = spread(soup, s, piece_of_region, all);
+    for (std::size_t f = 0; f < side.size(); ++f) {
+        const std::int32_t piece = piece_of(static_cast<std::int32_t>(f));
+        side[f] = static_cast<char>(piece >= 0 && joined[at(piece)] != 0 && side[f] == 2);
+    }
+    return side;
+}
+
+// Per region 1 where it lies in the hole of an end cap, plus 2 where it lies on the outline of one.
+// A piece in holes only is the wall of a bore, however short and well lit.
+std::vector<char> sides_of_caps(const std::vector<Region>& regions,
+                                const std::vector<RegionFacts>& facts) {
+    std::vector<char> hole(regions.size(), 0);
+    for (const Region& r : regions) {
+        for (const std::int32_t id : r.kind == RegionKind::EndCap ? facts[at(r.id)].in_holes
+                                                                  : std::vector<std::int32_t>{}) {
+            hole[at(id)] |= 1;
+        }
+        for (const std::int32_t id : r.kind == RegionKind::EndCap ? facts[at(r.id)].beyond_outline
+                                                                  : std::vector<std::int32_t>{}) {
+            hole[at(id)] |= 2;
+        }
+    }
+    return hole;
+}
+
+void classify(Segmentation& s, const std::vector<RegionFacts>& facts, double total_mm2) {
+    const std::vector<char> mouths = sides_of_caps(s.regions, facts);
     for (const auto& piece : pieces_of(s.regions, facts)) {
+        int touched = 0;
+        for (const std::int32_t id : piece) {
+            touched |= mouths[at(id)];
+        }
+        if (touched == 1) {
+            for (const std::int32_t id : piece) {
+                s.regions[at(id)].kind = RegionKind::Bore;
+            }
+            continue;
+        }
         const bool blind = view_of(piece, s.regions) < kMostDirections;
         for (const std::int32_t id : piece) {
             Region& r = s.regions[at(id)];
             const bool large = r.area_mm2 >= kBoreAreaShare * total_mm2;
-            const bool is_bore = r.visible_fraction <= 0.05 && large;
+            const bool is_bore = r.visible_fraction <= kBlindShare && large;
             if (is_bore || (blind && r.visible_fraction < kMostDirections)) {
                 r.kind = RegionKind::Bore;
             }
@@ -338,6 +364,39 @@ void classify(Segmentation& s, const std::vector<Facts>& facts, double total_mm2
     }
 }
 
+void make_regions(Segmentation& s, const std::vector<RegionFacts>& facts) {
+    s.regions.clear();
+    for (std::size_t id = 0; id < facts.size(); ++id) {
+        s.regions.push_back({.id = static_cast<std::int32_t>(id),
+                             .triangles = static_cast<int>(facts[id].faces.size()),
+                             .area_mm2 = facts[id].area_mm2});
+    }
+}
+
+// Gives the bore's side of each region a label of its own.
+void part_regions(std::vector<std::int32_t>& region, const std::vector<char>& bore_side) {
+    std::int32_t next = *std::max_element(region.begin(), region.end()) + 1;
+    std::map<std::int32_t, std::int32_t> parted;
+    for (std::size_t f = 0; f < region.size(); ++f) {
+        if (bore_side[f] != 0) {
+            const auto [entry, is_new] = parted.try_emplace(region[f], next);
+            next += is_new ? 1 : 0;
+            region[f] = entry->second;
+        }
+    }
+}
+
+std::vector<double> face_areas(const TriangleSoup& soup) {
+    std::vector<double> areas(soup.faces.size());
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        const auto& [a, b, c] = soup.faces[f];
+        areas[f] = 0.5 * (soup.points_mm[at(b)] - soup.points_mm[at(a)])
+                             .cross(soup.points_mm[at(c)] - soup.points_mm[at(a)])
+                             .norm();
+    }
+    return areas;
+}
+
 }  // namespace
 
 std::string_view name_of(RegionKind kind) {
@@ -358,24 +417,36 @@ Segmentation segment(const TriangleSoup& soup) {
     Segmentation s;
     s.neighbours = face_neighbours(soup.faces);
     const std::vector<Eigen::Vector3d> normals = steady_normals(soup, s.neighbours);
+    const std::vector<double> face_area = face_areas(soup);
+    const Visibility visibility(soup);
     s.feature = feature_edges(normals, s.neighbours);
     s.region = label_faces(s);
-    std::vector<double> face_area(soup.faces.size());
-    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
-        const auto& [a, b, c] = soup.faces[f];
-        face_area[f] = 0.5 * (soup.points_mm[at(b)] - soup.points_mm[at(a)])
-                                 .cross(soup.points_mm[at(c)] - soup.points_mm[at(a)])
-                                 .norm();
-    }
     sort_labels(s.region, face_area);
-    std::vector<Facts> facts = facts_of(soup, s, normals, face_area);
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        s.regions.push_back({.id = static_cast<std::int32_t>(id),
-                             .triangles = static_cast<int>(facts[id].faces.size()),
-                             .area_mm2 = facts[id].area_mm2});
-    }
-    look_around(soup, normals, facts, face_area, s.regions);
+    std::vector<RegionFacts> facts = region_facts(soup, s, normals, face_area);
+    make_regions(s, facts);
     mark_end_caps(soup, s, facts);
+    const std::vector<char> bore_side = bore_sides(soup, s, facts, normals, visibility);
+    if (!bore_side.empty()) {
+        std::vector<char> cap(soup.faces.size(), 0);
+        for (std::size_t f = 0; f < cap.size(); ++f) {
+            cap[f] = static_cast<char>(s.regions[at(s.region[f])].kind == RegionKind::EndCap);
+        }
+        part_regions(s.region, bore_side);
+        sort_labels(s.region, face_area);
+        facts = region_facts(soup, s, normals, face_area);
+        make_regions(s, facts);
+        for (std::size_t f = 0; f < cap.size(); ++f) {
+            s.regions[at(s.region[f])].kind = cap[f] != 0         ? RegionKind::EndCap
+                                              : bore_side[f] != 0 ? RegionKind::Bore
+                                                                  : RegionKind::Other;
+        }
+        for (const Region& r : s.regions) {
+            if (r.kind == RegionKind::EndCap) {
+                trace_outline(soup, s, r.id, facts[at(r.id)]);
+            }
+        }
+    }
+    look_around(soup, normals, facts, face_area, visibility, s.regions);
     classify(s, facts, std::accumulate(face_area.begin(), face_area.end(), 0.0));
     return s;
 }

@@ -126,7 +126,52 @@ std::optional<Line> of_revolution(const std::vector<PointOnSurface>& points,
     return line.residual_mm <= kRevolutionShare * radius ? std::optional(line) : std::nullopt;
 }
 
-Line principal(const std::vector<PointOnSurface>& points, const Vector3d& centroid) {
+// The principal axis that most rims point along, the longer one of equals; without rims the one
+// whose moment differs most from the two others.
+Vector3d principal_direction(const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>& axes,
+                             std::span<const Rim> rims) {
+    const Vector3d moment = axes.eigenvalues();
+    if (rims.empty()) {
+        const bool long_one_differs = moment[2] - moment[1] >= moment[1] - moment[0];
+        return axes.eigenvectors().col(long_one_differs ? 2 : 0);
+    }
+    constexpr double kClearlyMore = 1.05;  // less is a tie: the two diagonals of an elbow
+    double most = 0.0;
+    Vector3d best = Vector3d::UnitZ();
+    for (int i = 2; i >= 0; --i) {
+        const Vector3d direction = axes.eigenvectors().col(i);
+        double along = 0.0;
+        for (const Rim& rim : rims) {
+            along += std::abs(rim.axis.dot(direction));
+        }
+        if (along > kClearlyMore * most) {
+            most = along;
+            best = direction;
+        }
+    }
+    return best;
+}
+
+// Moves the line onto the axis of the rim that lies nearest to it, if one nearly does: lettering
+// and uneven facets turn the moments, not the rims.
+void settle_on_rim(Line& line, std::span<const Rim> rims) {
+    constexpr double kNearSine = 0.1;   // 6 deg
+    constexpr double kNearShare = 0.1;  // of the rim's radius
+    double nearest = kNearShare;
+    Line settled = line;
+    for (const Rim& rim : rims) {
+        const double off = distance_from(line, rim.centre_mm) / rim.radius_mm;
+        const double share = rim.axis.cross(line.direction).norm() <= kNearSine ? off : 1.0;
+        if (share < nearest) {
+            nearest = share;
+            settled = {rim.centre_mm, rim.axis, 0.0};
+        }
+    }
+    line = settled;
+}
+
+Line principal(const std::vector<PointOnSurface>& points, const Vector3d& centroid,
+               std::span<const Rim> rims) {
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     double area = 0.0;
     for (const PointOnSurface& p : points) {
@@ -134,9 +179,8 @@ Line principal(const std::vector<PointOnSurface>& points, const Vector3d& centro
         area += p.area;
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-    const Vector3d moment = axes.eigenvalues();
-    const bool long_one_differs = moment[2] - moment[1] >= moment[1] - moment[0];
-    Line line{centroid, axes.eigenvectors().col(long_one_differs ? 2 : 0), 0.0};
+    Line line{centroid, principal_direction(axes, rims), 0.0};
+    settle_on_rim(line, rims);
     double mean = 0.0;
     double square = 0.0;
     for (const PointOnSurface& p : points) {
@@ -197,7 +241,7 @@ SpindleFrame find_spindle(const TriangleSoup& surface, std::span<const Rim> rims
             line = *revolution;
             frame.axis.rule = "revolution";
         } else {
-            line = principal(points, centroid);
+            line = principal(points, centroid, rims);
             frame.axis.rule = "principal";
         }
         if (frame.axis.rule != "coaxial-rims") {

@@ -25,8 +25,9 @@ struct SpindleFrame {
 
 /// The given axis (its origin becomes the mandrel's); else the pair of coaxial rims that lie
 /// farthest apart; else the axis of revolution of the surface; else the principal axis of inertia
-/// whose moment differs most from the two others. The residual in mm is the largest distance of the
-/// two centres' axes from the other centre, the rms distance of the surface's normals from the
+/// that most rims point along (moved onto a rim's own axis where that is near), or without rims the
+/// one whose moment differs most from the two others. The residual in mm is the largest distance of
+/// the two centres' axes from the other centre, the rms distance of the surface's normals from the
 /// axis, or the rms scatter of the surface's distance from the axis. +Z points along the larger
 /// component of the file's axes; the origin is the middle between coaxial rims, else the centroid's
 /// foot on the axis; +X points to the rim farthest off the axis, where there is one off it, else
