@@ -33,9 +33,13 @@ namespace fs = std::filesystem;
 // landing point itself may stand in the way; a wall within that distance would bridge first.
 constexpr double kRayStartEdges = 2.0;
 
-// Added to the clearance where free lengths are chosen: between two blocks the axes cut the corner of the
-// eye's curve by up to this much, and the clearance must hold there as well.
+// Added to the clearance where free lengths are chosen: between two blocks the axes cut the corner
+// of the eye's curve by up to this much, and the clearance must hold there as well.
 constexpr double kBetweenBlocks_mm = 0.5;
+
+// Clearances are tabulated this far around the mandrel: further out nothing of a head is in the
+// way.
+constexpr double kTableReach_mm = 60.0;
 
 class Stopwatch {
 public:
@@ -196,7 +200,7 @@ private:
                 parts.push_back(extension_of(rim, job.mandrel.extension_mm));
             }
         }
-        obstacles_ = std::make_unique<RayQuery>(parts);
+        obstacles_ = std::make_unique<RayQuery>(parts, kTableReach_mm);
     }
 
     // Whether the machine can wind a course by itself: eye points, axis limits, head and fibre.

@@ -8,12 +8,17 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace meshwind {
 namespace {
 
 // Half length of a piece of a capsule that is not split further, as a share of its radius.
 constexpr double kCapsuleResolution = 0.01;
+
+// Nodes of a distance table: some 5 mm apart around a mandrel of half a metre, built in under a
+// second.
+constexpr double kTableNodes = 4e5;
 
 // Barycentric coordinates of the point of triangle abc nearest to p (by Voronoi regions of the
 // triangle's features). Source: ericson_2004_collision, sec. 5.1.5.
@@ -101,7 +106,25 @@ RTCRay ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, d
 
 }  // namespace
 
+// Distances on a regular grid of nodes around the parts.
+struct DistanceTable {
+    Eigen::AlignedBox3d parts;  // bounding box of all triangles
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+    double cell_mm = 0.0;
+    Eigen::Array3i nodes = Eigen::Array3i::Zero();
+    std::vector<float> distance_mm;
+
+    [[nodiscard]] std::size_t index(const Eigen::Array3i& node) const {
+        return (static_cast<std::size_t>(node.z()) * static_cast<std::size_t>(nodes.y()) +
+                static_cast<std::size_t>(node.y())) *
+                   static_cast<std::size_t>(nodes.x()) +
+               static_cast<std::size_t>(node.x());
+    }
+};
+
 struct RayQuery::Impl {
+    DistanceTable table;
+
     std::vector<TriangleSoup> parts;
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
@@ -140,7 +163,8 @@ struct RayQuery::Impl {
     }
 };
 
-RayQuery::RayQuery(std::span<const TriangleSoup> parts) : impl_(std::make_unique<Impl>()) {
+RayQuery::RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm)
+    : impl_(std::make_unique<Impl>()) {
     impl_->parts.assign(parts.begin(), parts.end());
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr) {
@@ -153,6 +177,53 @@ RayQuery::RayQuery(std::span<const TriangleSoup> parts) : impl_(std::make_unique
         impl_->add(static_cast<unsigned>(i), impl_->parts[i]);
     }
     rtcCommitScene(impl_->scene);
+    if (field_reach_mm > 0.0) {
+        tabulate(field_reach_mm);
+    }
+}
+
+void RayQuery::tabulate(double reach_mm) {
+    DistanceTable& table = impl_->table;
+    for (const TriangleSoup& part : impl_->parts) {
+        for (const Eigen::Vector3d& point : part.points_mm) {
+            table.parts.extend(point);
+        }
+    }
+    if (table.parts.isEmpty()) {
+        return;
+    }
+    const Eigen::Vector3d size = table.parts.sizes() + Eigen::Vector3d::Constant(2.0 * reach_mm);
+    table.origin = table.parts.min() - Eigen::Vector3d::Constant(reach_mm);
+    table.cell_mm = std::cbrt(size.prod() / kTableNodes);
+    table.nodes = (size / table.cell_mm).array().ceil().cast<int>() + 1;
+    const double cap = 2.0 * reach_mm;
+    table.distance_mm.resize(table.index(table.nodes - 1) + 1);
+    parallel_for(static_cast<std::size_t>(table.nodes.z()), 1, [&](std::size_t layer, std::size_t) {
+        for (Eigen::Array3i node(0, 0, static_cast<int>(layer)); node.y() < table.nodes.y();
+             ++node.y()) {
+            for (node.x() = 0; node.x() < table.nodes.x(); ++node.x()) {
+                const Eigen::Vector3d point =
+                    table.origin + table.cell_mm * node.cast<double>().matrix();
+                // One step down: single precision must not promise more than there is.
+                table.distance_mm[table.index(node)] =
+                    std::nextafter(static_cast<float>(closest(point, cap).distance_mm), 0.0F);
+            }
+        }
+    });
+}
+
+double RayQuery::distance_at_least_mm(const Eigen::Vector3d& query) const {
+    const DistanceTable& table = impl_->table;
+    if (table.distance_mm.empty()) {
+        return 0.0;
+    }
+    const Eigen::Vector3d scaled = (query - table.origin) / table.cell_mm;
+    const Eigen::Array3i node = scaled.array().round().cast<int>();
+    if ((node < 0).any() || (node >= table.nodes).any()) {
+        return table.parts.exteriorDistance(query);
+    }
+    const double off = (scaled - node.cast<double>().matrix()).norm() * table.cell_mm;
+    return std::max(0.0, static_cast<double>(table.distance_mm[table.index(node)]) - off);
 }
 
 RayQuery::~RayQuery() = default;
@@ -197,6 +268,13 @@ bool RayQuery::capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d&
                              double radius_mm) const {
     const Eigen::Vector3d centre = 0.5 * (from + to);
     const double reach = 0.5 * (to - from).norm();
+    if (distance_at_least_mm(centre) >= reach + radius_mm) {
+        return true;
+    }
+    if (!impl_->table.distance_mm.empty() && reach > impl_->table.cell_mm) {
+        // The table settles most of a long capsule piece by piece.
+        return capsule_clear(from, centre, radius_mm) && capsule_clear(centre, to, radius_mm);
+    }
     const double distance = closest(centre, reach + radius_mm).distance_mm;
     if (distance >= reach + radius_mm) {
         return true;

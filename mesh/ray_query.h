@@ -27,7 +27,10 @@ struct ClosestPoint {
 class RayQuery {
 public:
     /// \param parts triangle soups, copied \pre face indices are valid
-    explicit RayQuery(std::span<const TriangleSoup> parts);
+    /// \param field_reach_mm > 0: distances are tabulated up to so far around the parts, which
+    /// answers
+    ///        most clearance questions without a search; 0: no table
+    explicit RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm = 0.0);
     ~RayQuery();
     RayQuery(RayQuery&&) noexcept;
     RayQuery& operator=(RayQuery&&) noexcept;
@@ -42,12 +45,18 @@ public:
     /// Nearest point within `radius_mm`; part -1 and distance `radius_mm` when there is none.
     [[nodiscard]] ClosestPoint closest(const Eigen::Vector3d& query, double radius_mm) const;
 
+    /// A distance that no triangle is nearer than, in mm: from the table, so a little less than the
+    /// true distance; 0 without one.
+    [[nodiscard]] double distance_at_least_mm(const Eigen::Vector3d& query) const;
+
     /// True when no triangle is nearer than `radius_mm` to the straight segment.
     /// Conservative: a triangle that is up to 1 % of the radius further away may count as too near.
     [[nodiscard]] bool capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                      double radius_mm) const;
 
 private:
+    void tabulate(double reach_mm);
+
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

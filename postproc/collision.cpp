@@ -133,7 +133,11 @@ private:
         const double reach = chunk.reach();
         const double need = chunk.radius_mm + need_mm_;
         const double search = reach + need + move;
-        const double distance = obstacles_.closest(pose * chunk.centre(), search).distance_mm;
+        const Vector3d centre = pose * chunk.centre();
+        if (obstacles_.distance_at_least_mm(centre) >= search) {
+            return true;
+        }
+        const double distance = obstacles_.closest(centre, search).distance_mm;
         if (distance >= search) {
             return true;
         }
@@ -160,6 +164,9 @@ double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const C
                       double best) {
     const double reach = chunk.reach();
     const double search = best + reach + chunk.radius_mm;
+    if (obstacles.distance_at_least_mm(pose * chunk.centre()) >= search) {
+        return best;
+    }
     const double distance = obstacles.closest(pose * chunk.centre(), search).distance_mm;
     if (distance >= search) {
         return best;

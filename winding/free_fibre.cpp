@@ -24,7 +24,10 @@ public:
     [[nodiscard]] double spare(double length) const {
         const double need = rule_.head_radius_mm + rule_.clearance_mm;
         const Eigen::Vector3d eye = landing_ + length * tangent_;
-        const double ball = obstacles_.closest(eye, 2.0 * need).distance_mm - need;
+        double ball = obstacles_.distance_at_least_mm(eye) - need;
+        if (ball < 0.0) {
+            ball = obstacles_.closest(eye, 2.0 * need).distance_mm - need;
+        }
         return ball >= 0.0 && !arm_clear(eye) ? -kStep_mm : ball;
     }
 
