@@ -27,9 +27,6 @@ constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothi
 // its very mouth half of the directions meet the opposite wall.
 constexpr double kMostDirections = 0.5;
 
-// Of the directions of a wall beside an end face; on a bore beside it fewer escape.
-constexpr double kMouthShare = 0.6;
-
 constexpr double kBlindShare = 0.05;  // of its area, from which a blind region may see
 
 // A blind region smaller than this share of the part may be a nook of the wall.
@@ -182,31 +179,27 @@ double view_of(const std::vector<std::int32_t>& piece, const std::vector<Region>
     return area > 0.0 ? seen / area : 0.0;
 }
 
-// Faces across the edges of the end caps; the inner ones, on the wall of a bore, see at most half.
+// Faces across the edges of the end caps, by whether they face away from the cap's middle, as a
+// wall does, or toward it, as a bore.
 struct Mouth {
     std::vector<std::int32_t> outer;
     std::vector<std::int32_t> inner;
 };
 
 Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const RegionFacts& cap,
-               const std::vector<Eigen::Vector3d>& normals, const Visibility& visibility) {
+               const std::vector<Eigen::Vector3d>& normals) {
     Mouth mouth;
     for (const std::int32_t f : cap.faces) {
         for (std::size_t e = 0; e < 3; ++e) {
             const std::int32_t g = s.neighbours[at(f)][e];
-            if (g < 0 || s.regions[at(s.region[at(g)])].kind == RegionKind::EndCap) {
+            if (g < 0 || s.regions[at(s.region[at(g)])].kind != RegionKind::Other) {
                 continue;
             }
             const Eigen::Vector3d middle =
                 0.5 * (soup.points_mm[at(soup.faces[at(f)][e])] +
                        soup.points_mm[at(soup.faces[at(f)][(e + 1) % 3])]);
-            const std::size_t opposite =
-                (static_cast<std::size_t>(shared_edge(s.neighbours[at(g)], f)) + 2) % 3;
-            // Just inside the neighbour, not at its centroid: it may be a long triangle.
-            const Eigen::Vector3d point =
-                0.9 * middle + 0.1 * soup.points_mm[at(soup.faces[at(g)][opposite])];
-            const bool sees = visibility.escape_fraction(point, normals[at(g)]) > kMouthShare;
-            (sees ? mouth.outer : mouth.inner).push_back(g);
+            const bool outward = normals[at(g)].dot(middle - cap.box.center()) > 0.0;
+            (outward ? mouth.outer : mouth.inner).push_back(g);
         }
     }
     return mouth;
@@ -252,8 +245,7 @@ std::vector<char> spread(const TriangleSoup& soup, const Segmentation& s,
 // per face 1 where it is on the bore's side; empty when nothing runs together.
 std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
                              const std::vector<RegionFacts>& facts,
-                             const std::vector<Eigen::Vector3d>& normals,
-                             const Visibility& visibility) {
+                             const std::vector<Eigen::Vector3d>& normals) {
     constexpr std::size_t kFew = 8;  // of the faces around a cap, one in so many may be misjudged
     std::vector<std::int32_t> piece_of_region(s.regions.size(), -1);
     const auto pieces = pieces_of(s.regions, facts);
@@ -269,7 +261,7 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
         if (s.regions[id].kind != RegionKind::EndCap) {
             continue;
         }
-        const Mouth mouth = mouth_of(soup, s, facts[id], normals, visibility);
+        const Mouth mouth = mouth_of(soup, s, facts[id], normals);
         std::map<std::int32_t, std::array<std::size_t, 2>> counts;
         for (const std::int32_t f : mouth.outer) {
             ++counts[piece_of(f)][0];
@@ -313,7 +305,30 @@ std::vector<char> sides_of_caps(const std::vector<Region>& regions,
     return hole;
 }
 
-void classify(Segmentation& s, const std::vector<RegionFacts>& facts, double total_mm2) {
+// Large regions that see nothing, and from them on every blind region they touch: the walls of
+// holes that lead to the bore.
+void mark_bores(Segmentation& s, const std::vector<RegionFacts>& facts, double total_mm2) {
+    const auto blind = [&](const Region& r) {
+        return r.kind == RegionKind::Other && r.visible_fraction <= kBlindShare;
+    };
+    std::vector<std::int32_t> bores;
+    for (Region& r : s.regions) {
+        if (blind(r) && r.area_mm2 >= kBoreAreaShare * total_mm2) {
+            r.kind = RegionKind::Bore;
+            bores.push_back(r.id);
+        }
+    }
+    for (std::size_t i = 0; i < bores.size(); ++i) {
+        for (const std::int32_t other : facts[at(bores[i])].beside) {
+            if (blind(s.regions[at(other)])) {
+                s.regions[at(other)].kind = RegionKind::Bore;
+                bores.push_back(other);
+            }
+        }
+    }
+}
+
+void classify(Segmentation& s, const std::vector<RegionFacts>& facts) {
     const std::vector<char> mouths = sides_of_caps(s.regions, facts);
     for (const auto& piece : pieces_of(s.regions, facts)) {
         int touched = 0;
@@ -329,9 +344,7 @@ void classify(Segmentation& s, const std::vector<RegionFacts>& facts, double tot
         const bool blind = view_of(piece, s.regions) < kMostDirections;
         for (const std::int32_t id : piece) {
             Region& r = s.regions[at(id)];
-            const bool large = r.area_mm2 >= kBoreAreaShare * total_mm2;
-            const bool is_bore = r.visible_fraction <= kBlindShare && large;
-            if (is_bore || (blind && r.visible_fraction < kMostDirections)) {
+            if (blind && r.visible_fraction < kMostDirections) {
                 r.kind = RegionKind::Bore;
             }
         }
@@ -418,36 +431,39 @@ Segmentation segment(const TriangleSoup& soup) {
     s.neighbours = face_neighbours(soup.faces);
     const std::vector<Eigen::Vector3d> normals = steady_normals(soup, s.neighbours);
     const std::vector<double> face_area = face_areas(soup);
+    const double total_mm2 = std::accumulate(face_area.begin(), face_area.end(), 0.0);
     const Visibility visibility(soup);
-    s.feature = feature_edges(normals, s.neighbours);
-    s.region = label_faces(s);
-    sort_labels(s.region, face_area);
-    std::vector<RegionFacts> facts = region_facts(soup, s, normals, face_area);
-    make_regions(s, facts);
-    mark_end_caps(soup, s, facts);
-    const std::vector<char> bore_side = bore_sides(soup, s, facts, normals, visibility);
-    if (!bore_side.empty()) {
-        std::vector<char> cap(soup.faces.size(), 0);
-        for (std::size_t f = 0; f < cap.size(); ++f) {
-            cap[f] = static_cast<char>(s.regions[at(s.region[f])].kind == RegionKind::EndCap);
-        }
-        part_regions(s.region, bore_side);
+    std::vector<RegionFacts> facts;
+    const auto survey = [&] {
         sort_labels(s.region, face_area);
         facts = region_facts(soup, s, normals, face_area);
         make_regions(s, facts);
-        for (std::size_t f = 0; f < cap.size(); ++f) {
-            s.regions[at(s.region[f])].kind = cap[f] != 0         ? RegionKind::EndCap
-                                              : bore_side[f] != 0 ? RegionKind::Bore
-                                                                  : RegionKind::Other;
+        look_around(soup, normals, facts, face_area, visibility, s.regions);
+    };
+    s.feature = feature_edges(normals, s.neighbours);
+    s.region = label_faces(s);
+    survey();
+    mark_end_caps(soup, s, facts);
+    mark_bores(s, facts, total_mm2);
+    const std::vector<char> bore_side = bore_sides(soup, s, facts, normals);
+    if (!bore_side.empty()) {
+        std::vector<RegionKind> kind(soup.faces.size());
+        for (std::size_t f = 0; f < kind.size(); ++f) {
+            kind[f] = bore_side[f] != 0 ? RegionKind::Bore : s.regions[at(s.region[f])].kind;
+        }
+        part_regions(s.region, bore_side);
+        survey();
+        for (std::size_t f = 0; f < kind.size(); ++f) {
+            s.regions[at(s.region[f])].kind = kind[f];
         }
         for (const Region& r : s.regions) {
             if (r.kind == RegionKind::EndCap) {
                 trace_outline(soup, s, r.id, facts[at(r.id)]);
             }
         }
+        mark_bores(s, facts, total_mm2);
     }
-    look_around(soup, normals, facts, face_area, visibility, s.regions);
-    classify(s, facts, std::accumulate(face_area.begin(), face_area.end(), 0.0));
+    classify(s, facts);
     return s;
 }
 

@@ -16,12 +16,12 @@ struct Segmentation {
     std::vector<std::array<std::int32_t, 3>> neighbours;  ///< per face and edge, see edge_table.h
 };
 
-/// Regions are bounded by feature edges. An end cap is a planar region whose edges are all convex,
-/// so nothing stands before it, and as large as the part's other ends: a disc or an annulus. What
-/// the caps separate is one piece: the pieces that mostly see the outside are outer wall with all
-/// their collars, chamfers and lettering; the others, and large regions that see nothing, are bore.
-/// `kept` is set on the outer wall. Visibility is sampled, with a fixed number of rays for any
-/// mesh. \pre soup is an oriented manifold with the outside in front (see repair.h)
+/// Regions are bounded by feature edges. End caps: see end_caps.h. Bore: large regions that see
+/// nothing and the blind ones beside them; pieces that lie in the holes of end caps only; pieces
+/// that mostly see nothing. Where a notched end face lets wall and bore run together, they are
+/// parted halfway. The rest is outer wall with all its collars, chamfers and lettering, and is
+/// `kept`. Visibility is sampled, with a bounded number of rays per region. \pre soup is an
+/// oriented manifold with the outside in front (see repair.h)
 [[nodiscard]] Segmentation segment(const TriangleSoup& soup);
 
 }  // namespace meshwind

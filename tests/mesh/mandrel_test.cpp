@@ -100,6 +100,29 @@ TEST(BuildMandrel, StepsAndCollarsStayInTheWallAndBoreStepsDoNot) {
     EXPECT_EQ(m.surface.face.size(), 3U * 96U);  // collar, step, wall
 }
 
+// A pipe closed by a plate with a drilled hole, so the bore opens through the side of a solid.
+TEST(BuildMandrel, WallsOfHolesIntoTheBoreAreBore) {
+    const Mandrel m = build_mandrel(test::revolve({{30, 0},
+                                                   {30, 100},
+                                                   {24, 110},
+                                                   {12, 116},
+                                                   {8, 116.5},
+                                                   {8, 112},
+                                                   {11, 112},
+                                                   {22, 106},
+                                                   {26, 98},
+                                                   {26, 0},
+                                                   {30, 0}},
+                                                  48),
+                                    "vessel");
+    ASSERT_EQ(m.rims.size(), 2U);
+    std::vector<double> radii = {m.rims[0].radius_mm, m.rims[1].radius_mm};
+    std::sort(radii.begin(), radii.end());
+    EXPECT_NEAR(radii[0], 8.0, 1e-9);
+    EXPECT_NEAR(radii[1], 30.0, 1e-9);
+    EXPECT_EQ(m.surface.face.size(), 4U * 96U);
+}
+
 TEST(BuildMandrel, ClosedVesselHasNoRims) {
     std::vector<Eigen::Vector2d> profile;
     for (int i = 0; i <= 24; ++i) {
