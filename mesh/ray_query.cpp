@@ -16,6 +16,9 @@ namespace {
 // Half length of a piece of a capsule that is not split further, as a share of its radius.
 constexpr double kCapsuleResolution = 0.01;
 
+// Without a table, distances are estimated up to here.
+constexpr double kFarthest_mm = 1000.0;
+
 // Nodes of a distance table: some 5 mm apart around a mandrel of half a metre, built in under a
 // second.
 constexpr double kTableNodes = 4e5;
@@ -283,6 +286,29 @@ bool RayQuery::capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d&
         return false;
     }
     return capsule_clear(from, centre, radius_mm) && capsule_clear(centre, to, radius_mm);
+}
+
+double RayQuery::distance_estimate_mm(const Eigen::Vector3d& query) const {
+    const DistanceTable& table = impl_->table;
+    if (table.distance_mm.empty()) {
+        return closest(query, kFarthest_mm).distance_mm;
+    }
+    const Eigen::Array3d scaled = ((query - table.origin) / table.cell_mm).array();
+    const Eigen::Array3d whole = scaled.floor();
+    const Eigen::Array3i node = whole.cast<int>();
+    if ((node < 0).any() || (node + 1 >= table.nodes).any()) {
+        return table.parts.exteriorDistance(query);
+    }
+    const Eigen::Array3d t = scaled - whole;
+    const auto nx = static_cast<std::size_t>(table.nodes.x());
+    const std::size_t nxy = nx * static_cast<std::size_t>(table.nodes.y());
+    const float* d = table.distance_mm.data() + table.index(node);
+    const auto along_x = [&](const float* row) {
+        return (1.0 - t.x()) * static_cast<double>(row[0]) + t.x() * static_cast<double>(row[1]);
+    };
+    const double bottom = (1.0 - t.y()) * along_x(d) + t.y() * along_x(d + nx);
+    const double top = (1.0 - t.y()) * along_x(d + nxy) + t.y() * along_x(d + nxy + nx);
+    return (1.0 - t.z()) * bottom + t.z() * top;
 }
 
 }  // namespace meshwind

@@ -49,6 +49,12 @@ public:
     /// true distance; 0 without one.
     [[nodiscard]] double distance_at_least_mm(const Eigen::Vector3d& query) const;
 
+    /// Distance to the nearest triangle interpolated in the table, in mm; without one the true
+    /// distance, up to 1000. Off by about cell^2 / 8 of the surface's curvature at that distance:
+    /// some tenths of a mm around a pipe. For searching; what must hold is checked by the functions
+    /// above and below.
+    [[nodiscard]] double distance_estimate_mm(const Eigen::Vector3d& query) const;
+
     /// True when no triangle is nearer than `radius_mm` to the straight segment.
     /// Conservative: a triangle that is up to 1 % of the radius further away may count as too near.
     [[nodiscard]] bool capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,

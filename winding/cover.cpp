@@ -27,6 +27,16 @@ constexpr double kMaxHalfLengthBoxes = 8.0;
 // Times that rejected courses are replaced by others before the plan does without.
 constexpr int kMaxReplacements = 12;
 
+// A way between two nodes is scarce with fewer courses than this, and worth the search when at
+// least so many lie there, windable or not.
+constexpr std::size_t kScarce = 48;
+constexpr std::size_t kEstablished = 8;
+constexpr int kScarceRounds = 4;
+constexpr std::size_t kShare = 240;  // of every scarce way in the draw: all count the same
+
+// How far a candidate near a member is turned at most.
+constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
+
 // Added to the clearance while candidates are judged at a few stations, so that a course still
 // fits when every station is tried.
 constexpr double kHeadMargin_mm = 0.3;
@@ -146,10 +156,15 @@ private:
         for (const std::int32_t sample : seeds) {
             candidates.push_back(candidate_at(sample, draws_++));
         }
-        LibraryPart part = build_library(rules_, candidates);
+        const std::vector<Refusal> outcome = judge_candidates(candidates);
         for (std::size_t i = 0; i < seeds.size(); ++i) {
-            closest_miss_[at(seeds[i])] = std::max(closest_miss_[at(seeds[i])], part.outcome[i]);
+            closest_miss_[at(seeds[i])] = std::max(closest_miss_[at(seeds[i])], outcome[i]);
         }
+    }
+
+    // Adds the admissible ones to the library; says what became of each.
+    std::vector<Refusal> judge_candidates(const std::vector<Candidate>& candidates) {
+        LibraryPart part = build_library(rules_, candidates);
         plan_.effort.candidates += static_cast<std::int64_t>(candidates.size());
         for (const Refusal refusal : part.outcome) {
             ++plan_.effort.refusals[static_cast<std::size_t>(refusal)];
@@ -160,6 +175,7 @@ private:
             }
             members_.push_back(std::move(member));
         }
+        return std::move(part.outcome);
     }
 
     void grow_library() {
@@ -185,7 +201,63 @@ private:
             }
             try_candidates(seeds);
         }
+        for (int round = 0; round < kScarceRounds; ++round) {
+            grow_scarce_ways();
+        }
         tell("library", 1.0);
+    }
+
+    // Ways between nodes that few courses take although many lie there: mostly those that can
+    // hardly be wound in that direction. One continuous fibre needs them, so further candidates are
+    // drawn near them.
+    void grow_scarce_ways() {
+        std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> ways;
+        std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> windable;
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            for (const bool backward : {false, true}) {
+                const std::pair way{departure_node(start_of(members_[i], backward)),
+                                    arrival_node(end_of(members_[i], backward))};
+                ways[way].push_back(i);
+                if (backward ? members_[i].windable_backward : members_[i].windable_forward) {
+                    windable[way].push_back(i);
+                }
+            }
+        }
+        // Near those that can be wound, once there are any.
+        std::vector<std::size_t> near;
+        for (const auto& [way, lying] : ways) {
+            const auto& wound = windable[way];
+            if (wound.size() < kScarce && lying.size() >= kEstablished) {
+                const auto& source = wound.empty() ? lying : wound;
+                for (std::size_t i = 0; i < kShare; ++i) {
+                    near.push_back(source[i % source.size()]);
+                }
+            }
+        }
+        std::vector<Candidate> candidates;
+        for (int i = 0; !near.empty() && i < options_.scarce_candidates / kScarceRounds; ++i) {
+            const std::uint64_t draw = draws_++;
+            candidates.push_back(candidate_near(
+                members_[near[random_bits(stream(Seeds), ~draw) % near.size()]], draw));
+        }
+        judge_candidates(candidates);
+    }
+
+    // A candidate through a station of a member, turned a little, with the same or another
+    // steering.
+    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) const {
+        const SurfacePath path = trace_both_ways(rules_, member.candidate);
+        const auto pick = static_cast<std::size_t>(random_unit(stream(Sampling), draw) *
+                                                   static_cast<double>(path.size()));
+        const PathPoint& station = path[pick];
+        const double turn = (2.0 * random_unit(stream(Angles), draw) - 1.0) * kNearTurn_rad;
+        Candidate candidate{station.at, direction_angle(station.normal, station.tangent) + turn,
+                            member.candidate.slip_ratio};
+        const auto steering = random_bits(stream(Steerings), draw) % (2 * kSteering.size());
+        if (steering < kSteering.size()) {
+            candidate.slip_ratio = kSteering[steering] * options_.tow.friction;
+        }
+        return candidate;
     }
 
     [[nodiscard]] std::vector<std::int32_t> unreached() const {

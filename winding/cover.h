@@ -18,6 +18,7 @@ struct CoverOptions {
     int candidates = 40000;        ///< tried over the whole surface
     int rounds = 3;                ///< of further candidates aimed at what is not reached yet
     int aimed_candidates = 12000;  ///< in each such round
+    int scarce_candidates = 8000;  ///< tried near courses that go where few can be wound
     /// Asked of every course before it enters the plan, in the direction it would be wound: what
     /// the machine says. Must be pure and thread-safe.
     std::function<bool(const Piece&)> accept;

@@ -10,6 +10,9 @@ namespace {
 // Smallest step of the search along the fibre: finer than any clearance that is asked for.
 constexpr double kStep_mm = 1.0;
 
+// Shortest step along an arm.
+constexpr double kArmStep_mm = 3.0;
+
 // Longest step of the search: an arm's far end moves faster than the eye.
 constexpr double kLongestStep_mm = 12.0;
 
@@ -19,15 +22,12 @@ public:
            const Eigen::Vector3d& tangent, const FreeFibreRule& rule)
         : obstacles_(obstacles), landing_(landing), tangent_(tangent), rule_(rule) {}
 
-    // Distance from the head's ball to the next thing, at most twice its radius; negative where
-    // head or arm are too near.
+    // Estimated distance from head and arm to the next thing beyond the clearance; negative where
+    // too near.
     [[nodiscard]] double spare(double length) const {
-        const double need = rule_.head_radius_mm + rule_.clearance_mm;
         const Eigen::Vector3d eye = landing_ + length * tangent_;
-        double ball = obstacles_.distance_at_least_mm(eye) - need;
-        if (ball < 0.0) {
-            ball = obstacles_.closest(eye, 2.0 * need).distance_mm - need;
-        }
+        const double ball =
+            obstacles_.distance_estimate_mm(eye) - rule_.head_radius_mm - rule_.clearance_mm;
         return ball >= 0.0 && !arm_clear(eye) ? -kStep_mm : ball;
     }
 
@@ -53,13 +53,20 @@ public:
     }
 
 private:
+    // Marches along each part of the arm by what is free around it.
     [[nodiscard]] bool arm_clear(const Eigen::Vector3d& eye) const {
         const Eigen::Vector3d outward = Eigen::Vector3d(eye.x(), eye.y(), 0.0).normalized();
-        return std::all_of(rule_.arm.begin(), rule_.arm.end(), [&](const ArmPart& part) {
-            return obstacles_.capsule_clear(eye + part.from_mm * outward,
-                                            eye + part.to_mm * outward,
-                                            part.radius_mm + rule_.clearance_mm);
-        });
+        for (const ArmPart& part : rule_.arm) {
+            for (double along = part.from_mm; along <= part.to_mm;) {
+                const double spare = obstacles_.distance_estimate_mm(eye + along * outward) -
+                                     part.radius_mm - rule_.clearance_mm;
+                if (spare < 0.0) {
+                    return false;
+                }
+                along += std::max(spare, kArmStep_mm);
+            }
+        }
+        return true;
     }
 
     const RayQuery& obstacles_;

@@ -88,6 +88,11 @@ StringPoint string_point(const PathPoint& point, double gap_mm, double slope) {
             (point.tangent + slope * point.normal).normalized()};
 }
 
+double direction_angle(const Vector3d& normal, const Vector3d& tangent) {
+    const Vector3d x = normal.unitOrthogonal();
+    return std::atan2(tangent.dot(normal.cross(x)), tangent.dot(x));
+}
+
 SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate) {
     return join_halves(trace_half(rules, candidate, -1.0).path,
                        trace_half(rules, candidate, 1.0).path);

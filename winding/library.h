@@ -60,6 +60,10 @@ struct CourseRules {
         1e4;  ///< a candidate that meets no rim within this circles for ever
 };
 
+/// The angle of a candidate that leaves its seed along `tangent`, where the surface's normal is
+/// `normal`.
+[[nodiscard]] double direction_angle(const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent);
+
 /// The whole path of a candidate from rim to rim; empty when an end reaches no rim.
 [[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate);
 
