@@ -41,6 +41,8 @@ public:
                 break;
             }
         }
+        while (drop_loose()) {
+        }
         return std::move(laid_);
     }
 
@@ -195,6 +197,44 @@ private:
             return false;
         }
         lay_way(ways, best.first, best.second);
+        return true;
+    }
+
+    // Where nothing can be added: drops the course that joins a node with too many departures to
+    // one with too many arrivals and bares least wall. False when there is none or no need.
+    bool drop_loose() {
+        const std::vector<int> surplus = surplus_arrivals();
+        int loose = 0;
+        for (const int s : surplus) {
+            loose += std::abs(s);
+        }
+        std::size_t best = kNone;
+        std::int64_t least = 0;
+        for (std::size_t c = 0; loose > 2 && c < laid_.size(); ++c) {
+            if (surplus[departure_node(start(laid_[c]))] >= 0 ||
+                surplus[arrival_node(end(laid_[c]))] <= 0) {
+                continue;
+            }
+            const auto& footprint = members_[at(laid_[c].member)].footprint;
+            const std::int64_t bared =
+                std::count_if(footprint.begin(), footprint.end(), [&](std::int32_t sample) {
+                    return selection_.layers[at(sample)] <= options_.target_layers;
+                });
+            if (best == kNone || bared < least) {
+                best = c;
+                least = bared;
+            }
+        }
+        if (best == kNone) {
+            return false;
+        }
+        const std::int32_t member = laid_[best].member;
+        for (const std::int32_t sample : members_[at(member)].footprint) {
+            --selection_.layers[at(sample)];
+        }
+        selection_.chosen.erase(
+            std::find(selection_.chosen.begin(), selection_.chosen.end(), member));
+        laid_.erase(laid_.begin() + static_cast<std::ptrdiff_t>(best));
         return true;
     }
 

@@ -32,7 +32,8 @@ constexpr int kMaxReplacements = 12;
 constexpr std::size_t kScarce = 48;
 constexpr std::size_t kEstablished = 8;
 constexpr int kScarceRounds = 4;
-constexpr std::size_t kShare = 240;  // of every scarce way in the draw: all count the same
+constexpr std::size_t kHardRatio = 2;  // a way is hard when less than one in two can be wound
+constexpr std::size_t kShare = 240;    // of every scarce way in the draw: all count the same
 
 // How far a candidate near a member is turned at most.
 constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
@@ -322,6 +323,11 @@ private:
                 verdict_[at(i)] = Verdict::Accepted;  // listed once, even where laid twice
             }
         }
+        return verify_all(unknown);
+    }
+
+    // \pre every member is listed once; false when any was rejected
+    bool verify_all(const std::vector<std::int32_t>& unknown) {
         parallel_for(unknown.size(), 1, [&](std::size_t begin, std::size_t) {
             const std::int32_t i = unknown[begin];
             verdict_[at(i)] = verify(members_[at(i)]);
@@ -336,8 +342,35 @@ private:
         return all;
     }
 
+    // Verifies the members of hard ways, where few of those that lie there can be wound: the one
+    // fibre depends on them, so it must be known early which the machine accepts.
+    void verify_hard_ways() {
+        std::map<std::pair<std::size_t, std::size_t>, std::vector<std::int32_t>> windable;
+        std::map<std::pair<std::size_t, std::size_t>, std::size_t> lying;
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            for (const bool backward : {false, true}) {
+                const std::pair way{departure_node(start_of(members_[i], backward)),
+                                    arrival_node(end_of(members_[i], backward))};
+                ++lying[way];
+                if (backward ? members_[i].windable_backward : members_[i].windable_forward) {
+                    windable[way].push_back(static_cast<std::int32_t>(i));
+                }
+            }
+        }
+        std::vector<std::int32_t> hard;
+        for (const auto& [way, members] : windable) {
+            if (members.size() * kHardRatio < lying[way]) {
+                hard.insert(hard.end(), members.begin(), members.end());
+            }
+        }
+        std::sort(hard.begin(), hard.end());
+        hard.erase(std::unique(hard.begin(), hard.end()), hard.end());
+        verify_all(hard);
+    }
+
     void choose() {
         verdict_.assign(members_.size(), Verdict::Unknown);
+        verify_hard_ways();
         std::vector<char> allowed(members_.size(), 1);
         for (int round = 0; round <= kMaxReplacements; ++round) {
             tell("choose", static_cast<double>(round) / kMaxReplacements);

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 // Distance of the stations at which the free fibre is tried: shorter than any head that could slip
 // by.
-constexpr double kWindableStep_mm = 8.0;
+constexpr double kWindableStep_mm = 5.0;
 
 constexpr std::size_t kCandidateChunk = 64;
 
