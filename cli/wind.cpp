@@ -273,9 +273,10 @@ private:
         Check check{"continuity", result_.plan.fibres == 1, {}, {}};
         check.numbers["fibres"] = result_.plan.fibres;
         if (!check.ok) {
-            check.words = "the plan takes " + std::to_string(result_.plan.fibres) +
-                          " separate fibres, one program winds one; a longer extension or a higher "
-                          "friction gives more courses to join them";
+            check.words =
+                "the plan takes " + std::to_string(result_.plan.fibres) +
+                " separate fibres, one program winds one; a slimmer head, less clearance, a "
+                "longer extension or more friction gives more courses to join them";
         }
         result_.checks.push_back(check);
     }
