@@ -42,6 +42,9 @@ constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
 // fits when every station is tried.
 constexpr double kHeadMargin_mm = 0.3;
 
+// Times that the choice is narrowed to what one fibre reaches.
+constexpr int kMaxNarrowings = 3;
+
 // Distance of the stations of a plan: what the machine is told of the curve between them is below
 // its own following error.
 constexpr double kStation_mm = 4.0;
@@ -372,6 +375,7 @@ private:
         verdict_.assign(members_.size(), Verdict::Unknown);
         verify_hard_ways();
         std::vector<char> allowed(members_.size(), 1);
+        int narrowed = 0;
         for (int round = 0; round <= kMaxReplacements; ++round) {
             tell("choose", static_cast<double>(round) / kMaxReplacements);
             for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -383,14 +387,88 @@ private:
             laid_ = balance_courses(members_, allowed, mandrel_.rims.size(), options_.select,
                                     selection_);
             if (verify_chosen()) {
-                return;
+                order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
+                if (fibres_in(order_).size() <= 1 || narrowed == kMaxNarrowings) {
+                    break;
+                }
+                ++narrowed;
+                narrow_to_main_fibre();
+            }
+        }
+        order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
+        keep_main_fibre();
+    }
+
+    // The stretches of the order that one fibre winds: first and one past the last course of each.
+    using Stretch = std::pair<std::size_t, std::size_t>;
+    static std::vector<Stretch> fibres_in(const std::vector<OrderedCourse>& order) {
+        std::vector<Stretch> fibres;
+        std::size_t begin = 0;
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            if (order[i].cut_after) {
+                fibres.emplace_back(begin, i + 1);
+                begin = i + 1;
+            }
+        }
+        return fibres;
+    }
+
+    // The fibre with the most course length.
+    [[nodiscard]] Stretch main_fibre() const {
+        Stretch best{0, 0};
+        double longest = -1.0;
+        for (const Stretch& fibre : fibres_in(order_)) {
+            double length = 0.0;
+            for (std::size_t i = fibre.first; i < fibre.second; ++i) {
+                length += members_[at(order_[i].course.member)].length_mm;
+            }
+            if (length > longest) {
+                longest = length;
+                best = fibre;
+            }
+        }
+        return best;
+    }
+
+    // From here on only what can be wound between the nodes of the main fibre: what no single fibre
+    // can reach is better not chosen at all.
+    void narrow_to_main_fibre() {
+        std::vector<char> visited(2 * mandrel_.rims.size(), 0);
+        const Stretch fibre = main_fibre();
+        for (std::size_t i = fibre.first; i < fibre.second; ++i) {
+            const auto [member, backward] = order_[i].course;
+            visited[departure_node(start_of(members_[at(member)], backward))] = 1;
+            visited[arrival_node(end_of(members_[at(member)], backward))] = 1;
+        }
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            Member& member = members_[i];
+            for (const bool backward : {false, true}) {
+                bool& windable = backward ? member.windable_backward : member.windable_forward;
+                windable = windable && visited[departure_node(start_of(member, backward))] != 0 &&
+                           visited[arrival_node(end_of(member, backward))] != 0;
+            }
+            if (!member.windable_forward && !member.windable_backward) {
+                verdict_[i] = Verdict::Rejected;
             }
         }
     }
 
+    void keep_main_fibre() {
+        const Stretch fibre = main_fibre();
+        for (std::size_t i = 0; i < order_.size(); ++i) {
+            if (i < fibre.first || i >= fibre.second) {
+                for (const std::int32_t sample : members_[at(order_[i].course.member)].footprint) {
+                    --selection_.layers[at(sample)];
+                }
+                ++plan_.effort.courses_out_of_reach;
+            }
+        }
+        order_ = {order_.begin() + static_cast<std::ptrdiff_t>(fibre.first),
+                  order_.begin() + static_cast<std::ptrdiff_t>(fibre.second)};
+    }
+
     void lay_out() {
-        const std::vector<OrderedCourse> order =
-            order_courses(mandrel_.rims, members_, laid_, rules_.turn);
+        const std::vector<OrderedCourse>& order = order_;
         bool fresh = true;
         for (std::size_t i = 0; i < order.size(); ++i) {
             const auto [member, backward] = order[i].course;
@@ -550,6 +628,7 @@ private:
     std::vector<Refusal> closest_miss_;  // per sample: the last check that a candidate there failed
     Selection selection_;
     std::vector<LaidCourse> laid_;
+    std::vector<OrderedCourse> order_;
     std::uint64_t draws_ = 0;
     Plan plan_;
 };

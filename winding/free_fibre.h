@@ -52,7 +52,7 @@ struct FreeFibreWindow {
 
 /// Most that the free length may grow per fibre laid (no unit): the fibre then runs through the eye
 /// three times as fast as it is laid.
-inline constexpr double kLengtheningRate = 2.0;
+inline constexpr double kLengtheningRate = 3.0;
 
 /// Most that it may shrink (no unit): below 1 fibre always runs out of the eye and never goes
 /// slack.

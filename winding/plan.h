@@ -46,7 +46,8 @@ struct Uncovered {
 struct PlanEffort {
     std::int64_t candidates = 0;
     std::array<std::int64_t, kRefusals> refusals{};
-    int rejected_courses = 0;  ///< chosen, then refused by the measured slip or by the machine
+    int courses_out_of_reach = 0;  ///< chosen, but not to be joined to the one fibre; left out
+    int rejected_courses = 0;      ///< chosen, then refused by the measured slip or by the machine
 };
 
 struct Plan {
