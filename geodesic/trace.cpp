@@ -86,11 +86,14 @@ private:
         return kn * (kn > 0.0 ? steering_.slip_ratio : steering_.slip_ratio_concave);
     }
 
-    void record() {
+    [[nodiscard]] PathPoint station() {
         const double kn = normal_curvature();
-        const PathPoint point{{face_, bary_},        position_, normal_, tangent_, length_mm_, kn,
-                              geodesic_curvature(kn)};
-        kg_per_mm_ = point.kg_per_mm;
+        kg_per_mm_ = geodesic_curvature(kn);
+        return {{face_, bary_}, position_, normal_, tangent_, length_mm_, kn, kg_per_mm_};
+    }
+
+    void record() {
+        const PathPoint point = station();
         if (!result_.path.empty() && length_mm_ - result_.path.back().s_mm < min_station_mm_ &&
             result_.path.back().normal.dot(normal_) > 1.0 - kBaryEps) {
             return;
@@ -169,10 +172,7 @@ private:
     bool advance(const Vector3d& rate, const Exit& exit) {
         const double left = options_.max_length_mm - length_mm_;
         if (exit.length_mm >= left) {
-            move_to(bary_ + left * rate, left);
-            result_.stop = TraceStop::Length;
-            record();
-            return false;
+            return end_at(bary_ + left * rate, left);
         }
         Vector3d bary = bary_ + exit.length_mm * rate;
         bary[static_cast<Index>(exit.opposite)] = 0.0;
@@ -191,10 +191,7 @@ private:
         const double length = (p_[vertex] - position_).norm();
         if (length >= options_.max_length_mm - length_mm_) {
             const double left = options_.max_length_mm - length_mm_;
-            move_to(bary_ + (bary - bary_) * (left / length), left);
-            result_.stop = TraceStop::Length;
-            record();
-            return false;
+            return end_at(bary_ + (bary - bary_) * (left / length), left);
         }
         // The exit edge joins `vertex` and the corner opposite the entry edge.
         return cross(bary, forward ? from : to, length);
@@ -222,6 +219,15 @@ private:
         t = rotate_minimally(t, normal_, normal);
         normal_ = normal;
         tangent_ = (t - normal * normal.dot(t)).normalized();
+    }
+
+    // The last station is where it was asked for, to the bit and however near the one before.
+    bool end_at(const Vector3d& bary, double left) {
+        move_to(bary, left);
+        length_mm_ = options_.max_length_mm;
+        result_.stop = TraceStop::Length;
+        result_.path.push_back(station());
+        return false;
     }
 
     // Moves to `bary` on the edge opposite `opposite` and into the next face.

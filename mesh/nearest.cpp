@@ -11,6 +11,30 @@ namespace meshwind {
 struct NearestPoints::Impl {
     std::vector<double> data;
     std::unique_ptr<flann::Index<flann::L2_3D<double>>> index;
+
+    // Indices within a squared distance, ascending.
+    [[nodiscard]] std::vector<std::int32_t> within(Eigen::Vector3d query,
+                                                   double squared_mm2) const {
+        std::vector<std::vector<std::size_t>> indices;
+        std::vector<std::vector<double>> squared;
+        flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
+        exact.sorted = false;
+        // FLANN takes the squared radius in single precision and leaves out what lies on it: one
+        // step up, so that nothing is lost, and what is too far is dropped below.
+        const float widened =
+            std::nextafter(static_cast<float>(squared_mm2), std::numeric_limits<float>::max());
+        index->radiusSearch(flann::Matrix<double>(query.data(), 1, 3), indices, squared, widened,
+                            exact);
+        std::vector<std::int32_t> found;
+        found.reserve(indices[0].size());
+        for (std::size_t i = 0; i < indices[0].size(); ++i) {
+            if (squared[0][i] <= squared_mm2) {
+                found.push_back(static_cast<std::int32_t>(indices[0][i]));
+            }
+        }
+        std::sort(found.begin(), found.end());
+        return found;
+    }
 };
 
 NearestPoints::NearestPoints(std::span<const Eigen::Vector3d> points_mm)
@@ -33,26 +57,7 @@ NearestPoints& NearestPoints::operator=(NearestPoints&&) noexcept = default;
 
 std::vector<std::int32_t> NearestPoints::within(const Eigen::Vector3d& query,
                                                 double radius_mm) const {
-    std::vector<std::int32_t> found;
-    if (!impl_->index) {
-        return found;
-    }
-    Eigen::Vector3d point = query;
-    std::vector<std::vector<std::size_t>> indices;
-    std::vector<std::vector<double>> squared;
-    flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED);
-    exact.sorted = false;
-    // FLANN takes the squared radius in single precision: one step up, so that nothing is lost.
-    const float widened =
-        std::nextafter(static_cast<float>(radius_mm * radius_mm), std::numeric_limits<float>::max());
-    impl_->index->radiusSearch(flann::Matrix<double>(point.data(), 1, 3), indices, squared, widened,
-                               exact);
-    found.reserve(indices[0].size());
-    for (const std::size_t i : indices[0]) {
-        found.push_back(static_cast<std::int32_t>(i));
-    }
-    std::sort(found.begin(), found.end());
-    return found;
+    return impl_->index ? impl_->within(query, radius_mm * radius_mm) : std::vector<std::int32_t>{};
 }
 
 std::int32_t NearestPoints::nearest(const Eigen::Vector3d& query) const {
@@ -64,7 +69,7 @@ std::int32_t NearestPoints::nearest(const Eigen::Vector3d& query) const {
     std::vector<std::vector<double>> squared;
     impl_->index->knnSearch(flann::Matrix<double>(point.data(), 1, 3), indices, squared, 1,
                             flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-    const std::vector<std::int32_t> ties = within(query, std::sqrt(squared[0][0]));
+    const std::vector<std::int32_t> ties = impl_->within(query, squared[0][0]);
     return ties.empty() ? static_cast<std::int32_t>(indices[0][0]) : ties.front();
 }
 

@@ -1,6 +1,5 @@
 #include "mesh/ray_query.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -142,19 +141,21 @@ struct RayQuery::Impl {
     }
 
     void add(unsigned id, const TriangleSoup& soup) const {
+        if (soup.faces.empty()) {
+            return;
+        }
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-            std::max<std::size_t>(soup.points_mm.size(), 1)));
+        auto* vertex = static_cast<float*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    3 * sizeof(float), soup.points_mm.size()));
         for (const Eigen::Vector3d& p : soup.points_mm) {
             for (const double x : p) {
                 *vertex++ = static_cast<float>(x);
             }
         }
-        auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
-            std::max<std::size_t>(soup.faces.size(), 1)));
-        std::fill(index, index + 3, 0U);
+        auto* index = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), soup.faces.size()));
         for (const auto& face : soup.faces) {
             for (const std::int32_t v : face) {
                 *index++ = static_cast<std::uint32_t>(v);

@@ -1,0 +1,113 @@
+/// What traces are compared with: fibre paths on exact surfaces, random starts, sound results.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "../mesh/exact_torus.h"
+#include "../mesh/frozen.h"
+#include "core/units.h"
+#include "geodesic/trace.h"
+
+namespace meshwind::test {
+
+struct CurveState {
+    Eigen::Vector3d position_mm;
+    Eigen::Vector3d tangent;
+};
+
+/// The fibre path on an exact surface with kg = slip_ratio kn: p' = t, t' = kg b - kn n by the
+/// classical Runge-Kutta method. Steps of at most 0.25 mm leave (0.25 / 50)^4, 6e-10, of a mm per
+/// mm on a tube of radius 50 mm.
+template <class Shape>
+CurveState follow(const Shape& shape, const CurveState& start, double length_mm,
+                  double slip_ratio = 0.0) {
+    using Eigen::Vector3d;
+    const auto bend = [&](const Vector3d& p, const Vector3d& t) -> Vector3d {
+        const Vector3d n = shape.normal(p);
+        const double kn = t.dot(shape.shape_operator_per_mm(p) * t);
+        return slip_ratio * kn * n.cross(t) - kn * n;
+    };
+    const int steps = static_cast<int>(std::ceil(length_mm / 0.25));
+    const double h = length_mm / steps;
+    Vector3d p = start.position_mm;
+    Vector3d t = start.tangent;
+    for (int i = 0; i < steps; ++i) {
+        const Vector3d a = bend(p, t);
+        const Vector3d tb = t + 0.5 * h * a;
+        const Vector3d b = bend(p + 0.5 * h * t, tb);
+        const Vector3d tc = t + 0.5 * h * b;
+        const Vector3d c = bend(p + 0.5 * h * tb, tc);
+        const Vector3d td = t + h * c;
+        const Vector3d d = bend(p + h * tc, td);
+        p += h / 6.0 * (t + 2.0 * tb + 2.0 * tc + td);
+        t += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+        t.normalize();
+    }
+    return {p, t};
+}
+
+struct Start {
+    SurfacePoint at;
+    Eigen::Vector3d direction;  ///< unit, in the tangent plane
+};
+
+/// Anywhere on the surface in any direction.
+inline Start random_start(const Surface& surface, std::mt19937_64& random) {
+    std::uniform_int_distribution<std::int32_t> face(
+        0, static_cast<std::int32_t>(surface.face.size()) - 1);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    Start start;
+    start.at.face = face(random);
+    double u = share(random);
+    double v = share(random);
+    if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+    }
+    start.at.bary = {1.0 - u - v, u, v};
+    const double angle = 2.0 * kPi * share(random);
+    const Eigen::Vector3d n = smooth_normal(surface, start.at);
+    const Eigen::Vector3d x = n.unitOrthogonal();
+    start.direction = std::cos(angle) * x + std::sin(angle) * n.cross(x);
+    return start;
+}
+
+/// What holds for every trace, whatever the surface: finite, ordered, unit, tangential, in its
+/// face.
+inline void expect_sound(const Surface& surface, const TraceResult& result,
+                         const TraceOptions& options = {}) {
+    ASSERT_FALSE(result.path.empty());
+    double last_s = 0.0;
+    for (const PathPoint& p : result.path) {
+        ASSERT_TRUE(p.position_mm.allFinite() && p.normal.allFinite() && p.tangent.allFinite());
+        ASSERT_TRUE(std::isfinite(p.kn_per_mm) && std::isfinite(p.kg_per_mm));
+        ASSERT_GE(p.s_mm, last_s);
+        last_s = p.s_mm;
+        // Rounding of one normalisation and one projection.
+        ASSERT_NEAR(p.normal.norm(), 1.0, 1e-14);
+        ASSERT_NEAR(p.tangent.norm(), 1.0, 1e-14);
+        ASSERT_NEAR(p.normal.dot(p.tangent), 0.0, 1e-14);
+        ASSERT_TRUE(p.at.face >= 0 && static_cast<std::size_t>(p.at.face) < surface.face.size());
+        ASSERT_NEAR(p.at.bary.sum(), 1.0, 1e-14);
+        ASSERT_GE(p.at.bary.minCoeff(), 0.0);
+        // Rounding of coordinates of up to 1000 mm, three products.
+        ASSERT_LT((position_mm(surface, p.at) - p.position_mm).norm(), 1e-12 * 1000.0);
+    }
+    ASSERT_LE(last_s, options.max_length_mm);
+    if (result.stop == TraceStop::Length) {
+        ASSERT_EQ(last_s, options.max_length_mm);
+    }
+    ASSERT_EQ(result.stop == TraceStop::Rim, result.rim >= 0);
+}
+
+/// The vertex, edge or inner point of a face: corner shares by name.
+inline SurfacePoint point_in(std::int32_t face, double a, double b, double c) {
+    return {face, Eigen::Vector3d(a, b, c)};
+}
+
+}  // namespace meshwind::test

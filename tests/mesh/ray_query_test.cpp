@@ -1,0 +1,265 @@
+#include "mesh/ray_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t kSeed = 17;
+constexpr int kQueries = 2000;
+constexpr double kSide_mm = 100.0;
+// Embree stores single precision: 6e-8 of 200 mm, and a few roundings of the intersection.
+constexpr double kSingle_mm = 1e-3;
+
+struct Triangle {
+    Vector3d a, b, c;
+};
+
+Vector3d random_point(std::mt19937_64& random, double side_mm = kSide_mm) {
+    std::uniform_real_distribution<double> side(-side_mm, side_mm);
+    const double x = side(random);
+    const double y = side(random);
+    return {x, y, side(random)};
+}
+
+// Two soups of scattered triangles of some 60 mm.
+std::vector<TriangleSoup> random_parts(std::mt19937_64& random) {
+    std::vector<TriangleSoup> parts(2);
+    for (TriangleSoup& soup : parts) {
+        for (std::int32_t f = 0; f < 100; ++f) {
+            const Vector3d centre = random_point(random);
+            for (int i = 0; i < 3; ++i) {
+                soup.points_mm.push_back(centre + random_point(random, 30.0));
+            }
+            soup.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+        }
+    }
+    return parts;
+}
+
+Triangle triangle_of(const TriangleSoup& soup, std::size_t f) {
+    const auto& [a, b, c] = soup.faces[f];
+    return {soup.points_mm[static_cast<std::size_t>(a)],
+            soup.points_mm[static_cast<std::size_t>(b)],
+            soup.points_mm[static_cast<std::size_t>(c)]};
+}
+
+std::vector<Triangle> triangles_of(const std::vector<TriangleSoup>& parts) {
+    std::vector<Triangle> triangles;
+    for (const TriangleSoup& soup : parts) {
+        for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+            triangles.push_back(triangle_of(soup, f));
+        }
+    }
+    return triangles;
+}
+
+// Where the line meets the triangle whose edges are moved outward by `slack` (share of the size).
+std::optional<double> meet(const Vector3d& origin, const Vector3d& direction, const Triangle& t,
+                           double slack) {
+    Eigen::Matrix3d m;
+    m << t.b - t.a, t.c - t.a, -direction;
+    const Vector3d x = m.fullPivLu().solve(origin - t.a);
+    const bool inside = x[0] >= -slack && x[1] >= -slack && x[0] + x[1] <= 1.0 + slack;
+    return inside ? std::optional(x[2]) : std::nullopt;
+}
+
+double first_hit_by_force(const std::vector<Triangle>& triangles, const Vector3d& origin,
+                          const Vector3d& direction, double max, double slack) {
+    double first = max;
+    for (const Triangle& t : triangles) {
+        const auto hit = meet(origin, direction, t, slack);
+        if (hit && *hit >= 0.0) {
+            first = std::min(first, *hit);
+        }
+    }
+    return first;
+}
+
+double to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+    const double share = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    return (a + share * (b - a) - p).norm();
+}
+
+double to_triangle(const Vector3d& p, const Triangle& t) {
+    const Vector3d n = (t.b - t.a).cross(t.c - t.a).normalized();
+    const auto below = meet(p, n, t, 0.0);
+    const double edges =
+        std::min({to_segment(p, t.a, t.b), to_segment(p, t.b, t.c), to_segment(p, t.c, t.a)});
+    return below ? std::min(std::abs(*below), edges) : edges;
+}
+
+// Least distance of two segments: inside both, or at one of the four ends.
+double between_segments(const Vector3d& p, const Vector3d& q, const Vector3d& a,
+                        const Vector3d& b) {
+    double least = std::min(
+        {to_segment(p, a, b), to_segment(q, a, b), to_segment(a, p, q), to_segment(b, p, q)});
+    Eigen::Matrix<double, 3, 2> m;
+    m << q - p, a - b;
+    const Eigen::Vector2d x = (m.transpose() * m).inverse() * m.transpose() * (a - p);
+    if (x.minCoeff() >= 0.0 && x.maxCoeff() <= 1.0) {
+        least = std::min(least, (p + x[0] * (q - p) - a - x[1] * (b - a)).norm());
+    }
+    return least;
+}
+
+double segment_to_triangle(const Vector3d& p, const Vector3d& q, const Triangle& t) {
+    const auto hit = meet(p, q - p, t, 0.0);
+    if (hit && *hit >= 0.0 && *hit <= 1.0) {
+        return 0.0;
+    }
+    return std::min({to_triangle(p, t), to_triangle(q, t), between_segments(p, q, t.a, t.b),
+                     between_segments(p, q, t.b, t.c), between_segments(p, q, t.c, t.a)});
+}
+
+// A ray within `kSlack` of an edge may be decided either way in single precision; those are few.
+TEST(RayQuery, FirstHitAgreesWithBruteForce) {
+    constexpr double kSlack = 1e-5;
+    std::mt19937_64 random(kSeed);
+    const auto parts = random_parts(random);
+    const auto triangles = triangles_of(parts);
+    const RayQuery rays(parts);
+    int hits = 0;
+    int undecided = 0;
+    for (int i = 0; i < kQueries; ++i) {
+        const Vector3d origin = random_point(random);
+        const Vector3d direction = random_point(random).normalized();
+        const double max_mm = i % 2 == 0 ? 500.0 : 80.0;
+        const double wide = first_hit_by_force(triangles, origin, direction, max_mm, kSlack);
+        const double tight = first_hit_by_force(triangles, origin, direction, max_mm, -kSlack);
+        if (wide != tight) {
+            ++undecided;
+            continue;
+        }
+        const double hit = rays.first_hit_mm(origin, direction, max_mm);
+        // The grazing of a flat triangle stretches the error by 1 / sine: 100 covers the seed.
+        EXPECT_NEAR(hit, wide, 100.0 * kSingle_mm) << "seed " << kSeed << " query " << i;
+        hits += hit < max_mm ? 1 : 0;
+    }
+    EXPECT_GT(hits, kQueries / 8);
+    EXPECT_LT(undecided, kQueries / 100);
+}
+
+TEST(RayQuery, OccludedAgreesWithBruteForce) {
+    constexpr double kSlack = 1e-4;
+    std::mt19937_64 random(kSeed + 1);
+    const auto parts = random_parts(random);
+    const auto triangles = triangles_of(parts);
+    const RayQuery rays(parts);
+    int occluded = 0;
+    int undecided = 0;
+    for (int i = 0; i < kQueries; ++i) {
+        const Vector3d from = random_point(random);
+        const Vector3d to = random_point(random);
+        const bool wide =
+            first_hit_by_force(triangles, from, to - from, 2.0, kSlack) <= 1.0 + kSlack;
+        const bool tight =
+            first_hit_by_force(triangles, from, to - from, 2.0, -kSlack) <= 1.0 - kSlack;
+        if (wide != tight) {
+            ++undecided;
+            continue;
+        }
+        EXPECT_EQ(rays.occluded(from, to), wide) << "seed " << kSeed + 1 << " query " << i;
+        occluded += wide ? 1 : 0;
+    }
+    EXPECT_GT(occluded, kQueries / 8);
+    EXPECT_LT(undecided, kQueries / 100);
+}
+
+// Closest points are computed in double: only rounding is allowed.
+TEST(RayQuery, ClosestAgreesWithBruteForce) {
+    std::mt19937_64 random(kSeed + 2);
+    const auto parts = random_parts(random);
+    const auto triangles = triangles_of(parts);
+    const RayQuery rays(parts);
+    for (int i = 0; i < kQueries; ++i) {
+        const Vector3d query = random_point(random, 1.5 * kSide_mm);
+        const double radius_mm = i % 2 == 0 ? 1000.0 : 10.0;
+        double least = radius_mm;
+        for (const Triangle& t : triangles) {
+            least = std::min(least, to_triangle(query, t));
+        }
+        const ClosestPoint found = rays.closest(query, radius_mm);
+        // Embree prunes by single precision: a triangle that is nearer by less may be passed over.
+        ASSERT_NEAR(found.distance_mm, least, 1e-4) << "seed " << kSeed + 2 << " query " << i;
+        EXPECT_EQ(found.part < 0, found.distance_mm == radius_mm);
+        if (found.part >= 0) {
+            const Triangle t = triangle_of(parts[static_cast<std::size_t>(found.part)],
+                                           static_cast<std::size_t>(found.face));
+            const Vector3d p = found.bary[0] * t.a + found.bary[1] * t.b + found.bary[2] * t.c;
+            EXPECT_NEAR(found.bary.sum(), 1.0, 1e-12);
+            EXPECT_GE(found.bary.minCoeff(), 0.0);
+            EXPECT_LT((p - found.position_mm).norm(), 1e-11);
+            EXPECT_NEAR((found.position_mm - query).norm(), found.distance_mm, 1e-11);
+            EXPECT_NEAR(to_triangle(query, t), found.distance_mm, 1e-9);
+        }
+    }
+}
+
+// Between the radius and 1.01 of it both answers are right; nearer or farther there is one.
+TEST(RayQuery, CapsuleClearIsConservativeByOnePercent) {
+    std::mt19937_64 random(kSeed + 3);
+    const auto parts = random_parts(random);
+    const auto triangles = triangles_of(parts);
+    const RayQuery rays(parts);
+    std::uniform_real_distribution<double> radii(0.5, 10.0);
+    int clear = 0;
+    for (int i = 0; i < kQueries; ++i) {
+        const Vector3d from = random_point(random);
+        const Vector3d to = from + random_point(random, 40.0);
+        const double radius_mm = radii(random);
+        double least = 1e9;
+        for (const Triangle& t : triangles) {
+            least = std::min(least, segment_to_triangle(from, to, t));
+        }
+        const bool answer = rays.capsule_clear(from, to, radius_mm);
+        if (least < radius_mm - kSingle_mm) {
+            EXPECT_FALSE(answer) << "seed " << kSeed + 3 << " query " << i;
+        } else if (least > 1.01 * radius_mm + kSingle_mm) {
+            EXPECT_TRUE(answer) << "seed " << kSeed + 3 << " query " << i;
+        }
+        clear += answer ? 1 : 0;
+    }
+    EXPECT_GT(clear, kQueries / 10);
+    EXPECT_LT(clear, kQueries - kQueries / 10);
+}
+
+// Equally near triangles: the lowest part and face, whatever the traversal order.
+TEST(RayQuery, ClosestTakesTheLowestOfEquals) {
+    TriangleSoup fan;
+    fan.points_mm = {{0, 0, 0}};
+    for (std::int32_t i = 0; i < 24; ++i) {
+        fan.points_mm.emplace_back(10.0 * std::cos(0.26 * i), 10.0 * std::sin(0.26 * i), 0.0);
+    }
+    for (std::int32_t i = 1; i < 24; ++i) {
+        fan.faces.push_back({0, i, i + 1});
+    }
+    const RayQuery rays(std::vector<TriangleSoup>{fan, fan});
+    const ClosestPoint found = rays.closest({0, 0, 5}, 100.0);
+    EXPECT_EQ(found.part, 0);
+    EXPECT_EQ(found.face, 0);
+    EXPECT_DOUBLE_EQ(found.distance_mm, 5.0);
+}
+
+TEST(RayQuery, AnswersWithoutTriangles) {
+    for (const std::size_t count : {0U, 1U}) {
+        const RayQuery rays(std::vector<TriangleSoup>{count, TriangleSoup{}});
+        EXPECT_EQ(rays.first_hit_mm({0, 0, 0}, {0, 0, 1}, 7.0), 7.0);
+        EXPECT_FALSE(rays.occluded({0, 0, 0}, {0, 0, 9}));
+        EXPECT_EQ(rays.closest({0, 0, 0}, 3.0).part, -1);
+        EXPECT_EQ(rays.closest({0, 0, 0}, 3.0).distance_mm, 3.0);
+        EXPECT_TRUE(rays.capsule_clear({0, 0, 0}, {0, 0, 9}, 1.0));
+    }
+}
+
+}  // namespace
+}  // namespace meshwind
