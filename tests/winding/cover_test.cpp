@@ -37,7 +37,7 @@ const Mandrel& tee() {
 }
 
 // Joints within 0.2 mm and 0.5 degrees: a course ends on a chord of the rim, the turn begins on its
-// circle. The chord's sagitta is up to edge^2 / (8 R), here 0.2 mm.
+// circle. The sagitta is up to edge^2 / (8 R), here 0.1 mm.
 void expect_continuous(const Plan& plan) {
     for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
         const Piece& piece = plan.pieces[i];
