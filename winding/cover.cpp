@@ -45,8 +45,8 @@ constexpr double kHeadMargin_mm = 0.3;
 // Plans that are tried until the machine can wind the whole.
 constexpr int kMaxAttempts = 8;
 
-// Times that the choice is narrowed to what one fibre reaches.
-constexpr int kMaxNarrowings = 3;
+// Rounds after which a plan of several fibres is not waited for any longer but narrowed to one.
+constexpr int kSettling = 3;
 
 // Distance of the stations of a plan: what the machine is told of the curve between them is below
 // its own following error.
@@ -383,7 +383,6 @@ private:
 
     void choose() {
         std::vector<char> allowed(members_.size(), 1);
-        int narrowed = 0;
         for (int round = 0; round <= kMaxReplacements; ++round) {
             tell("choose", static_cast<double>(round) / kMaxReplacements);
             for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -392,15 +391,24 @@ private:
                                                (verdict_[i] == Verdict::Unknown && !known_only));
             }
             selection_ = select_courses(members_, allowed, samples_.size(), options_.select);
+            if (entry_ >= 0 && allowed[at(entry_)] != 0 &&
+                std::find(selection_.chosen.begin(), selection_.chosen.end(), entry_) ==
+                    selection_.chosen.end()) {
+                selection_.chosen.push_back(entry_);
+                for (const std::int32_t sample : members_[at(entry_)].footprint) {
+                    ++selection_.layers[at(sample)];
+                }
+            }
             laid_ = balance_courses(members_, allowed, mandrel_.rims.size(), options_.select,
                                     selection_);
-            if (verify_chosen()) {
-                order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
-                if (fibres_in(order_).size() <= 1 || narrowed == kMaxNarrowings) {
-                    break;
-                }
-                ++narrowed;
-                narrow_to_main_fibre();
+            const bool settled = verify_chosen();
+            if (!settled && round < kSettling) {
+                continue;
+            }
+            order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
+            const bool narrower = fibres_in(order_).size() > 1 && narrow_to_main_fibre();
+            if (settled && !narrower) {
+                break;
             }
         }
         order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
@@ -439,8 +447,8 @@ private:
     }
 
     // From here on only what can be wound between the nodes of the main fibre: what no single fibre
-    // can reach is better not chosen at all.
-    void narrow_to_main_fibre() {
+    // can reach is better not chosen at all. False when that excludes nothing.
+    bool narrow_to_main_fibre() {
         std::vector<char> visited(2 * mandrel_.rims.size(), 0);
         const Stretch fibre = main_fibre();
         for (std::size_t i = fibre.first; i < fibre.second; ++i) {
@@ -448,17 +456,93 @@ private:
             visited[departure_node(start_of(members_[at(member)], backward))] = 1;
             visited[arrival_node(end_of(members_[at(member)], backward))] = 1;
         }
+        forget_dead_ends(visited);
+        const std::size_t last_node = find_last_node(visited);
+        bool narrower = false;
         for (std::size_t i = 0; i < members_.size(); ++i) {
             Member& member = members_[i];
             for (const bool backward : {false, true}) {
                 bool& windable = backward ? member.windable_backward : member.windable_forward;
-                windable = windable && visited[departure_node(start_of(member, backward))] != 0 &&
-                           visited[arrival_node(end_of(member, backward))] != 0;
+                const std::size_t from = departure_node(start_of(member, backward));
+                const std::size_t to = arrival_node(end_of(member, backward));
+                const bool around_last = from == last_node && to == last_node;
+                const bool entry = static_cast<std::int32_t>(i) == entry_ && to == last_node;
+                windable =
+                    windable && ((visited[from] != 0 && visited[to] != 0) || around_last || entry);
             }
             if (!member.windable_forward && !member.windable_backward) {
                 verdict_[i] = Verdict::Rejected;
             }
         }
+        return narrower;
+    }
+
+    // Unmarks nodes from which no course leads to another marked one: the fibre can only end there.
+    void forget_dead_ends(std::vector<char>& visited) const {
+        std::vector<char> leads_on(visited.size(), 0);
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            for (const bool backward : {false, true}) {
+                const Member& member = members_[i];
+                const std::size_t from = departure_node(start_of(member, backward));
+                const std::size_t to = arrival_node(end_of(member, backward));
+                if ((backward ? member.windable_backward : member.windable_forward) &&
+                    verdict_[i] != Verdict::Rejected && from != to && visited[to] != 0) {
+                    leads_on[from] = 1;
+                }
+            }
+        }
+        if (std::count(visited.begin(), visited.end(), 1) > 1) {
+            std::transform(visited.begin(), visited.end(), leads_on.begin(), visited.begin(),
+                           [](char v, char on) { return static_cast<char>(v != 0 && on != 0); });
+        }
+    }
+
+    // A node that the fibre can enter but not leave, such as a branch too slim for the head to pass
+    // on the way back, may still be where the fibre ends. The one at which most courses turn round
+    // and round is taken, with the accepted course of the largest footprint as its entry.
+    std::size_t find_last_node(const std::vector<char>& visited) {
+        std::vector<int> rounds(visited.size(), 0);
+        std::vector<std::vector<std::int32_t>> entries(visited.size());
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            const Member& member = members_[i];
+            for (const bool backward : {false, true}) {
+                const std::size_t from = departure_node(start_of(member, backward));
+                const std::size_t to = arrival_node(end_of(member, backward));
+                const bool windable = backward ? member.windable_backward : member.windable_forward;
+                if (!windable || verdict_[i] == Verdict::Rejected || visited[to] != 0) {
+                    continue;
+                }
+                rounds[to] += from == to ? 1 : 0;
+                if (visited[from] != 0) {
+                    entries[to].push_back(static_cast<std::int32_t>(i));
+                }
+            }
+        }
+        entry_ = -1;
+        std::size_t last = visited.size();
+        for (std::size_t node = 0; node < visited.size(); ++node) {
+            if (!entries[node].empty() && (last == visited.size() || rounds[node] > rounds[last])) {
+                last = node;
+            }
+        }
+        if (last == visited.size()) {
+            return last;
+        }
+        std::stable_sort(
+            entries[last].begin(), entries[last].end(), [&](std::int32_t a, std::int32_t b) {
+                return members_[at(a)].footprint.size() > members_[at(b)].footprint.size();
+            });
+        for (const std::int32_t i : entries[last]) {
+            if (verdict_[at(i)] == Verdict::Accepted || verify_all({i})) {
+                const bool backward = arrival_node(end_of(members_[at(i)], true)) == last;
+                const Member& member = members_[at(i)];
+                if (backward ? member.windable_backward : member.windable_forward) {
+                    entry_ = i;
+                    return last;
+                }
+            }
+        }
+        return visited.size();
     }
 
     void keep_main_fibre() {
@@ -663,6 +747,8 @@ private:
     Selection selection_;
     std::vector<LaidCourse> laid_;
     std::vector<OrderedCourse> order_;
+    std::int32_t entry_ =
+        -1;  // the one way into the node where the fibre ends, if that has no way out
     std::uint64_t draws_ = 0;
     Plan plan_;
 };
