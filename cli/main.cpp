@@ -1,6 +1,7 @@
 #include <array>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -22,6 +23,7 @@
 #include "core/parallel.h"
 #include "machines/kinematics.h"
 #include "machines/machine_json.h"
+#include "postproc/dialect.h"
 #include "version.h"
 
 namespace meshwind {
@@ -230,6 +232,9 @@ int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& comm
 // A machine file names its schema; everything else is read as a job.
 int run_validate(const std::string& name, const Common& common) {
     const std::string file = find_input(name).string();
+    if (std::filesystem::is_directory(file)) {
+        throw IoError("io.cannot_read", file, "is a folder; name a JSON file");
+    }
     std::ifstream in(file);
     const nlohmann::json text = nlohmann::json::parse(in, nullptr, false);
     const bool machine =
@@ -237,6 +242,7 @@ int run_validate(const std::string& name, const Common& common) {
     if (machine) {
         const Machine read = read_machine(file);
         const SpindleWristInverse inverse(read);
+        (void)make_dialect(read.controller.dialect);
     } else {
         (void)read_job(file);
     }

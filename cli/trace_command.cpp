@@ -19,6 +19,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+// File units; from farther away no nearest point can be told from its neighbours.
+constexpr double kFarthestStart = 1e9;
+
 constexpr int kLengthDecimals = 6;  // 1 nm: what a study of accuracy needs
 constexpr int kDirectionDecimals = 9;
 constexpr int kCurvatureDecimals = 10;
@@ -93,8 +96,17 @@ Eigen::Isometry3d file_from_mandrel_mm(const Mandrel& mandrel) {
 }  // namespace
 
 std::string run_trace(const TraceRequest& request) {
-    if (!(request.length_mm > 0.0)) {
-        throw InputError("trace.length", "--length", "must be positive");
+    if (!(request.length_mm > 0.0) || !std::isfinite(request.length_mm)) {
+        throw InputError("trace.length", "--length", "must be positive and finite");
+    }
+    if (!std::isfinite(request.slip_ratio)) {
+        throw InputError("trace.lambda", "--lambda", "must be a finite number");
+    }
+    if (request.angle_deg && !std::isfinite(*request.angle_deg)) {
+        throw InputError("trace.angle", "--angle", "must be a finite number of degrees");
+    }
+    if (!(request.start.norm() < kFarthestStart)) {
+        throw InputError("trace.start", "--start", "lies beyond any part; give a point near it");
     }
     const Mandrel mandrel = load_mandrel(request.mandrel, {.unit_mm = request.unit_mm});
     double off_mm = 0.0;

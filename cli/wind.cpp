@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include "cli/digest.h"
@@ -173,6 +174,7 @@ private:
         result_.mandrel =
             load_mandrel(request_.mandrel, mandrel_options(result_.job, request_.unit_mm));
         set_up_rules();
+        folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         watch_.stage("import");
     }
 
@@ -203,20 +205,27 @@ private:
         obstacles_ = std::make_unique<RayQuery>(parts, kTableReach_mm);
     }
 
-    // Whether the machine can wind a course by itself: eye points, axis limits, head and fibre.
-    [[nodiscard]] bool machine_accepts(const Piece& piece) const {
-        const EyePathResult eyes = equal_free_length({&piece, 1}, *obstacles_, rule_.free_fibre);
-        if (!eyes.blocked.empty()) {
-            return false;
-        }
+    // Indices of the pieces, in a stretch of the plan, that the machine cannot wind: no free
+    // length, beyond an axis' travel, or hitting something.
+    [[nodiscard]] std::vector<std::size_t> refused_pieces(std::span<const Piece> pieces) const {
+        const EyePathResult eyes = equal_free_length(pieces, *obstacles_, rule_.free_fibre);
+        std::vector<std::size_t> points = eyes.blocked;
         const JointPath joints =
             solve_joints(result_.machine, eyes.path, RedundancyPolicy::CentralAngle);
-        if (!joints.violations.empty()) {
-            return false;
+        for (const LimitViolation& violation : joints.violations) {
+            points.push_back(violation.point);
         }
-        const CollisionReport report =
-            check_collisions(result_.machine, envelope_, *obstacles_, eyes.path, joints, rule_);
-        return report.fibre_hits.empty() && report.head_hits.empty();
+        if (points.empty()) {
+            const CollisionReport report =
+                check_collisions(result_.machine, envelope_, *obstacles_, eyes.path, joints, rule_);
+            points.insert(points.end(), report.fibre_hits.begin(), report.fibre_hits.end());
+            points.insert(points.end(), report.head_hits.begin(), report.head_hits.end());
+        }
+        std::set<std::size_t> refused;
+        for (const std::size_t point : points) {
+            refused.insert(static_cast<std::size_t>(eyes.path[point].piece));
+        }
+        return {refused.begin(), refused.end()};
     }
 
     void plan() {
@@ -229,7 +238,8 @@ private:
         options.select.target_layers =
             static_cast<int>(std::ceil(job.layers.front().target_layers));
         options.seed = request_.seed;
-        options.accept = [this](const Piece& piece) { return machine_accepts(piece); };
+        options.accept = [this](const Piece& piece) { return refused_pieces({&piece, 1}).empty(); };
+        options.refused = [this](std::span<const Piece> pieces) { return refused_pieces(pieces); };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         result_.plan = plan_cover(result_.mandrel, *obstacles_, options);
         watch_.stage("plan");
@@ -271,7 +281,8 @@ private:
 
     void check_fibres() {
         Check check{"continuity", result_.plan.fibres == 1, {}, {}};
-        check.numbers["fibres"] = result_.plan.fibres;
+        check.numbers = {{"fibres", static_cast<double>(result_.plan.fibres)},
+                         {"worst_joint_mm", result_.plan.worst_joint_mm}};
         if (!check.ok) {
             check.words =
                 "the plan takes " + std::to_string(result_.plan.fibres) +
@@ -408,7 +419,7 @@ private:
     void write() {
         const bool planned = result_.plan.failure.empty();
         result_.program_written = planned && (result_.passed() || request_.force);
-        OutputFolder folder(request_.out);
+        OutputFolder& folder = *folder_;
         if (planned) {
             folder.add("path.csv", path_csv(result_.plan.pieces, result_.eyes.path));
             folder.add("motion.csv", motion_csv(result_.machine, result_.blocks));
@@ -434,6 +445,7 @@ private:
     std::unique_ptr<SpindleWristInverse> inverse_;
     std::unique_ptr<Dialect> dialect_;
     std::unique_ptr<RayQuery> obstacles_;
+    std::unique_ptr<OutputFolder> folder_;
     HeadEnvelope envelope_;
     CollisionRule rule_;
     JointPath joints_;

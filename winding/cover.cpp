@@ -42,6 +42,9 @@ constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
 // fits when every station is tried.
 constexpr double kHeadMargin_mm = 0.3;
 
+// Plans that are tried until the machine can wind the whole.
+constexpr int kMaxAttempts = 8;
+
 // Times that the choice is narrowed to what one fibre reaches.
 constexpr int kMaxNarrowings = 3;
 
@@ -119,13 +122,20 @@ public:
             describe_uncovered();
             return std::move(plan_);
         }
-        choose();
-        if (selection_.chosen.empty()) {
-            plan_.failure = "every course was refused by the machine or by its measured slip";
-            describe_uncovered();
-            return std::move(plan_);
+        verdict_.assign(members_.size(), Verdict::Unknown);
+        verify_hard_ways();
+        for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+            choose();
+            if (order_.empty()) {
+                plan_.failure = "every course was refused by the machine or by its measured slip";
+                describe_uncovered();
+                return std::move(plan_);
+            }
+            lay_out();
+            if (!reject_pieces(attempt + 1 == kMaxAttempts)) {
+                break;
+            }
         }
-        lay_out();
         measure();
         return std::move(plan_);
     }
@@ -372,8 +382,6 @@ private:
     }
 
     void choose() {
-        verdict_.assign(members_.size(), Verdict::Unknown);
-        verify_hard_ways();
         std::vector<char> allowed(members_.size(), 1);
         int narrowed = 0;
         for (int round = 0; round <= kMaxReplacements; ++round) {
@@ -467,7 +475,27 @@ private:
                   order_.begin() + static_cast<std::ptrdiff_t>(fibre.second)};
     }
 
+    // Asks the machine about the whole; rejects the courses it refuses, or whose turn it refuses.
+    bool reject_pieces(bool last_attempt) {
+        if (!options_.refused || last_attempt) {
+            return false;
+        }
+        const std::vector<std::size_t> refused = options_.refused(plan_.pieces);
+        for (const std::size_t piece : refused) {
+            const std::size_t course = piece / 2;  // courses and turns alternate
+            verdict_[at(order_[course].course.member)] = Verdict::Rejected;
+            ++plan_.effort.rejected_courses;
+        }
+        return !refused.empty();
+    }
+
     void lay_out() {
+        plan_.pieces.clear();
+        plan_.fibres = 0;
+        plan_.fibre_length_mm = 0.0;
+        plan_.worst_slip = 0.0;
+        plan_.worst_bridge_mm = 0.0;
+        plan_.worst_joint_mm = 0.0;
         const std::vector<OrderedCourse>& order = order_;
         bool fresh = true;
         for (std::size_t i = 0; i < order.size(); ++i) {
@@ -504,6 +532,12 @@ private:
     }
 
     void add_piece(Piece piece) {
+        if (!piece.starts_fibre) {
+            const double gap =
+                (piece.path.front().position_mm - plan_.pieces.back().path.back().position_mm)
+                    .norm();
+            plan_.worst_joint_mm = std::max(plan_.worst_joint_mm, gap);
+        }
         plan_.fibre_length_mm += piece.path.back().s_mm;
         plan_.worst_slip = std::max(plan_.worst_slip, piece.worst_slip);
         plan_.worst_bridge_mm = std::max(plan_.worst_bridge_mm, piece.string.worst_gap_mm);

@@ -22,6 +22,9 @@ struct CoverOptions {
     /// Asked of every course before it enters the plan, in the direction it would be wound: what
     /// the machine says. Must be pure and thread-safe.
     std::function<bool(const Piece&)> accept;
+    /// Asked of the whole plan: which of its pieces the machine cannot wind in their place. Those
+    /// are replaced and the plan is made again, a few times.
+    std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;
     std::function<void(const char* step, double share)> progress;
 };
 

@@ -21,8 +21,10 @@ public:
     std::vector<OrderedCourse> run() {
         link();
         merge_cycles();
+        merge_at_cuts();
         if (reverse_separate_cycles()) {
             merge_cycles();
+            merge_at_cuts();
         }
         return sequence();
     }
@@ -130,6 +132,32 @@ private:
             }
             std::swap(next_[best.first], next_[best.second]);
         }
+    }
+
+    // Takes a closed cycle into an open one that begins or ends at one of its nodes.
+    void merge_at_cuts() {
+        while (merge_at_a_cut()) {
+        }
+    }
+
+    bool merge_at_a_cut() {
+        const std::vector<std::size_t> cycle = cycle_of_each();
+        for (std::size_t a = 0; a < laid_.size(); ++a) {
+            for (std::size_t b = 0; cut_[a] != 0 && b < laid_.size(); ++b) {
+                if (cycle[a] == cycle[b] || cut_[b] != 0) {
+                    continue;
+                }
+                const bool at_end = arrives(a) == arrives(b);
+                if (at_end || departs(next_[a]) == arrives(b)) {
+                    std::swap(next_[a], next_[b]);
+                    if (at_end) {
+                        std::swap(cut_[a], cut_[b]);
+                    }
+                    return true;
+                }
+            }
+        }
+        return false;
     }
 
     // Winds every closed cycle of reversible courses the other way if it is apart from the first

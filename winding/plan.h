@@ -58,6 +58,8 @@ struct Plan {
     double fibre_length_mm = 0.0;
     double worst_slip = 0.0;
     double worst_bridge_mm = 0.0;
+    double worst_joint_mm =
+        0.0;  ///< largest step between the end of a piece and the start of the next
     Coverage coverage;
     std::vector<Uncovered> uncovered;
     std::vector<double> face_layers;     ///< per face of the surface: mean layers

@@ -97,8 +97,9 @@ private:
                 std::count_if(footprint.begin(), footprint.end(), [&](std::int32_t sample) {
                     return selection_.layers[at(sample)] < options_.target_layers;
                 });
-            if (static_cast<double>(missed) >=
-                options_.least_gain_share * static_cast<double>(footprint.size())) {
+            if (missed > 0 &&
+                static_cast<double>(missed) >=
+                    options_.least_gain_share * static_cast<double>(footprint.size())) {
                 lay(i, 1);
                 continue;
             }

@@ -47,7 +47,8 @@ double slip_for(const Rim& rim, double angle_rad, double run_mm) {
 double positive_angle(double rad) {
     const double turn = 2.0 * kPi;
     const double rest = std::fmod(rad, turn);
-    return rest < 0.0 ? rest + turn : rest;
+    const double positive = rest < 0.0 ? rest + turn : rest;
+    return positive < turn ? positive : 0.0;  // a tiny negative rest rounds up to the whole turn
 }
 
 class TurnPath {

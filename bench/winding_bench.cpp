@@ -1,0 +1,90 @@
+// What planning spends its time on: judging candidates and finding footprints, on the tee of data/.
+#include <benchmark/benchmark.h>
+
+#include "core/units.h"
+#include "mesh/mandrel.h"
+#include "mesh/ray_query.h"
+#include "winding/library.h"
+#include "winding/random.h"
+#include "winding/samples.h"
+
+namespace {
+
+using namespace meshwind;
+
+constexpr double kExtension_mm = 100.0;
+
+struct Scene {
+    Scene()
+        : mandrel(load_mandrel(MESHWIND_SOURCE_DIR "/data/tee.stl")),
+          obstacles(parts()),
+          samples(sample_surface(mandrel.surface, 1.5, 1)),
+          footprints(mandrel.surface, samples, 6.0),
+          rules{mandrel, obstacles, footprints, {}, {}, {}} {
+        rules.turn.extension_mm = kExtension_mm;
+        rules.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
+    }
+
+    [[nodiscard]] RayQuery parts() const {
+        std::vector<TriangleSoup> all{mandrel.whole};
+        for (const Rim& rim : mandrel.rims) {
+            all.push_back(extension_of(rim, kExtension_mm));
+        }
+        return RayQuery(all);
+    }
+
+    [[nodiscard]] std::vector<Candidate> candidates(std::size_t count) const {
+        std::vector<Candidate> all;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto sample = random_bits(1, i) % samples.size();
+            const double slip = rules.tow.friction * (0.9 - 1.8 * random_unit(2, i));
+            all.push_back({samples.at[sample], kPi * random_unit(3, i), slip});
+        }
+        return all;
+    }
+
+    Mandrel mandrel;
+    RayQuery obstacles;
+    CoverageSamples samples;
+    FootprintFinder footprints;
+    CourseRules rules;
+};
+
+const Scene& scene() {
+    static const Scene tee;
+    return tee;
+}
+
+void judge_candidates(benchmark::State& state) {
+    const std::vector<Candidate> candidates =
+        scene().candidates(static_cast<std::size_t>(state.range(0)));
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(build_library(scene().rules, candidates));
+    }
+    state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(judge_candidates)->Arg(256)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(judge_candidates)
+    ->Name("judge_candidates_large")
+    ->Arg(8192)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void build_footprint_finder(benchmark::State& state) {
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(FootprintFinder(scene().mandrel.surface, scene().samples, 6.0));
+    }
+}
+BENCHMARK(build_footprint_finder)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void footprint_of_a_path(benchmark::State& state) {
+    const SurfacePath path = trace_both_ways(scene().rules, scene().candidates(1).front());
+    FootprintFinder::Scratch scratch = scene().footprints.make_scratch();
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(scene().footprints.footprint(path, scratch));
+    }
+    state.counters["mm"] = path.empty() ? 0.0 : path.back().s_mm;
+}
+BENCHMARK(footprint_of_a_path)->Unit(benchmark::kMicrosecond);
+
+}  // namespace

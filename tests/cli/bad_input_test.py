@@ -1,0 +1,242 @@
+"""Every bad input is refused with one line, the promised exit code, and nothing left behind."""
+import copy
+import json
+import math
+import struct
+import sys
+import unittest
+
+import program
+
+STL_TRIANGLE = "facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n"
+
+
+def stl_text(triangles):
+    facets = ("".join(f"vertex {x} {y} {z}\n" for x, y, z in t) for t in triangles)
+    return "solid t\n" + "".join(map(STL_TRIANGLE.format, facets)) + "endsolid t\n"
+
+
+def moebius_off(steps=40, width=4):
+    """A closed band with half a twist, as one connected mesh."""
+    points, faces = [], []
+    for i in range(steps):
+        turn = 2 * math.pi * i / steps
+        for j in range(width + 1):
+            w = 10.0 * (j / width - 0.5)
+            radius = 40.0 + w * math.cos(turn / 2)
+            points.append((radius * math.cos(turn), radius * math.sin(turn),
+                           w * math.sin(turn / 2)))
+    for i in range(steps):
+        for j in range(width):
+            a, b = i * (width + 1) + j, i * (width + 1) + j + 1
+            if i + 1 < steps:
+                c, d = a + width + 1, b + width + 1
+            else:
+                c, d = width - j, width - j - 1
+            faces += [(a, c, b), (b, c, d)]
+    return ("OFF\n%d %d 0\n" % (len(points), len(faces)) +
+            "".join("%.9f %.9f %.9f\n" % p for p in points) +
+            "".join("3 %d %d %d\n" % f for f in faces))
+
+
+class BadInput(program.ProgramTest):
+    def refused(self, *arguments, word="", codes=(2,)):
+        result = self.run_program(*arguments, "--quiet")
+        self.assertIn(result.returncode, codes, result.stderr)
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("meshwind: "), lines[0])
+        self.assertGreater(len(lines[0]), len("meshwind: ") + 10)
+        self.assertIn(word.lower(), lines[0].lower())
+        if 2 in codes and result.returncode == 2:
+            self.assertEqual(result.stdout, "")
+        return lines[0]
+
+    def refused_mandrel(self, name, content, word=""):
+        file = self.write(name, content)
+        before = sorted(self.folder.iterdir())
+        for command in (["inspect"], [], ["wind"]):
+            more = [] if command == ["inspect"] else ["-o", self.folder / "out"]
+            line = self.refused(*command, file, *more, word=word)
+            self.assertIn(name, line, "the line names the file")
+        self.refused("trace", file, "--start", "0,0,0", "--angle", "45", "-o",
+                     self.folder / "path.csv")
+        self.assertEqual(sorted(self.folder.iterdir()), before, "nothing is left behind")
+
+    def test_empty_file(self):
+        for name in ("empty.stl", "empty.obj", "empty.ply", "empty.off"):
+            with self.subTest(name):
+                self.refused_mandrel(name, "")
+
+    def test_text_that_is_no_mesh(self):
+        for name in ("words.stl", "words.obj", "words.ply", "words.off"):
+            with self.subTest(name):
+                self.refused_mandrel(name, "it was a dark and stormy night\n" * 20)
+
+    def test_unknown_format(self):
+        self.refused_mandrel("part.step", "ISO-10303-21;\n")
+
+    def test_truncated_binary_stl(self):
+        whole = self.make("cylinder", "--edge", "10").read_bytes()
+        for kept in (40, 83, 84, 100, 84 + 50 * 20 + 17, len(whole) - 1):
+            with self.subTest(kept):
+                self.refused_mandrel("cut.stl", whole[:kept])
+
+    def test_binary_stl_that_promises_four_billion_triangles(self):
+        self.refused_mandrel("huge.stl", bytes(80) + struct.pack("<I", 0xFFFFFFFF) + bytes(50))
+
+    def test_vertices_that_are_no_numbers(self):
+        good = [(0, 0, 0), (10, 0, 0), (0, 10, 0)]
+        for bad in ("nan", "inf", "-inf", "1e300"):
+            with self.subTest(bad):
+                self.refused_mandrel("bad.stl", stl_text([good, [(0, 0, bad), *good[1:]]]))
+        triangle = struct.pack("<12fH", 0, 0, 1, 0, 0, math.nan, 1, 0, 0, 0, 1, 0, 0)
+        self.refused_mandrel("bad.stl", bytes(80) + struct.pack("<I", 1) + triangle)
+
+    def test_nothing_left_after_repair(self):
+        line = [(0, 0, 0), (10, 0, 0), (20, 0, 0)]
+        point = [(5, 5, 5)] * 3
+        self.refused_mandrel("flat.stl", stl_text([line, point]))
+
+    def test_moebius_band(self):
+        self.refused_mandrel("moebius.off", moebius_off())
+
+    def test_closed_bodies_have_nowhere_to_turn(self):
+        for kind in ("torus", "ellipsoid"):
+            with self.subTest(kind):
+                file = self.make(kind, "--edge", "15")
+                line = self.refused(file, "-o", self.folder / "out", word="rim", codes=(1, 2))
+                self.assertIn(file.name, line)
+                self.assertFalse((self.folder / "out" / "program.ngc").exists())
+
+    def refused_machine(self, machine, word):
+        file = self.write("machine.json", json.dumps(machine))
+        self.refused("validate", file, word=word)
+        self.refused("cylinder.stl", "--machine", file, "-o", self.folder / "out", word=word)
+        self.assertFalse((self.folder / "out").exists())
+
+    def six_axis(self):
+        return json.loads((program.SOURCE / "machines/six_axis.json").read_text())
+
+    def test_machine_files(self):
+        self.make("cylinder", "--edge", "15")
+        good = self.six_axis()
+
+        def changed(change):
+            machine = copy.deepcopy(good)
+            change(machine)
+            return machine
+
+        without = lambda letter: changed(lambda m: m.update(
+            eye_chain=[a for a in m["eye_chain"] if a["letter"] != letter]))
+        # the head's parts on a missing axis are named first, so they go with it
+        bare = changed(lambda m: m["eye"].update(envelope=[]))
+        for letter in "XYZA":
+            with self.subTest("without " + letter):
+                machine = without(letter)
+                machine["eye"]["envelope"] = bare["eye"]["envelope"]
+                self.refused_machine(machine, "axis" if letter == "A" else "axes")
+        with self.subTest("no spindle"):
+            self.refused_machine(changed(lambda m: m.update(mandrel_chain=[])), "mandrel")
+        with self.subTest("unknown key"):
+            self.refused_machine(changed(lambda m: m["eye"].update(rollers=[0, 0, 1])), "rollers")
+        with self.subTest("wrong type"):
+            self.refused_machine(changed(lambda m: m["fibre"].update(take_up="much")), "take_up")
+        with self.subTest("unknown dialect"):
+            self.refused_machine(changed(lambda m: m["controller"].update(dialect="klingon")),
+                                 "klingon")
+
+    def test_machine_with_a_head_mesh_that_is_missing(self):
+        self.make("cylinder", "--edge", "15")
+        machine = self.six_axis()
+        machine["eye"]["envelope"] = [{"type": "mesh", "link": "X", "file": "no_head.stl"}]
+        file = self.write("machine.json", json.dumps(machine))
+        self.refused("cylinder.stl", "--machine", file, "-o", self.folder / "out", word="no_head")
+
+    def refused_job(self, text, word):
+        file = self.write("job.json", text)
+        self.refused("cylinder.stl", "--job", file, "-o", self.folder / "out", word=word)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_job_files(self):
+        self.make("cylinder", "--edge", "15")
+        for text, word in (('{"tow": {"widht": 6}}', "width"),
+                           ('{"tows": {}}', "tow"),
+                           ('{"tow": {"width": "6"}}', "/tow/width"),
+                           ('{"layers": {}}', "/layers"),
+                           ('[]', "job.json"),
+                           ('{"tow": {"width": 6}', "job.json"),
+                           ('', "job.json"),
+                           ('{"tow": {"width": 6,}}', "job.json"),
+                           ('{"eye": {"free_length": 5}}', "/eye/free_length"),
+                           ('{"eye": {"free_length": 900}}', "/eye/free_length"),
+                           ('{"mandrel": {"keep_regions": [77]}}', "77"),
+                           ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "/layers/0"),
+                           ('{"mandrel": {"turn": "pins"}}', "/mandrel/turn")):
+            with self.subTest(text):
+                self.refused_job(text, word)
+
+    def test_output_below_a_file(self):
+        mandrel = self.make("cylinder", "--edge", "15", "--length", "60")
+        self.write("file", "precious")
+        job = self.write("job.json", '{"tow": {"width": 40}}')
+        for below in ("file", "file/out"):
+            with self.subTest(below):
+                self.refused(mandrel, "--job", job, "-o", self.folder / below, word="file")
+        self.refused("trace", mandrel, "--start", "50,0,0", "--angle", "45", "-o",
+                     self.folder / "file" / "path.csv", word="file")
+        self.refused("make", "cylinder", "-o", self.folder / "file" / "a.stl", word="file")
+        self.assertEqual((self.folder / "file").read_text(), "precious")
+        self.assertEqual(len(list(self.folder.iterdir())), 3)
+
+    def test_usage(self):
+        self.make("cylinder", "--edge", "15")
+        for arguments, word in ((["cylinder.stl", "--bogus"], "--bogus"),
+                                (["none.stl"], "none.stl"),
+                                (["inspect", "none.stl"], "none.stl"),
+                                (["inspect"], "mandrel"),
+                                (["inspect", self.folder], ""),
+                                (["validate", "none.json"], "none.json"),
+                                (["validate", self.folder], ""),
+                                (["cylinder.stl", "--machine", "none.json"], "none.json"),
+                                (["cylinder.stl", "--job", "none.json"], "none.json"),
+                                (["cylinder.stl", "--threads", "-1"], "threads"),
+                                (["cylinder.stl", "--seed", "many"], "seed"),
+                                (["cylinder.stl", "--units", "cubit"], "cubit"),
+                                (["cylinder.stl", "inspect", "cylinder.stl"], "cylinder.stl"),
+                                (["make", "cube", "-o", "a.stl"], ""),
+                                (["make", "cylinder"], "-o"),
+                                (["make", "cylinder", "-o", "a.xyz"], "xyz"),
+                                (["make", "cylinder", "--radius", "-5", "-o", "a.stl"], "radius"),
+                                (["make", "cylinder", "--radius", "nan", "-o", "a.stl"], "radius"),
+                                (["make", "cylinder", "--edge", "0", "-o", "a.stl"], "edge"),
+                                (["make", "tee", "--branch-radius", "80", "-o", "a.stl"], "branch")):
+            with self.subTest(" ".join(map(str, arguments))):
+                self.refused(*arguments, word=word)
+        self.assertEqual([f.name for f in self.folder.iterdir()], ["cylinder.stl"])
+
+    def test_trace(self):
+        mandrel = self.make("cylinder", "--edge", "15")
+        start = ["trace", mandrel, "-o", self.folder / "path.csv", "--start"]
+        for arguments, word in ((["50,0,0", "--direction", "1,0,0"], "direction"),
+                                (["50,0,0", "--direction", "0,0,0"], "direction"),
+                                (["50,0,0", "--direction", "0,1"], "--direction"),
+                                (["50,0,0", "--direction", "0,1,2,3"], "--direction"),
+                                (["50;0;0", "--angle", "45"], "--start"),
+                                (["nan,0,0", "--angle", "45"], "--start"),
+                                (["1e300,1e300,0", "--angle", "45"], "start"),
+                                (["50,0,0", "--angle", "nan"], "angle"),
+                                (["50,0,0", "--angle", "inf"], "angle"),
+                                (["50,0,0", "--angle", "45", "--lambda", "nan"], "lambda"),
+                                (["50,0,0", "--angle", "45", "--length", "-1"], "length"),
+                                (["50,0,0", "--angle", "45", "--length", "nan"], "length"),
+                                (["50,0,0", "--angle", "45", "--frame", "moon"], "frame"),
+                                (["50,0,0"], "--direction"),
+                                (["50,0,0", "--angle", "45", "--direction", "0,0,1"], "")):
+            with self.subTest(" ".join(arguments)):
+                self.refused(*start, *arguments, word=word)
+                self.assertFalse((self.folder / "path.csv").exists())
+
+
+if __name__ == "__main__":
+    program.main(sys.modules[__name__])

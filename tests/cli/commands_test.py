@@ -1,0 +1,108 @@
+"""What the commands do when all is well."""
+import csv
+import json
+import math
+import sys
+
+import program
+
+KINDS = ("cylinder", "cone", "vessel", "elbow", "tee", "combination", "frame", "torus",
+         "ellipsoid")
+PATH_HEADER = ("point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,bridge_mm"
+               .split(","))
+
+
+class Commands(program.ProgramTest):
+    def test_version_and_help(self):
+        self.assertRegex(self.done("--version").stdout, r"^meshwind \d+\.\d+\.\d+\n$")
+        for arguments in (["--help"], ["wind", "--help"], ["inspect", "--help"],
+                          ["make", "--help"], ["make", "tee", "--help"], ["trace", "--help"],
+                          ["validate", "--help"]):
+            result = self.done(*arguments)
+            self.assertIn("--help", result.stdout)
+            self.assertEqual(result.stderr, "")
+
+    def test_makes_every_kind_in_every_format(self):
+        for kind in KINDS:
+            for ending in ("stl", "obj", "ply", "off"):
+                with self.subTest(f"{kind}.{ending}"):
+                    file = self.folder / f"{kind}.{ending}"
+                    self.assertIn(file.name, self.done("make", kind, "--edge", "8", "-o",
+                                                       file).stdout)
+                    self.assertGreater(file.stat().st_size, 1000)
+
+    def test_inspect_has_the_keys_of_the_contract(self):
+        mandrel = self.make("tee", "--edge", "12")
+        report = json.loads(self.done("inspect", mandrel, "--json").stdout)
+        part = report["mandrel"]
+        self.assertTrue(report["meshwind"])
+        self.assertEqual(part["file"], "tee.stl")
+        for key in ("triangles", "area_mm2", "regions", "repairs"):
+            self.assertIn(key, part)
+        self.assertEqual([len(row) for row in part["file_to_mandrel"]], [4, 4, 4, 4])
+        self.assertLessEqual({"rule", "residual_mm"}, set(part["axis"]))
+        self.assertEqual(len(part["rims"]), 3)
+        for rim in part["rims"]:
+            self.assertLessEqual({"id", "centre", "axis", "radius"}, set(rim))
+            self.assertAlmostEqual(math.hypot(*rim["axis"]), 1.0, 9)
+        self.assertEqual(sorted(round(r["radius"], 3) for r in part["rims"]), [40.0, 50.0, 50.0])
+        self.assertIn("tee.stl", self.done("inspect", mandrel).stdout)
+
+    def trace(self, mandrel, *arguments):
+        out = self.folder / "path.csv"
+        self.done("trace", mandrel, *arguments, "-o", out)
+        with open(out, newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0], PATH_HEADER)
+        return [dict(zip(rows[0], map(float, row))) for row in rows[1:]]
+
+    def test_helix_on_a_cylinder_ends_where_it_must(self):
+        """A geodesic at 45 degrees from (50, 0, -100): z = s cos 45, turn = s sin 45 / R. The
+        vertices lie on the cylinder; at an edge of 4 mm facets are up to 0.04 mm inside."""
+        mandrel = self.make("cylinder", "--radius", "50", "--length", "300", "--edge", "4")
+        path = self.trace(mandrel, "--start", "50,0,-100", "--direction", "0,1,1", "--length",
+                          "250", "--frame", "file")
+        end = path[-1]
+        run = 250 * math.sqrt(0.5)
+        self.assertAlmostEqual(end["s_mm"], 250.0, 5)
+        self.assertAlmostEqual(end["x_mm"], 50 * math.cos(run / 50), delta=0.1)
+        self.assertAlmostEqual(end["y_mm"], 50 * math.sin(run / 50), delta=0.1)
+        self.assertAlmostEqual(end["z_mm"], run - 100, delta=0.1)
+        self.assertAlmostEqual(end["tz"], math.sqrt(0.5), delta=1e-3)
+        self.assertAlmostEqual(end["kn_per_mm"], 0.5 / 50, delta=1e-4)
+        self.assertEqual([p["point"] for p in path], list(range(len(path))))
+
+    def test_steered_path_reaches_hoop_after_the_closed_form_run(self):
+        """z = (R / lambda)(1 / sin alpha - 1) from alpha to hoop, then it turns back: the largest
+        z over the start."""
+        mandrel = self.make("cylinder", "--radius", "50", "--length", "300", "--edge", "4")
+        run = 50 / 0.3 * (math.sqrt(2) - 1)
+        for slip in ("0.3", "-0.3"):
+            path = self.trace(mandrel, "--start", "50,0,-100", "--direction",
+                              "0,1,1" if slip == "-0.3" else "0,-1,1", "--lambda", slip,
+                              "--length", "220", "--frame", "file")
+            self.assertAlmostEqual(max(p["z_mm"] for p in path), run - 100, delta=0.3)
+            self.assertAlmostEqual(max(abs(p["slip"]) for p in path), 0.3, delta=0.02)
+
+    def test_frames_differ_by_file_to_mandrel(self):
+        mandrel = self.make("elbow", "--edge", "8")
+        start = ["--start", "40,0,40", "--direction", "0,1,1", "--length", "60"]
+        in_file = self.trace(mandrel, *start, "--frame", "file")
+        in_mandrel = self.trace(mandrel, *start, "--frame", "mandrel")
+        report = json.loads(self.done("inspect", mandrel, "--json").stdout)
+        matrix = report["mandrel"]["file_to_mandrel"]
+        self.assertEqual(len(in_file), len(in_mandrel))
+        for a, b in zip(in_file, in_mandrel):
+            p = (a["x_mm"], a["y_mm"], a["z_mm"], 1.0)
+            for row, axis in zip(matrix, "xyz"):
+                self.assertAlmostEqual(sum(m * v for m, v in zip(row, p)), b[axis + "_mm"], 5)
+
+    def test_validate(self):
+        for name in ("machines/six_axis.json", "data/conformance/job/valid/all_keys.json"):
+            self.assertIn("valid", self.done("validate", program.SOURCE / name).stdout)
+        self.done("validate", "six_axis.json")  # found in the project's folders
+        self.assertEqual(self.done("validate", "six_axis.json", "--quiet").stdout, "")
+
+
+if __name__ == "__main__":
+    program.main(sys.modules[__name__])

@@ -1,0 +1,157 @@
+#include "postproc/eye_path.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "tests/winding/fixtures.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRadius_mm = 40.0;
+
+// A 45 degree helix on a cylinder about Z, as a finished piece; `gap_mm` of bridge under it.
+Piece helix(double length_mm, double gap_mm = 0.0, double slope = 0.0) {
+    Piece piece;
+    const double c = std::sqrt(0.5);
+    for (double s = 0.0; s <= length_mm + 1e-9; s += 4.0) {
+        const double azimuth = s * c / kRadius_mm;
+        PathPoint p;
+        p.normal = {std::cos(azimuth), std::sin(azimuth), 0.0};
+        p.position_mm = kRadius_mm * p.normal + c * s * Vector3d::UnitZ();
+        p.tangent = c * (Vector3d::UnitZ().cross(p.normal) + Vector3d::UnitZ());
+        p.s_mm = s;
+        p.kn_per_mm = 0.5 / kRadius_mm;
+        piece.path.push_back(p);
+        piece.slip.push_back(0.0);
+        piece.string.gap_mm.push_back(gap_mm);
+        piece.string.slope.push_back(slope);
+    }
+    return piece;
+}
+
+FreeFibreRule rule_of(double preferred_mm) {
+    FreeFibreRule rule;
+    rule.min_mm = 40.0;
+    rule.preferred_mm = preferred_mm;
+    rule.max_mm = 400.0;
+    return rule;
+}
+
+RayQuery nothing_near() {
+    const TriangleSoup far = test::block({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0});
+    return RayQuery({&far, 1});
+}
+
+void expect_eye_on_the_free_fibre(const EyePath& path) {
+    for (const EyePoint& p : path) {
+        ASSERT_LT((p.eye_mm - (p.landing_mm + p.free_length_mm * p.tangent)).norm(), 1e-9);
+        ASSERT_NEAR(p.tangent.norm(), 1.0, 1e-12);
+        ASSERT_NEAR(p.binormal.norm(), 1.0, 1e-12);
+        ASSERT_NEAR(p.binormal.dot(p.tangent), 0.0, 1e-12);
+    }
+}
+
+void expect_rates(const EyePath& path) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double ds = path[i].s_mm - path[i - 1].s_mm;
+        const double change = path[i].free_length_mm - path[i - 1].free_length_mm;
+        ASSERT_LE(change, kLengtheningRate * ds + 1e-9) << i;
+        ASSERT_GE(change, -kShorteningRate * ds - 1e-9) << i;
+    }
+}
+
+TEST(EqualFreeLength, KeepsThePreferredLengthWhereNothingIsInTheWay) {
+    const std::vector<Piece> pieces{helix(100.0), helix(60.0)};
+    const EyePathResult eyes = equal_free_length(pieces, nothing_near(), rule_of(200.0));
+    ASSERT_EQ(eyes.path.size(), 26U + 16U);
+    EXPECT_TRUE(eyes.blocked.empty());
+    EXPECT_EQ(eyes.shortest_mm, 200.0);
+    EXPECT_EQ(eyes.longest_mm, 200.0);
+    expect_eye_on_the_free_fibre(eyes.path);
+    EXPECT_EQ(eyes.path[26].piece, 1);
+    EXPECT_EQ(eyes.path[26].point, 0);
+    EXPECT_NEAR(eyes.path[26].s_mm, 100.0, 1e-12);
+    EXPECT_NEAR(eyes.path.back().s_mm, 160.0, 1e-12);
+    EXPECT_NEAR(eyes.path[5].binormal.dot(pieces[0].path[5].normal), 0.0, 1e-12);
+}
+
+TEST(EqualFreeLength, TakesStationsUnderABridgeOnTheString) {
+    const std::vector<Piece> pieces{helix(20.0, 0.4, 0.02)};
+    const EyePathResult eyes = equal_free_length(pieces, nothing_near(), rule_of(200.0));
+    for (std::size_t i = 0; i < eyes.path.size(); ++i) {
+        const PathPoint& station = pieces[0].path[i];
+        EXPECT_LT((eyes.path[i].landing_mm - station.position_mm - 0.4 * station.normal).norm(),
+                  1e-12);
+        EXPECT_NEAR(
+            eyes.path[i].tangent.dot(station.normal) / eyes.path[i].tangent.dot(station.tangent),
+            0.02, 1e-12);
+    }
+    expect_eye_on_the_free_fibre(eyes.path);
+}
+
+TEST(EqualFreeLength, KeepsWithinTheMachinesRange) {
+    const std::vector<Piece> pieces{helix(20.0)};
+    EXPECT_EQ(equal_free_length(pieces, nothing_near(), rule_of(10.0)).longest_mm, 40.0);
+    EXPECT_EQ(equal_free_length(pieces, nothing_near(), rule_of(900.0)).shortest_mm, 400.0);
+}
+
+// A post beside the eye's way at the preferred length: the length gives way in time and comes back.
+TEST(EqualFreeLength, LeavesThePreferredLengthByTheRatesAndComesBack) {
+    const std::vector<Piece> pieces{helix(700.0)};
+    const PathPoint& station = pieces[0].path[90];
+    const Vector3d post = station.position_mm + 200.0 * station.tangent + 12.0 * station.normal;
+    const Vector3d half(4.0, 4.0, 4.0);
+    const TriangleSoup soup = test::block(post - half, post + half);
+    const RayQuery obstacles({&soup, 1});
+    const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
+    EXPECT_TRUE(eyes.blocked.empty());
+    expect_eye_on_the_free_fibre(eyes.path);
+    expect_rates(eyes.path);
+    EXPECT_EQ(eyes.path.front().free_length_mm, 200.0);
+    EXPECT_EQ(eyes.path.back().free_length_mm, 200.0);
+    EXPECT_NE(eyes.path[90].free_length_mm, 200.0);
+    EXPECT_EQ(eyes.longest_mm, 200.0);
+    for (const EyePoint& p : eyes.path) {
+        ASSERT_GE((p.eye_mm - post).cwiseAbs().maxCoeff(), 4.0 + 15.0 / std::sqrt(3.0) - 0.05);
+    }
+}
+
+TEST(EqualFreeLength, NamesThePointsWhereNoLengthIsPossible) {
+    const std::vector<Piece> pieces{helix(100.0)};
+    const PathPoint& station = pieces[0].path[10];
+    const Vector3d wall = station.position_mm + 30.0 * station.tangent;
+    const Vector3d half(2.0, 2.0, 2.0);
+    const TriangleSoup soup = test::block(wall - half, wall + half);
+    const RayQuery obstacles({&soup, 1});
+    const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
+    EXPECT_NE(std::find(eyes.blocked.begin(), eyes.blocked.end(), 10U), eyes.blocked.end());
+    EXPECT_EQ(std::find(eyes.blocked.begin(), eyes.blocked.end(), 0U), eyes.blocked.end());
+    ASSERT_EQ(eyes.path.size(), pieces[0].path.size());
+}
+
+// The second fibre is tied on anew: its first length owes nothing to the last of the first.
+TEST(EqualFreeLength, StartsAFibreWithALengthOfItsOwn) {
+    std::vector<Piece> pieces{helix(40.0), helix(40.0)};
+    // Before the first fibre's eye stands a wall at 100 mm for all of it; the second is elsewhere.
+    for (PathPoint& p : pieces[1].path) {
+        p.position_mm += Vector3d(0.0, 0.0, 2000.0);
+    }
+    pieces[1].starts_fibre = true;
+    const PathPoint& last = pieces[0].path.back();
+    const TriangleSoup soup = test::block({-500.0, 110.0, -500.0}, {500.0, 120.0, 500.0});
+    ASSERT_LT(last.position_mm.y(), 100.0);
+    const RayQuery obstacles({&soup, 1});
+    const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
+    const std::size_t n = pieces[0].path.size();
+    EXPECT_TRUE(eyes.blocked.empty());
+    EXPECT_LT(eyes.path[n - 1].free_length_mm, 190.0);
+    EXPECT_EQ(eyes.path[n].free_length_mm, 200.0);
+}
+
+}  // namespace
+}  // namespace meshwind

@@ -1,0 +1,155 @@
+#include "winding/cover.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+#include "core/units.h"
+#include "tests/winding/fixtures.h"
+
+namespace meshwind {
+namespace {
+
+constexpr double kExtension_mm = 120.0;
+
+Plan cover(const Mandrel& mandrel, int candidates) {
+    CoverOptions options;
+    options.tow.width_mm = 12.0;
+    options.tow.friction = 0.25;
+    options.turn.extension_mm = kExtension_mm;
+    options.free_fibre.min_mm = 40.0;
+    options.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
+    options.candidates = candidates;
+    options.rounds = 2;
+    options.aimed_candidates = candidates / 4;
+    return plan_cover(mandrel, test::obstacles_of(mandrel, kExtension_mm), options);
+}
+
+const Mandrel& cylinder() {
+    static const Mandrel mandrel = test::made_cylinder(30.0, 160.0, 5.0);
+    return mandrel;
+}
+
+const Mandrel& tee() {
+    static const Mandrel mandrel = test::small_tee(3.5);
+    return mandrel;
+}
+
+// Joints within 0.2 mm and 0.5 degrees: a course ends on a chord of the rim, the turn begins on its
+// circle. The sagitta is up to edge^2 / (8 R), here 0.1 mm.
+void expect_continuous(const Plan& plan) {
+    for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
+        const Piece& piece = plan.pieces[i];
+        ASSERT_GE(piece.path.size(), 2U);
+        ASSERT_EQ(piece.path.size(), piece.slip.size());
+        ASSERT_EQ(piece.path.size(), piece.string.gap_mm.size());
+        ASSERT_EQ(piece.path.size(), piece.string.slope.size());
+        if (piece.starts_fibre) {
+            continue;
+        }
+        ASSERT_GT(i, 0U);
+        const PathPoint& end = plan.pieces[i - 1].path.back();
+        const PathPoint& start = piece.path.front();
+        EXPECT_LT((start.position_mm - end.position_mm).norm(), 0.2) << "piece " << i;
+        EXPECT_GT(start.tangent.dot(end.tangent), std::cos(rad_from_deg(0.5))) << "piece " << i;
+        EXPECT_EQ(plan.pieces[i - 1].end_rim, piece.start_rim);
+        EXPECT_NE(plan.pieces[i - 1].kind, piece.kind);
+    }
+}
+
+void expect_books_to_balance(const Mandrel& mandrel, const Plan& plan) {
+    int courses = 0;
+    int fibres = 0;
+    double length = 0.0;
+    for (const Piece& piece : plan.pieces) {
+        courses += piece.kind == PieceKind::Course ? 1 : 0;
+        fibres += piece.starts_fibre ? 1 : 0;
+        length += piece.path.back().s_mm;
+        EXPECT_LE(piece.worst_slip, 0.25);
+        EXPECT_LE(piece.worst_slip, plan.worst_slip);
+        EXPECT_LE(piece.string.worst_gap_mm, 0.5);
+    }
+    EXPECT_EQ(courses, plan.courses);
+    EXPECT_EQ(fibres, plan.fibres);
+    EXPECT_NEAR(length, plan.fibre_length_mm, 1e-6);
+    EXPECT_LE(plan.coverage.fraction, plan.coverage.reachable + 1e-12);
+    EXPECT_LE(plan.coverage.mean_layers, plan.coverage.max_layers);
+    double bare = 0.0;
+    for (const Uncovered& u : plan.uncovered) {
+        EXPECT_FALSE(u.reason.empty());
+        bare += u.area_mm2;
+    }
+    const double area = test::wall_area_mm2(mandrel.surface);
+    EXPECT_NEAR(bare / area, 1.0 - plan.coverage.fraction, 1e-6);
+    ASSERT_EQ(plan.face_layers.size(), mandrel.surface.face.size());
+    ASSERT_EQ(plan.face_angle_rad.size(), mandrel.surface.face.size());
+}
+
+TEST(PlanCover, CoversACylinderWithOneFibre) {
+    const Plan plan = cover(cylinder(), 2000);
+    ASSERT_EQ(plan.failure, "");
+    EXPECT_GT(plan.coverage.fraction, 0.97);
+    EXPECT_EQ(plan.fibres, 1);
+    expect_continuous(plan);
+    expect_books_to_balance(cylinder(), plan);
+}
+
+TEST(PlanCover, CoversASmallTee) {
+    const Plan plan = cover(tee(), 4000);
+    ASSERT_EQ(plan.failure, "");
+    EXPECT_GT(plan.coverage.fraction, 0.7);
+    EXPECT_GT(plan.coverage.fraction, plan.coverage.reachable - 0.05);
+    expect_continuous(plan);
+    expect_books_to_balance(tee(), plan);
+}
+
+TEST(PlanCover, IsTheSameForAnyNumberOfThreads) {
+    set_thread_count(1);
+    const Plan one = cover(tee(), 1500);
+    set_thread_count(2);
+    const Plan two = cover(tee(), 1500);
+    set_thread_count(0);
+    EXPECT_EQ(one.coverage.fraction, two.coverage.fraction);
+    ASSERT_EQ(one.pieces.size(), two.pieces.size());
+    for (std::size_t i = 0; i < one.pieces.size(); ++i) {
+        ASSERT_EQ(one.pieces[i].path.size(), two.pieces[i].path.size());
+        for (std::size_t k = 0; k < one.pieces[i].path.size(); ++k) {
+            ASSERT_EQ(one.pieces[i].path[k].position_mm, two.pieces[i].path[k].position_mm);
+        }
+    }
+    EXPECT_EQ(one.face_layers, two.face_layers);
+    EXPECT_EQ(one.effort.refusals, two.effort.refusals);
+}
+
+TEST(PlanCover, SaysWhyAClosedBodyCannotBeWound) {
+    const Mandrel torus = test::made("torus", {{"ring-radius", 60.0}, {"tube-radius", 20.0}}, 8.0);
+    ASSERT_TRUE(torus.rims.empty());
+    const Plan plan = cover(torus, 100);
+    EXPECT_NE(plan.failure.find("rim"), std::string::npos) << plan.failure;
+    EXPECT_TRUE(plan.pieces.empty());
+}
+
+TEST(PlanCover, SaysWhyNothingIsAdmissible) {
+    CoverOptions options;
+    options.tow.friction = 0.0;  // nothing can be turned
+    options.candidates = 50;
+    options.rounds = 0;
+    const Plan plan = plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0), options);
+    EXPECT_NE(plan.failure.find("no admissible course"), std::string::npos) << plan.failure;
+    EXPECT_TRUE(plan.pieces.empty());
+}
+
+TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
+    CoverOptions options;
+    options.tow.width_mm = 12.0;
+    options.candidates = 200;
+    options.rounds = 0;
+    options.accept = [](const Piece&) { return false; };
+    const Plan plan = plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0), options);
+    EXPECT_FALSE(plan.failure.empty());
+    EXPECT_TRUE(plan.pieces.empty());
+}
+
+}  // namespace
+}  // namespace meshwind

@@ -1,0 +1,202 @@
+#include "winding/library.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+#include "tests/winding/fixtures.h"
+
+namespace meshwind {
+namespace {
+
+constexpr double kExtension_mm = 120.0;
+
+// Everything that candidates are judged by, on one mandrel.
+struct Scene {
+    explicit Scene(Mandrel loaded)
+        : mandrel(std::move(loaded)),
+          obstacles(test::obstacles_of(mandrel, kExtension_mm)),
+          samples(sample_surface(mandrel.surface, 2.5, 1)),
+          footprints(mandrel.surface, samples, 10.0),
+          rules{mandrel, obstacles, footprints, {}, {}, {}} {
+        rules.tow.width_mm = 10.0;
+        rules.turn = {.friction = rules.tow.friction,
+                      .extension_mm = kExtension_mm,
+                      .band_mm = rules.tow.width_mm};
+        rules.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
+        rules.free_fibre.min_mm = 40.0;
+        rules.max_half_length_mm = 2000.0;
+    }
+
+    [[nodiscard]] std::vector<Candidate> candidates(int count, std::uint64_t seed) const {
+        test::Draw draw(seed);
+        std::vector<Candidate> all;
+        for (int i = 0; i < count; ++i) {
+            const auto sample =
+                static_cast<std::size_t>(draw.below(static_cast<std::int32_t>(samples.size())));
+            const double slip = (draw.below(3) - 1) * 0.8 * rules.tow.friction;
+            all.push_back({samples.at[sample], draw.between(0.0, kPi), slip});
+        }
+        return all;
+    }
+
+    Mandrel mandrel;
+    RayQuery obstacles;
+    CoverageSamples samples;
+    FootprintFinder footprints;
+    CourseRules rules;
+};
+
+const Scene& cylinder_scene() {
+    static const Scene scene(test::made_cylinder(30.0, 160.0, 5.0));
+    return scene;
+}
+
+const Scene& tee_scene() {
+    static const Scene scene(test::small_tee(6.0));
+    return scene;
+}
+
+void expect_ends_at_rims(const Scene& scene, const Member& member, const SurfacePath& path) {
+    for (std::size_t e = 0; e < 2; ++e) {
+        const RimCrossing& end = member.end[e];
+        ASSERT_GE(end.rim, 0);
+        ASSERT_LT(end.rim, static_cast<std::int32_t>(scene.mandrel.rims.size()));
+        const Rim& rim = scene.mandrel.rims[static_cast<std::size_t>(end.rim)];
+        const PathPoint& last = e == 0 ? path.front() : path.back();
+        const Eigen::Vector3d outward = e == 0 ? Eigen::Vector3d(-last.tangent) : last.tangent;
+        const Eigen::Vector3d d = last.position_mm - rim.centre_mm;
+        EXPECT_NEAR(d.dot(rim.axis), 0.0, 1e-6);
+        // A chord of a 6 mm edge lies 0.2 mm inside its circle of 22 mm.
+        EXPECT_NEAR(d.norm(), rim.radius_mm, 0.25);
+        const RimCrossing again = crossing_at(rim, last.position_mm, outward);
+        EXPECT_NEAR(std::remainder(again.azimuth_rad - end.azimuth_rad, 2.0 * kPi), 0.0, 1e-9);
+        EXPECT_NEAR(again.angle_rad, end.angle_rad, 1e-9);
+        EXPECT_EQ(again.sense, end.sense);
+        EXPECT_TRUE(can_turn(rim, end, scene.rules.turn));
+    }
+}
+
+// kg against kn as the path states them: it was never steered harder than the candidate says.
+void expect_steered_within(const Candidate& candidate, const SurfacePath& path) {
+    for (const PathPoint& p : path) {
+        ASSERT_LE(std::abs(p.kg_per_mm),
+                  std::abs(candidate.slip_ratio) * std::max(0.0, p.kn_per_mm) + 1e-12);
+    }
+}
+
+// Independent of the library's own stations: every 15 mm there is a free length, each way stated.
+void expect_windable(const Scene& scene, const SurfacePath& path) {
+    const TautString string = taut_string(path);
+    int blocked = 0;
+    int tried = 0;
+    double next = 3.0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (path[i].s_mm < next) {
+            continue;
+        }
+        next = path[i].s_mm + 15.0;
+        const StringPoint fibre = string_point(path[i], string.gap_mm[i], string.slope[i]);
+        ++tried;
+        blocked += free_fibre_windows(scene.obstacles, fibre.position_mm, path[i].normal,
+                                      fibre.tangent, scene.rules.free_fibre)
+                           .empty()
+                       ? 1
+                       : 0;
+    }
+    // Between the stations that were judged a window may just close.
+    EXPECT_LE(blocked, tried / 10);
+}
+
+void expect_members_keep_the_rules(const Scene& scene, int candidates, std::size_t least) {
+    const auto tried = scene.candidates(candidates, 11);
+    const LibraryPart library = build_library(scene.rules, tried);
+    ASSERT_EQ(library.outcome.size(), tried.size());
+    const auto admitted = std::count(library.outcome.begin(), library.outcome.end(), Refusal::None);
+    ASSERT_EQ(static_cast<std::size_t>(admitted), library.members.size());
+    ASSERT_GE(library.members.size(), least);
+    FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
+    for (const Member& member : library.members) {
+        const SurfacePath path = trace_both_ways(scene.rules, member.candidate);
+        ASSERT_GE(path.size(), 2U);
+        EXPECT_NEAR(path.back().s_mm, member.length_mm, 1e-9);
+        expect_ends_at_rims(scene, member, path);
+        expect_steered_within(member.candidate, path);
+        EXPECT_LE(taut_string(path).worst_gap_mm, scene.rules.tow.bridging_tolerance_mm);
+        EXPECT_EQ(scene.footprints.footprint(path, scratch), member.footprint);
+        EXPECT_TRUE(member.windable_forward || member.windable_backward);
+        if (member.windable_forward) {
+            expect_windable(scene, path);
+        }
+        if (member.windable_backward) {
+            expect_windable(scene, reversed(path));
+        }
+    }
+}
+
+TEST(BuildLibrary, MembersOnACylinderKeepEveryRule) {
+    expect_members_keep_the_rules(cylinder_scene(), 300, 20);
+}
+
+TEST(BuildLibrary, MembersOnATeeKeepEveryRule) {
+    expect_members_keep_the_rules(tee_scene(), 600, 10);
+}
+
+// On a cylinder curvature is known, so the ratio measured from the positions must agree.
+TEST(BuildLibrary, MeasuredSlipOnACylinderIsWithinTheFriction) {
+    const Scene& scene = cylinder_scene();
+    for (const Member& member : build_library(scene.rules, scene.candidates(300, 12)).members) {
+        const SurfacePath path = trace_both_ways(scene.rules, member.candidate);
+        const SlipMeasure slip = measure_slip(scene.mandrel.surface, path, taut_string(path),
+                                              {.friction = scene.rules.tow.friction});
+        EXPECT_LE(slip.worst, scene.rules.tow.friction);
+    }
+}
+
+TEST(BuildLibrary, IsTheSameForAnyNumberOfThreads) {
+    const Scene& scene = tee_scene();
+    const auto candidates = scene.candidates(200, 13);
+    set_thread_count(1);
+    const LibraryPart one = build_library(scene.rules, candidates);
+    set_thread_count(2);
+    const LibraryPart two = build_library(scene.rules, candidates);
+    set_thread_count(0);
+    EXPECT_EQ(one.outcome, two.outcome);
+    ASSERT_EQ(one.members.size(), two.members.size());
+    for (std::size_t i = 0; i < one.members.size(); ++i) {
+        EXPECT_EQ(one.members[i].length_mm, two.members[i].length_mm);
+        EXPECT_EQ(one.members[i].footprint, two.members[i].footprint);
+    }
+}
+
+TEST(Judge, LeavesTheMemberAsItWasOnRefusal) {
+    const Scene& scene = cylinder_scene();
+    // Exactly axial: it cannot be turned by friction.
+    const Eigen::Vector3d n = smooth_normal(scene.mandrel.surface, scene.samples.at[0]);
+    const Eigen::Vector3d x = n.unitOrthogonal();
+    const double axial =
+        std::atan2(Eigen::Vector3d::UnitZ().dot(n.cross(x)), Eigen::Vector3d::UnitZ().dot(x));
+    Member member;
+    member.length_mm = 42.0;
+    FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
+    EXPECT_EQ(judge(scene.rules, {scene.samples.at[0], axial, 0.0}, scratch, member),
+              Refusal::NotTurnable);
+    EXPECT_EQ(member.length_mm, 42.0);
+    // Exactly hoop: it meets no rim.
+    EXPECT_EQ(judge(scene.rules, {scene.samples.at[0], axial + 0.5 * kPi, 0.0}, scratch, member),
+              Refusal::NoRim);
+}
+
+TEST(RefusalNames, AreDistinctWords) {
+    std::set<std::string> names;
+    for (std::size_t r = 0; r < kRefusals; ++r) {
+        names.insert(name_of(static_cast<Refusal>(r)));
+    }
+    EXPECT_EQ(names.size(), kRefusals);
+    EXPECT_EQ(names.count(""), 0U);
+}
+
+}  // namespace
+}  // namespace meshwind
