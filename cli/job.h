@@ -12,7 +12,8 @@
 
 namespace meshwind {
 
-/// Length of a unit of the mandrel's file.
+/// Length of a unit of the mandrel's file. Auto: what the file states, else mm, else metres for a
+/// part under 10 units.
 enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
 
 /// How the fibre turns round beyond a rim.
@@ -40,7 +41,7 @@ struct Job {
         Eigen::Vector3d direction;  ///< not zero, any length
     };
     struct MandrelJob {
-        LengthUnit units = LengthUnit::Millimetre;
+        LengthUnit units = LengthUnit::Auto;     ///< as `meshwind inspect` reads the part
         std::optional<MandrelAxis> axis;         ///< none: found
         std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
         double extension_mm = 100.0;             ///< >= 0; room for turns beyond each rim

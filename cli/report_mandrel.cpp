@@ -12,7 +12,7 @@ json json_of(const Eigen::Vector3d& v) {
 
 json matrix_of(const Eigen::Affine3d& transform) {
     json rows = json::array();
-    const Eigen::Matrix4d m = transform.matrix();
+    const Eigen::Matrix4d& m = transform.matrix();
     for (int i = 0; i < 4; ++i) {
         rows.push_back({m(i, 0) + 0.0, m(i, 1) + 0.0, m(i, 2) + 0.0, m(i, 3) + 0.0});
     }

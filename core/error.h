@@ -1,4 +1,5 @@
-/// What is thrown when the input or the outside world is at fault; see docs/errors.md for the codes.
+/// What is thrown when the input or the outside world is at fault; see docs/errors.md for the
+/// codes.
 #pragma once
 
 #include <stdexcept>

@@ -5,8 +5,8 @@
 
 namespace meshwind {
 
-/// Appends `value` with exactly `decimals` digits after the point (>= 0). A value that rounds to zero
-/// carries no sign. \pre value is finite
+/// Appends `value` with exactly `decimals` digits after the point (>= 0). A value that rounds to
+/// zero carries no sign. \pre value is finite
 void append_fixed(std::string& text, double value, int decimals);
 
 /// Appends the shortest decimal text that reads back as `value`. \pre value is finite

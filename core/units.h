@@ -1,4 +1,5 @@
-/// Angle units. Inside the code angles are radians; degrees live in files, NC code and on the command line.
+/// Angle units. Inside the code angles are radians; degrees live in files, NC code and on the
+/// command line.
 #pragma once
 
 #include <numbers>

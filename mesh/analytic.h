@@ -30,7 +30,7 @@ struct ShapeFoot {
 
 /// Nearest point of the other shapes. Two pieces equally near (on a bisector of a sharp ring): the
 /// lower. \pre shape is valid; the point is not on the axis or a centre line Accuracy: 1e-12 of the
-/// size; tests/mesh/make_shapes_test.cpp.
+/// size; tests/mesh/analytic_test.cpp.
 [[nodiscard]] ShapeFoot cylinder_foot(const CylinderShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot cone_foot(const ConeShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot vessel_foot(const VesselShape& shape, const Eigen::Vector3d& point_mm);

@@ -117,7 +117,8 @@ std::vector<double> ordered(const MakeKind& kind, const MakeValues& values) {
         in_order.push_back(value == values.end() ? parameter.value_default : value->second);
         known.append(known.empty() ? "" : ", ").append(parameter.name);
     }
-    for (const auto& [name, value] : values) {
+    for (const auto& value : values) {
+        const std::string& name = value.first;
         const bool found =
             std::any_of(kind.parameters.begin(), kind.parameters.end(),
                         [&](const MakeParameter& parameter) { return parameter.name == name; });

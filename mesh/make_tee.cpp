@@ -44,13 +44,14 @@ std::vector<double> contact_angles(const TeeShape& shape, double edge_mm) {
     std::vector<double> angles;
     for (std::int32_t i = 0; i < 4 * quarter; ++i) {
         const std::int32_t step = i % quarter;
-        const bool mirrored = (i / quarter) % 2 == 1;
+        const std::int32_t corner = i / quarter;
+        const bool mirrored = corner % 2 == 1;
         const double wanted = length.back() * (mirrored ? quarter - step : step) / quarter;
         const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
         const double fraction = (wanted - *(above - 1)) / (*above - *(above - 1));
         const double psi =
             0.5 * kPi * (static_cast<double>(above - 1 - length.begin()) + fraction) / kTable;
-        const double base = 0.5 * kPi * (i / quarter);
+        const double base = 0.5 * kPi * corner;
         angles.push_back(mirrored ? base + 0.5 * kPi - psi : base + psi);
     }
     return angles;

@@ -19,8 +19,7 @@ struct RemeshOptions {
 /// Boundary vertices and edges stay as they are. The outcome depends on the input alone.
 /// \param soup manifold and oriented, vertices on the surface
 /// \param project nearest point of the exact surface to a point near it
-/// Source: M. Botsch, L. Kobbelt, A remeshing approach to multiresolution modeling, SGP 2004, with
-/// uniform smoothing.
+/// Source: botsch_2004_remeshing, with uniform smoothing.
 [[nodiscard]] TriangleSoup remesh_onto(
     const TriangleSoup& soup, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& project,
     const RemeshOptions& options);

@@ -130,7 +130,7 @@ std::optional<Line> of_revolution(const std::vector<PointOnSurface>& points,
 // whose moment differs most from the two others.
 Vector3d principal_direction(const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>& axes,
                              std::span<const Rim> rims) {
-    const Vector3d moment = axes.eigenvalues();
+    const Vector3d& moment = axes.eigenvalues();
     if (rims.empty()) {
         const bool long_one_differs = moment[2] - moment[1] >= moment[1] - moment[0];
         return axes.eigenvectors().col(long_one_differs ? 2 : 0);

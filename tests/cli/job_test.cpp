@@ -58,7 +58,7 @@ InputError error_of(const std::string& text, const std::string& name = "job.json
 TEST(Job, DefaultsAreThePublishedOnes) {
     const Job job = parse_job("{}", "job.json");
     EXPECT_EQ(job_text(job),
-              "{ \"mandrel\":{\"units\":\"mm\", \"axis\":\"auto\", \"keep_regions\":\"auto\", "
+              "{ \"mandrel\":{\"units\":\"auto\", \"axis\":\"auto\", \"keep_regions\":\"auto\", "
               "\"extension\":100, \"turn\":\"friction\"},\n"
               "  \"tow\":{\"width\":6, \"thickness\":0.25, \"friction\":0.2, "
               "\"bridging_tolerance\":0.5},\n"

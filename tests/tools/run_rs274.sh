@@ -19,17 +19,20 @@ stop() { echo "run_rs274: $2" >&2; exit "$1"; }
 
 setup() {
     [ -e "$root/ready" ] && exit 0
-    command -v dpkg >/dev/null && command -v apt-get >/dev/null ||
+    if ! command -v dpkg >/dev/null || ! command -v apt-get >/dev/null; then
         stop 77 "interpreter unavailable: this is not a Debian system"
+    fi
     [ "$(dpkg --print-architecture)" = amd64 ] || stop 77 "interpreter unavailable: not amd64"
     local work; work=$(mktemp -d) || exit 2
     trap 'rm -rf "$work"' EXIT
-    cd "$work" && apt-get -qq download linuxcnc-uspace libboost-python1.74.0 2>/dev/null ||
+    cd "$work" || exit 2
+    apt-get -qq download linuxcnc-uspace libboost-python1.74.0 2>/dev/null ||
         stop 77 "interpreter unavailable: apt-get download linuxcnc-uspace failed"
     for package in *.deb; do dpkg -x "$package" x || stop 77 "interpreter unavailable: bad package"; done
-    mkdir -p "$root" && cd x &&
-        tar cf - usr/lib/*.so.0 usr/lib/*/libboost_python311.so.* $modules/gcode.*.so \
-            $modules/rs274/__init__.py $modules/rs274/interpret.py | tar xf - -C "$root" ||
+    mkdir -p "$root" || exit 2
+    cd x || exit 2
+    tar cf - usr/lib/*.so.0 usr/lib/*/libboost_python311.so.* $modules/gcode.*.so \
+        $modules/rs274/__init__.py $modules/rs274/interpret.py | tar xf - -C "$root" ||
         stop 77 "interpreter unavailable: the package has another layout"
     : > "$root/ready"
     exit 0
