@@ -8,7 +8,8 @@
 
 #include "core/parallel.h"
 #include "core/units.h"
-#include "winding/order.h"
+#include "winding/coverage.h"
+#include "winding/one_fibre.h"
 #include "winding/random.h"
 
 namespace meshwind {
@@ -57,31 +58,6 @@ enum Stream : std::uint64_t { Sampling = 1, Seeds = 2, Angles = 3, Steerings = 4
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
-}
-
-// Keeps stations at least kStation_mm apart, both ends, and both sides of a feature edge.
-void thin_out(Piece& piece) {
-    std::vector<std::size_t> kept{0};
-    const std::size_t last = piece.path.size() - 1;
-    for (std::size_t i = 1; i <= last; ++i) {
-        const double s = piece.path[i].s_mm;
-        const bool crease =
-            s <= piece.path[i - 1].s_mm || (i < last && piece.path[i + 1].s_mm <= s);
-        const bool room = piece.path[last].s_mm - s >= kStation_mm;
-        if (i == last || crease || (room && s - piece.path[kept.back()].s_mm >= kStation_mm)) {
-            kept.push_back(i);
-        }
-    }
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-        piece.path[k] = piece.path[kept[k]];
-        piece.slip[k] = piece.slip[kept[k]];
-        piece.string.gap_mm[k] = piece.string.gap_mm[kept[k]];
-        piece.string.slope[k] = piece.string.slope[kept[k]];
-    }
-    piece.path.resize(kept.size());
-    piece.slip.resize(kept.size());
-    piece.string.gap_mm.resize(kept.size());
-    piece.string.slope.resize(kept.size());
 }
 
 enum class Verdict : char { Unknown, Accepted, Rejected };
@@ -317,7 +293,7 @@ private:
                 continue;
             }
             Piece piece = course_of(member, backward);
-            thin_out(piece);
+            thin_out(piece, kStation_mm);
             if (piece.worst_slip > options_.tow.friction) {
                 return Verdict::Rejected;
             }
@@ -349,6 +325,8 @@ private:
         for (const std::int32_t i : unknown) {
             if (verdict_[at(i)] == Verdict::Rejected) {
                 all = false;
+                members_[at(i)].windable_forward = false;
+                members_[at(i)].windable_backward = false;
                 ++plan_.effort.rejected_courses;
             }
         }
@@ -415,60 +393,25 @@ private:
         keep_main_fibre();
     }
 
-    // The stretches of the order that one fibre winds: first and one past the last course of each.
-    using Stretch = std::pair<std::size_t, std::size_t>;
-    static std::vector<Stretch> fibres_in(const std::vector<OrderedCourse>& order) {
-        std::vector<Stretch> fibres;
-        std::size_t begin = 0;
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            if (order[i].cut_after) {
-                fibres.emplace_back(begin, i + 1);
-                begin = i + 1;
-            }
-        }
-        return fibres;
-    }
-
-    // The fibre with the most course length.
-    [[nodiscard]] Stretch main_fibre() const {
-        Stretch best{0, 0};
-        double longest = -1.0;
-        for (const Stretch& fibre : fibres_in(order_)) {
-            double length = 0.0;
-            for (std::size_t i = fibre.first; i < fibre.second; ++i) {
-                length += members_[at(order_[i].course.member)].length_mm;
-            }
-            if (length > longest) {
-                longest = length;
-                best = fibre;
-            }
-        }
-        return best;
-    }
-
-    // From here on only what can be wound between the nodes of the main fibre: what no single fibre
-    // can reach is better not chosen at all. False when that excludes nothing.
+    // From here on only what the main fibre can be extended by: what no single fibre can reach is
+    // better not chosen at all. False when that excludes nothing.
     bool narrow_to_main_fibre() {
-        std::vector<char> visited(2 * mandrel_.rims.size(), 0);
-        const Stretch fibre = main_fibre();
-        for (std::size_t i = fibre.first; i < fibre.second; ++i) {
-            const auto [member, backward] = order_[i].course;
-            visited[departure_node(start_of(members_[at(member)], backward))] = 1;
-            visited[arrival_node(end_of(members_[at(member)], backward))] = 1;
+        FibreReach reach =
+            reach_of(members_, order_, main_fibre(members_, order_), 2 * mandrel_.rims.size());
+        entry_ = -1;
+        if (!reach.last.empty() && !find_entry(reach.last.front())) {
+            reach.last.clear();
         }
-        forget_dead_ends(visited);
-        const std::size_t last_node = find_last_node(visited);
         bool narrower = false;
         for (std::size_t i = 0; i < members_.size(); ++i) {
             Member& member = members_[i];
             for (const bool backward : {false, true}) {
                 bool& windable = backward ? member.windable_backward : member.windable_forward;
-                const std::size_t from = departure_node(start_of(member, backward));
-                const std::size_t to = arrival_node(end_of(member, backward));
-                const bool around_last = from == last_node && to == last_node;
-                const bool entry = static_cast<std::int32_t>(i) == entry_ && to == last_node;
-                windable =
-                    windable && ((visited[from] != 0 && visited[to] != 0) || around_last || entry);
+                const bool held = reach.holds(departure_node(start_of(member, backward)),
+                                              arrival_node(end_of(member, backward)),
+                                              static_cast<std::int32_t>(i) == entry_);
+                narrower = narrower || (windable && !held);
+                windable = windable && held;
             }
             if (!member.windable_forward && !member.windable_backward) {
                 verdict_[i] = Verdict::Rejected;
@@ -477,76 +420,24 @@ private:
         return narrower;
     }
 
-    // Unmarks nodes from which no course leads to another marked one: the fibre can only end there.
-    void forget_dead_ends(std::vector<char>& visited) const {
-        std::vector<char> leads_on(visited.size(), 0);
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            for (const bool backward : {false, true}) {
-                const Member& member = members_[i];
-                const std::size_t from = departure_node(start_of(member, backward));
-                const std::size_t to = arrival_node(end_of(member, backward));
-                if ((backward ? member.windable_backward : member.windable_forward) &&
-                    verdict_[i] != Verdict::Rejected && from != to && visited[to] != 0) {
-                    leads_on[from] = 1;
-                }
+    // The first entry of the last node that the machine accepts in that direction.
+    bool find_entry(const LastNode& last) {
+        for (const std::int32_t i : last.entries) {
+            if (verdict_[at(i)] == Verdict::Unknown) {
+                verify_all({i});
+            }
+            const Member& member = members_[at(i)];
+            const bool backward = arrival_node(end_of(member, true)) == last.node;
+            if (backward ? member.windable_backward : member.windable_forward) {
+                entry_ = i;
+                return true;
             }
         }
-        if (std::count(visited.begin(), visited.end(), 1) > 1) {
-            std::transform(visited.begin(), visited.end(), leads_on.begin(), visited.begin(),
-                           [](char v, char on) { return static_cast<char>(v != 0 && on != 0); });
-        }
-    }
-
-    // A node that the fibre can enter but not leave, such as a branch too slim for the head to pass
-    // on the way back, may still be where the fibre ends. The one at which most courses turn round
-    // and round is taken, with the accepted course of the largest footprint as its entry.
-    std::size_t find_last_node(const std::vector<char>& visited) {
-        std::vector<int> rounds(visited.size(), 0);
-        std::vector<std::vector<std::int32_t>> entries(visited.size());
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            const Member& member = members_[i];
-            for (const bool backward : {false, true}) {
-                const std::size_t from = departure_node(start_of(member, backward));
-                const std::size_t to = arrival_node(end_of(member, backward));
-                const bool windable = backward ? member.windable_backward : member.windable_forward;
-                if (!windable || verdict_[i] == Verdict::Rejected || visited[to] != 0) {
-                    continue;
-                }
-                rounds[to] += from == to ? 1 : 0;
-                if (visited[from] != 0) {
-                    entries[to].push_back(static_cast<std::int32_t>(i));
-                }
-            }
-        }
-        entry_ = -1;
-        std::size_t last = visited.size();
-        for (std::size_t node = 0; node < visited.size(); ++node) {
-            if (!entries[node].empty() && (last == visited.size() || rounds[node] > rounds[last])) {
-                last = node;
-            }
-        }
-        if (last == visited.size()) {
-            return last;
-        }
-        std::stable_sort(
-            entries[last].begin(), entries[last].end(), [&](std::int32_t a, std::int32_t b) {
-                return members_[at(a)].footprint.size() > members_[at(b)].footprint.size();
-            });
-        for (const std::int32_t i : entries[last]) {
-            if (verdict_[at(i)] == Verdict::Accepted || verify_all({i})) {
-                const bool backward = arrival_node(end_of(members_[at(i)], true)) == last;
-                const Member& member = members_[at(i)];
-                if (backward ? member.windable_backward : member.windable_forward) {
-                    entry_ = i;
-                    return last;
-                }
-            }
-        }
-        return visited.size();
+        return false;
     }
 
     void keep_main_fibre() {
-        const Stretch fibre = main_fibre();
+        const FibreStretch fibre = main_fibre(members_, order_);
         for (std::size_t i = 0; i < order_.size(); ++i) {
             if (i < fibre.first || i >= fibre.second) {
                 for (const std::int32_t sample : members_[at(order_[i].course.member)].footprint) {
@@ -567,7 +458,10 @@ private:
         const std::vector<std::size_t> refused = options_.refused(plan_.pieces);
         for (const std::size_t piece : refused) {
             const std::size_t course = piece / 2;  // courses and turns alternate
-            verdict_[at(order_[course].course.member)] = Verdict::Rejected;
+            const std::int32_t member = order_[course].course.member;
+            verdict_[at(member)] = Verdict::Rejected;
+            members_[at(member)].windable_forward = false;
+            members_[at(member)].windable_backward = false;
             ++plan_.effort.rejected_courses;
         }
         return !refused.empty();
@@ -585,7 +479,7 @@ private:
         for (std::size_t i = 0; i < order.size(); ++i) {
             const auto [member, backward] = order[i].course;
             Piece piece = course_of(members_[at(member)], backward);
-            thin_out(piece);
+            thin_out(piece, kStation_mm);
             piece.starts_fibre = fresh;
             plan_.fibres += fresh ? 1 : 0;
             add_piece(std::move(piece));
@@ -629,27 +523,13 @@ private:
     }
 
     void measure() {
-        Coverage& coverage = plan_.coverage;
-        double sum = 0.0;
-        double squares = 0.0;
-        for (const std::int32_t layers : selection_.layers) {
-            sum += layers;
-            squares += static_cast<double>(layers) * layers;
-            coverage.max_layers = std::max(coverage.max_layers, static_cast<int>(layers));
-        }
-        const auto n = static_cast<double>(samples_.size());
-        coverage.fraction =
-            static_cast<double>(std::count_if(selection_.layers.begin(), selection_.layers.end(),
-                                              [](std::int32_t l) { return l > 0; })) /
-            n;
-        coverage.reachable =
-            static_cast<double>(std::count(reached_.begin(), reached_.end(), 1)) / n;
-        coverage.mean_layers = sum / n;
-        coverage.cv =
-            std::sqrt(std::max(0.0, squares / n - coverage.mean_layers * coverage.mean_layers)) /
-            coverage.mean_layers;
+        plan_.coverage = measure_coverage(selection_.layers);
+        plan_.coverage.reachable =
+            static_cast<double>(std::count(reached_.begin(), reached_.end(), 1)) /
+            static_cast<double>(samples_.size());
         describe_uncovered();
-        describe_faces();
+        plan_.face_layers = layers_per_face(mandrel_.surface, samples_, selection_.layers);
+        plan_.face_angle_rad = angle_per_face(mandrel_.surface, plan_.pieces);
     }
 
     [[nodiscard]] std::string reason_of(std::size_t sample) const {
@@ -673,65 +553,6 @@ private:
         }
         for (const auto& [key, mm2] : area) {
             plan_.uncovered.push_back({key.first, mm2, key.second});
-        }
-    }
-
-    // Mean layers and fibre angle per face; a face between samples takes its neighbours' mean.
-    void describe_faces() {
-        const Surface& surface = mandrel_.surface;
-        std::vector<double> count(surface.face.size(), 0.0);
-        plan_.face_layers.assign(surface.face.size(), 0.0);
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
-            const std::size_t face = at(samples_.at[i].face);
-            count[face] += 1.0;
-            plan_.face_layers[face] += selection_.layers[i];
-        }
-        for (std::size_t f = 0; f < count.size(); ++f) {
-            if (count[f] > 0.0) {
-                plan_.face_layers[f] /= count[f];
-            }
-        }
-        fill_from_neighbours(count);
-        mean_angles();
-    }
-
-    void fill_from_neighbours(std::vector<double>& count) {
-        const Surface& surface = mandrel_.surface;
-        for (std::size_t f = 0; f < count.size(); ++f) {
-            if (count[f] > 0.0) {
-                continue;
-            }
-            double sum = 0.0;
-            double weight = 0.0;
-            for (const std::int32_t g : surface.neighbour[f]) {
-                if (g != kNoFace && count[at(g)] > 0.0) {
-                    sum += plan_.face_layers[at(g)];
-                    weight += 1.0;
-                }
-            }
-            plan_.face_layers[f] = weight > 0.0 ? sum / weight : 0.0;
-        }
-    }
-
-    void mean_angles() {
-        std::vector<double> length(mandrel_.surface.face.size(), 0.0);
-        plan_.face_angle_rad.assign(length.size(), 0.0);
-        for (const Piece& piece : plan_.pieces) {
-            if (piece.kind != PieceKind::Course) {
-                continue;
-            }
-            for (std::size_t i = 0; i + 1 < piece.path.size(); ++i) {
-                const std::size_t face = at(piece.path[i + 1].at.face);
-                const double ds = piece.path[i + 1].s_mm - piece.path[i].s_mm;
-                const double cosine = std::min(1.0, std::abs(piece.path[i].tangent.z()));
-                length[face] += ds;
-                plan_.face_angle_rad[face] += ds * std::acos(cosine);
-            }
-        }
-        for (std::size_t f = 0; f < length.size(); ++f) {
-            if (length[f] > 0.0) {
-                plan_.face_angle_rad[f] /= length[f];
-            }
         }
     }
 

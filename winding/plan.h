@@ -26,6 +26,9 @@ struct Piece {
     bool starts_fibre = false;  ///< tied on before this piece
 };
 
+/// Keeps stations at least `step_mm` apart, both ends, and both sides of a feature edge.
+void thin_out(Piece& piece, double step_mm);
+
 /// How the wall is covered, measured on the coverage samples.
 struct Coverage {
     double fraction = 0.0;   ///< share of the wall under at least one layer

@@ -1,0 +1,29 @@
+#include "winding/plan.h"
+
+namespace meshwind {
+
+void thin_out(Piece& piece, double step_mm) {
+    std::vector<std::size_t> kept{0};
+    const std::size_t last = piece.path.size() - 1;
+    for (std::size_t i = 1; i <= last; ++i) {
+        const double s = piece.path[i].s_mm;
+        const bool crease =
+            s <= piece.path[i - 1].s_mm || (i < last && piece.path[i + 1].s_mm <= s);
+        const bool room = piece.path[last].s_mm - s >= step_mm;
+        if (i == last || crease || (room && s - piece.path[kept.back()].s_mm >= step_mm)) {
+            kept.push_back(i);
+        }
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+        piece.path[k] = piece.path[kept[k]];
+        piece.slip[k] = piece.slip[kept[k]];
+        piece.string.gap_mm[k] = piece.string.gap_mm[kept[k]];
+        piece.string.slope[k] = piece.string.slope[kept[k]];
+    }
+    piece.path.resize(kept.size());
+    piece.slip.resize(kept.size());
+    piece.string.gap_mm.resize(kept.size());
+    piece.string.slope.resize(kept.size());
+}
+
+}  // namespace meshwind
