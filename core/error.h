@@ -12,7 +12,7 @@ namespace meshwind {
 /// Outcomes that a planner may expect (a course that slips, a point out of reach) are never errors.
 class Error : public std::runtime_error {
 public:
-    /// \param code stable identifier, e.g. "mesh.not_manifold"
+    /// \param code stable identifier, e.g. "mesh.not_orientable"
     /// \param place file, file:line, or file plus JSON pointer; empty when there is none
     /// \param message one line without a trailing full stop: what is wrong and how to mend it
     Error(std::string code, std::string place, const std::string& message)

@@ -25,12 +25,13 @@ struct ShapeFoot {
 
 /// Nearest point of the tee's surface to `point_mm`.
 /// \pre shape is valid; the point is nearer to the surface than half the smallest radius (farther
-/// away another piece may be nearer). Accuracy: 1e-12 of the size; tests/mesh/make_test.cpp.
+/// away another piece may be nearer). Accuracy: 1e-9 mm on parts of some 100 mm;
+/// tests/mesh/make_tee_test.cpp.
 [[nodiscard]] ShapeFoot tee_foot(const TeeShape& shape, const Eigen::Vector3d& point_mm);
 
 /// Nearest point of the other shapes. Two pieces equally near (on a bisector of a sharp ring): the
-/// lower. \pre shape is valid; the point is not on the axis or a centre line Accuracy: 1e-12 of the
-/// size; tests/mesh/analytic_test.cpp.
+/// lower. \pre shape is valid; the point is not on the axis or a centre line Accuracy: 1e-9 mm in
+/// distance on parts of some 100 mm; tests/mesh/analytic_test.cpp.
 [[nodiscard]] ShapeFoot cylinder_foot(const CylinderShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot cone_foot(const ConeShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot vessel_foot(const VesselShape& shape, const Eigen::Vector3d& point_mm);

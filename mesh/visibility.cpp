@@ -35,12 +35,12 @@ Visibility::Visibility(const TriangleSoup& soup)
 
 double Visibility::escape_fraction(const Eigen::Vector3d& point,
                                    const Eigen::Vector3d& normal) const {
-    static const std::array<Eigen::Vector3d, kDirections> directions = make_directions();
+    static const std::array<Eigen::Vector3d, kDirections> kRays = make_directions();
     const Eigen::Vector3d side = normal.unitOrthogonal();
     const Eigen::Vector3d up = normal.cross(side);
     const Eigen::Vector3d start = point + kLiftShare * diagonal_mm_ * normal;
     int escaped = 0;
-    for (const Eigen::Vector3d& d : directions) {
+    for (const Eigen::Vector3d& d : kRays) {
         const Eigen::Vector3d direction = d.x() * side + d.y() * up + d.z() * normal;
         escaped += rays_.occluded(start, start + 2.0 * diagonal_mm_ * direction) ? 0 : 1;
     }

@@ -234,9 +234,8 @@ private:
                 m_code(word);
             } else if (word.letter == 'F') {
                 feed_word_ = feed(word);
-            } else if (word.letter == 'N') {
-                (void)nano(word);
-            } else if ((word.letter == 'P' || word.letter == 'Q') && blending) {
+            } else if (word.letter == 'N' ||
+                       ((word.letter == 'P' || word.letter == 'Q') && blending)) {
                 (void)nano(word);
             } else if (axis_of_[static_cast<std::size_t>(word.letter - 'A')] >= 0) {
                 axes = true;
@@ -403,7 +402,10 @@ void check_linuxcnc_lines(const Machine& machine) {
             }
             if (!trouble.empty()) {
                 throw InputError("dialect.header_line", machine.name,
-                                 "controller line \"" + line + "\" cannot be used: " + trouble);
+                                 std::string("controller line \"")
+                                     .append(line)
+                                     .append("\" cannot be used: ")
+                                     .append(trouble));
             }
         }
     }
