@@ -170,6 +170,7 @@ private:
 
     void grow_library() {
         std::vector<std::int32_t> seeds;
+        seeds.reserve(static_cast<std::size_t>(options_.candidates));
         for (int i = 0; i < options_.candidates; ++i) {
             seeds.push_back(static_cast<std::int32_t>(
                 random_bits(stream(Seeds), static_cast<std::uint64_t>(i)) % samples_.size()));
@@ -438,6 +439,7 @@ private:
 
     void keep_main_fibre() {
         const FibreStretch fibre = main_fibre(members_, order_);
+        plan_.effort.courses_out_of_reach = 0;
         for (std::size_t i = 0; i < order_.size(); ++i) {
             if (i < fibre.first || i >= fibre.second) {
                 for (const std::int32_t sample : members_[at(order_[i].course.member)].footprint) {
@@ -533,6 +535,11 @@ private:
     }
 
     [[nodiscard]] std::string reason_of(std::size_t sample) const {
+        if (reached_[sample] != 0 && within_reach_[sample] == 0) {
+            return "the courses that pass here cannot be joined to the one fibre, or the machine "
+                   "refuses "
+                   "them";
+        }
         if (reached_[sample] != 0) {
             return "a course for it would lay more fibre over covered wall than it gains";
         }
@@ -543,6 +550,14 @@ private:
     }
 
     void describe_uncovered() {
+        within_reach_.assign(samples_.size(), 0);
+        for (const Member& member : members_) {
+            for (const std::int32_t sample : member.footprint) {
+                if (member.windable_forward || member.windable_backward) {
+                    within_reach_[at(sample)] = 1;
+                }
+            }
+        }
         selection_.layers.resize(samples_.size(), 0);
         std::map<std::pair<std::int32_t, std::string>, double> area;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -564,6 +579,7 @@ private:
     std::vector<Member> members_;
     std::vector<Verdict> verdict_;
     std::vector<char> reached_;
+    std::vector<char> within_reach_;  // per sample: passed by a member that the one fibre can use
     std::vector<Refusal> closest_miss_;  // per sample: the last check that a candidate there failed
     Selection selection_;
     std::vector<LaidCourse> laid_;

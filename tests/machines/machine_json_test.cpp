@@ -75,8 +75,8 @@ TEST(MachineJson, SixAxisMachineHasSiUnitsInside) {
     EXPECT_FALSE(machine.joint_of('U'));
     EXPECT_DOUBLE_EQ(machine.fibre.max_speed_mm_s, 1000.0);
     EXPECT_EQ(machine.controller.dialect, "linuxcnc");
-    ASSERT_EQ(machine.eye.envelope.size(), 2u);
-    EXPECT_EQ(std::get<Capsule>(machine.eye.envelope[0].shape).radius_mm, 12.0);
+    ASSERT_EQ(machine.eye.envelope.size(), 3u);
+    EXPECT_EQ(std::get<Capsule>(machine.eye.envelope[0].shape).radius_mm, 3.5);
 }
 
 TEST(MachineJson, EnvelopeMeshNamesCountFromTheMachineFile) {

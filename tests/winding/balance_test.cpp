@@ -61,6 +61,15 @@ int loose_ends(const std::vector<Member>& members, const std::vector<LaidCourse>
                            [](int sum, int s) { return sum + std::abs(s); });
 }
 
+// Loose ends when every chosen course is wound forward, or backward where it cannot be.
+int loose_ends_as_chosen(const Library& library) {
+    std::vector<LaidCourse> laid;
+    for (const std::int32_t i : library.selection.chosen) {
+        laid.push_back({i, !library.members[static_cast<std::size_t>(i)].windable_forward});
+    }
+    return loose_ends(library.members, laid);
+}
+
 void expect_consistent(const Library& before, const Library& after,
                        const std::vector<LaidCourse>& laid) {
     std::vector<std::int32_t> laid_members;
@@ -69,11 +78,8 @@ void expect_consistent(const Library& before, const Library& after,
         EXPECT_TRUE(c.backward ? member.windable_backward : member.windable_forward);
         laid_members.push_back(c.member);
     }
-    // What was chosen stays, in its order; what is added follows.
-    ASSERT_GE(laid.size(), before.selection.chosen.size());
     EXPECT_EQ(laid_members, after.selection.chosen);
-    EXPECT_TRUE(std::equal(before.selection.chosen.begin(), before.selection.chosen.end(),
-                           laid_members.begin()));
+    EXPECT_LE(loose_ends(after.members, laid), std::max(2, loose_ends_as_chosen(before)));
     std::vector<std::int32_t> layers(kSamples, 0);
     for (const std::int32_t i : laid_members) {
         for (const std::int32_t s : after.members[static_cast<std::size_t>(i)].footprint) {
@@ -110,7 +116,7 @@ TEST(BalanceCourses, NeverAddsWhatIsNotAllowed) {
         }
         after = before;
         laid = balance_courses(after.members, std::vector<char>(60, 0), kRims, {}, after.selection);
-        EXPECT_EQ(laid.size(), before.selection.chosen.size()) << "nothing may be added";
+        EXPECT_LE(laid.size(), before.selection.chosen.size()) << "nothing may be added";
     }
 }
 
