@@ -42,6 +42,9 @@ constexpr double kBetweenBlocks_mm = 0.5;
 // way.
 constexpr double kTableReach_mm = 60.0;
 
+// Share of the reachable wall that a plan must cover to count as one.
+constexpr double kCoveredShare = 0.9;
+
 class Stopwatch {
 public:
     explicit Stopwatch(std::map<std::string, double>& timing) : timing_(timing) {}
@@ -271,6 +274,7 @@ private:
 
     void check() {
         check_fibres();
+        check_coverage();
         check_slip();
         check_bridging();
         check_collision();
@@ -288,6 +292,22 @@ private:
                 "the plan takes " + std::to_string(result_.plan.fibres) +
                 " separate fibres, one program winds one; a slimmer head, less clearance, a "
                 "longer extension or more friction gives more courses to join them";
+        }
+        result_.checks.push_back(check);
+    }
+
+    void check_coverage() {
+        const Coverage& coverage = result_.plan.coverage;
+        const double limit = kCoveredShare * coverage.reachable;
+        Check check{"coverage", coverage.fraction >= limit, {}, {}};
+        check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
+        if (!check.ok) {
+            check.words =
+                "only " + fixed(100.0 * coverage.fraction, 1) +
+                " % of the wall is covered although single courses reach " +
+                fixed(100.0 * coverage.reachable, 1) +
+                " %: one fibre cannot join them all; a slimmer head, a longer extension or more "
+                "friction gives more ways";
         }
         result_.checks.push_back(check);
     }

@@ -22,6 +22,9 @@ constexpr std::array<double, 7> kSteering = {0.0, 0.31, -0.31, 0.62, -0.62, 0.92
 // Samples per band width: a gap of a quarter band is seen.
 constexpr double kSamplesPerBand = 4.0;
 
+// On a wall so large that this would take more samples, they lie further apart.
+constexpr double kMaxSamples = 6e5;
+
 // A candidate whose half is longer than this many bounding boxes circles without meeting a rim.
 constexpr double kMaxHalfLengthBoxes = 8.0;
 
@@ -67,7 +70,7 @@ public:
     CoverPlanner(const Mandrel& mandrel, const RayQuery& obstacles, const CoverOptions& options)
         : mandrel_(mandrel),
           options_(options),
-          samples_(sample_surface(mandrel.surface, options.tow.width_mm / kSamplesPerBand,
+          samples_(sample_surface(mandrel.surface, sample_spacing_mm(mandrel, options),
                                   stream(Sampling))),
           footprints_(mandrel.surface, samples_, options.tow.width_mm),
           rules_{mandrel,
@@ -86,12 +89,6 @@ public:
     }
 
     Plan run() {
-        if (mandrel_.rims.empty()) {
-            plan_.failure =
-                "the mandrel has no rim: courses have nowhere to turn back (a closed body needs a "
-                "polar opening or an open end)";
-            return std::move(plan_);
-        }
         grow_library();
         if (members_.empty()) {
             plan_.failure = "no admissible course: " + commonest_refusal();
@@ -123,6 +120,11 @@ private:
             box.extend(p);
         }
         return kMaxHalfLengthBoxes * box.diagonal().norm();
+    }
+
+    static double sample_spacing_mm(const Mandrel& mandrel, const CoverOptions& options) {
+        const double area = area_mm2({mandrel.surface.position_mm, mandrel.surface.face});
+        return std::max(options.tow.width_mm / kSamplesPerBand, std::sqrt(area / kMaxSamples));
     }
 
     [[nodiscard]] std::uint64_t stream(Stream which) const { return options_.seed * 16 + which; }
@@ -593,6 +595,15 @@ private:
 }  // namespace
 
 Plan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles, const CoverOptions& options) {
+    if (mandrel.rims.empty()) {
+        Plan plan;
+        plan.planner = "cover";
+        plan.failure =
+            "the mandrel has no rim: courses have nowhere to turn back (a closed body needs a "
+            "polar "
+            "opening or an open end)";
+        return plan;
+    }
     return CoverPlanner(mandrel, obstacles, options).run();
 }
 
