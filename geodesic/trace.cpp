@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "core/tolerances.h"
+#include "geodesic/patch_trace.h"
 
 namespace meshwind {
 namespace {
@@ -303,6 +304,9 @@ const char* name_of(TraceStop stop) {
 
 TraceResult trace(const Surface& surface, const SurfacePoint& start, const Vector3d& direction,
                   const Steering& steering, const TraceOptions& options) {
+    if (options.method == TraceMethod::Patches) {
+        return trace_on_patches(surface, start, direction, steering, options);
+    }
     return Walker(surface, start, direction, steering, options).run();
 }
 

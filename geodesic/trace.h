@@ -20,9 +20,16 @@ struct Steering {
     double slip_ratio_concave = 0.0;  ///< where kn < 0
 };
 
+/// How a path is carried over the triangles. Both give one station per edge crossing.
+enum class TraceMethod {
+    Walk,    ///< straight on each facet, the tangent carried in the smooth normal field: fast
+    Patches  ///< the path's equation solved on the curved patches: accurate
+};
+
 struct TraceOptions {
     double max_length_mm = 1e5;  ///< > 0; the path is cut exactly here
     int max_faces = 1'000'000;   ///< > 0; reached gives TraceStop::FaceLimit: a trace always ends
+    TraceMethod method = TraceMethod::Walk;
 };
 
 struct TraceResult {
@@ -32,12 +39,20 @@ struct TraceResult {
 };
 
 /// Fibre path from `start` into `direction`, which is projected into the tangent plane.
-/// On each facet the path is straight; from crossing to crossing the tangent is turned by the
-/// minimal rotation between the interpolated smooth normals and by kg ds about the normal. Convex
-/// feature edges are crossed by unfolding, for which the smooth normals of both sides are used.
 /// \pre start.face is a face of `surface`; direction is not parallel to the normal there
-/// Accuracy: second order in edge length (tests/geodesic/trace_test.cpp).
+///
+/// TraceMethod::Walk: on each facet the path is straight; from crossing to crossing the tangent is
+/// turned by the minimal rotation between the interpolated smooth normals and by kg ds about the
+/// normal. Convex feature edges are crossed by unfolding, for which the smooth normals of both
+/// sides are used. Positions lie on the facets. Second order in edge length.
 /// Source: the walk of polthier_1998_straightest, with the facet's angle rule replaced.
+///
+/// TraceMethod::Patches: t' = kg b - kn n in the parameters of each curved patch (mesh/patch.h);
+/// edges are crossed by unfolding about the edge's tangent. Where two patches meet with slightly
+/// different normals, the turn of the normal there is part of kn and is steered for, so that what
+/// is steered for adds up to the turn of the normal along the whole path. Positions lie on the
+/// patches. Order 4 in edge length on smooth surfaces.
+/// Accuracy of both: tests/geodesic/trace_order_test.cpp.
 [[nodiscard]] TraceResult trace(const Surface& surface, const SurfacePoint& start,
                                 const Eigen::Vector3d& direction, const Steering& steering = {},
                                 const TraceOptions& options = {});

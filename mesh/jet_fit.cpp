@@ -1,6 +1,8 @@
 #include "mesh/jet_fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -8,110 +10,265 @@
 namespace meshwind {
 namespace {
 
-constexpr int kMaxNeighbours = 64;  // three rings of a regular mesh hold 36; more adds nothing
-constexpr int kMaxCoefficients = 9;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 
-// Smallest pivot ratio of the QR (no unit) that still counts as determined: below it, coefficients
-// are amplified more than a hundredfold and a lower degree is the better answer.
-constexpr double kRankThreshold = 1e-2;
+constexpr std::size_t kMaxNeighbours =
+    64;  // three rings of a regular mesh hold 36; more adds nothing
+
+// Share of a column (no unit) that must be left when the columns before it are taken out: below it,
+// its coefficient would be amplified a hundredfold and is not determined.
+constexpr double kDetermined = 1e-2;
 
 // Neighbours beyond the unknowns: an exactly determined fit would follow noise.
-constexpr int kSpareNeighbours = 2;
+constexpr std::size_t kSpareNeighbours = 2;
 
 // Cosine between guess and fitted normal (45 deg): a fit further off has gone astray.
 constexpr double kMinNormalAgreement = 0.7;
 
-struct Frame {
-    Eigen::Vector3d x, y, z;
-};
+// Spread across against spread along (no unit) below which neighbours lie on a line.
+constexpr double kMinSpread = 1e-6;
 
-Frame frame_about(const Eigen::Vector3d& normal) {
-    const Eigen::Vector3d x = normal.unitOrthogonal();
-    return {x, normal.cross(x), normal};
+// Neighbours up to this many times as far as the nearest tell which way facets are short.
+constexpr double kNear = 1.5;
+
+// Terms up to each degree.
+constexpr std::array<std::size_t, kMaxJetDegree + 1> kTermsTo = {0, 2, 5, 9, kJetTerms};
+
+// Powers of x and y in each term.
+struct Power {
+    int x;
+    int y;
+};
+constexpr std::array<Power, kJetTerms> kPower = {{{1, 0},
+                                                  {0, 1},
+                                                  {2, 0},
+                                                  {1, 1},
+                                                  {0, 2},
+                                                  {3, 0},
+                                                  {2, 1},
+                                                  {1, 2},
+                                                  {0, 3},
+                                                  {4, 0},
+                                                  {3, 1},
+                                                  {2, 2},
+                                                  {1, 3},
+                                                  {0, 4}}};
+
+std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
 }
 
-using Design = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                             kMaxNeighbours, kMaxCoefficients>;
-using Heights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxNeighbours, 1>;
+using Column =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kMaxNeighbours), 1>;
+
+// The columns of a least-squares problem made orthogonal in a fixed order, low degrees first, so
+// that of terms that cannot be told apart the lower one stays.
+class OrderedFit {
+public:
+    explicit OrderedFit(const Column& heights) : rest_(heights) {}
+
+    // Takes the next column; false, and it is left out, where it is not determined. A zero column
+    // and one that is not a number are not.
+    bool add(Column column) {
+        const double size = column.norm();
+        Row row{};
+        for (std::size_t k = 0; k < count_; ++k) {
+            row.share[k] = direction_[k].dot(column);
+            column -= row.share[k] * direction_[k];
+        }
+        const double left = column.norm();
+        if (!(left > kDetermined * size)) {
+            return false;
+        }
+        row.share[count_] = left;
+        direction_[count_] = column / left;
+        row.height = direction_[count_].dot(rest_);
+        rest_ -= row.height * direction_[count_];
+        row_[count_++] = row;
+        return true;
+    }
+
+    // Coefficients of the first `count` columns that were taken.
+    [[nodiscard]] std::array<double, kJetTerms> solve(std::size_t count) const {
+        std::array<double, kJetTerms> c{};
+        for (std::size_t k = count; k-- > 0;) {
+            double value = row_[k].height;
+            for (std::size_t j = k + 1; j < count; ++j) {
+                value -= row_[j].share[k] * c[j];
+            }
+            c[k] = value / row_[k].share[k];
+        }
+        return c;
+    }
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+private:
+    struct Row {
+        std::array<double, kJetTerms> share{};  // of the directions in this column
+        double height = 0.0;                    // of the heights along this direction
+    };
+    Column rest_;
+    std::array<Column, kJetTerms> direction_;
+    std::array<Row, kJetTerms> row_{};
+    std::size_t count_ = 0;
+};
+
+// Neighbours in the plane, each axis scaled to 1; rows weighted by the inverse square of the scaled
+// distance, so that the near ones count where the polynomial does not fit.
+struct Scaled {
+    Column x, y, height, weight;
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+
+    [[nodiscard]] Column column(const Power& power) const {
+        Column c = weight;
+        for (int i = 0; i < power.x; ++i) {
+            c.array() *= x.array();
+        }
+        for (int i = 0; i < power.y; ++i) {
+            c.array() *= y.array();
+        }
+        return c;
+    }
+
+    [[nodiscard]] double unit(const Power& power) const {
+        return std::pow(x_mm, power.x) * std::pow(y_mm, power.y);
+    }
+};
+
+// Unit direction in the plane along which the nearest neighbours lie: across long facets, so that
+// the frame's other axis is the one they are ruled along.
+Vector3d across(const Vector3d& centre, const Vector3d& normal,
+                std::span<const Vector3d> neighbours) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vector3d& p : neighbours) {
+        nearest = std::min(nearest, (p - centre).squaredNorm());
+    }
+    const Vector3d a = normal.unitOrthogonal();
+    const Vector3d b = normal.cross(a);
+    double twice_cos = 0.0;
+    double twice_sin = 0.0;
+    for (const Vector3d& p : neighbours) {
+        if ((p - centre).squaredNorm() <= kNear * kNear * nearest) {
+            const double u = a.dot(p - centre);
+            const double v = b.dot(p - centre);
+            twice_cos += u * u - v * v;
+            twice_sin += 2.0 * u * v;
+        }
+    }
+    const double angle = 0.5 * std::atan2(twice_sin, twice_cos);
+    return std::cos(angle) * a + std::sin(angle) * b;
+}
+
+Scaled scale(const Vector3d& centre, const Matrix3d& frame, std::span<const Vector3d> neighbours) {
+    const auto count = static_cast<Eigen::Index>(neighbours.size());
+    Scaled s{Column(count), Column(count), Column(count), Column(count)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Vector3d d = frame.transpose() * (neighbours[static_cast<std::size_t>(i)] - centre);
+        s.x[i] = d.x();
+        s.y[i] = d.y();
+        s.height[i] = d.z();
+    }
+    s.x_mm = s.x.cwiseAbs().maxCoeff();
+    s.y_mm = s.y.cwiseAbs().maxCoeff();
+    s.x /= s.x_mm;
+    s.y /= s.y_mm;
+    s.weight = (s.x.cwiseAbs2() + s.y.cwiseAbs2()).cwiseInverse();
+    return s;
+}
+
+// Normal and curvature of the height at the vertex itself.
+void differentiate(Jet& jet) {
+    const auto& c = jet.height.coefficient;
+    const Vector3d x = jet.height.frame.col(0);
+    const Vector3d y = jet.height.frame.col(1);
+    const double stretch = std::sqrt(1.0 + c[0] * c[0] + c[1] * c[1]);
+    jet.normal = (jet.height.frame.col(2) - c[0] * x - c[1] * y) / stretch;
+    const Matrix3d hessian = 2.0 * c[2] * x * x.transpose() + 2.0 * c[4] * y * y.transpose() +
+                             c[3] * (x * y.transpose() + y * x.transpose());
+    const Matrix3d tangential = Matrix3d::Identity() - jet.normal * jet.normal.transpose();
+    jet.shape_operator_per_mm = tangential * hessian * tangential / -stretch;
+}
 
 }  // namespace
 
-std::optional<Jet> fit_jet(const Eigen::Vector3d& centre, const Eigen::Vector3d& normal_guess,
-                           std::span<const Eigen::Vector3d> neighbours, int degree) {
-    const int unknowns = degree == 3 ? 9 : 5;
-    const int count = std::min(static_cast<int>(neighbours.size()), kMaxNeighbours);
-    if (count < unknowns + kSpareNeighbours) {
+std::optional<Jet> fit_jet(const Vector3d& centre, const Vector3d& normal_guess,
+                           std::span<const Vector3d> neighbours, int max_degree) {
+    neighbours = neighbours.first(std::min(neighbours.size(), kMaxNeighbours));
+    if (neighbours.size() <= kSpareNeighbours) {
         return std::nullopt;
     }
-    const Frame frame = frame_about(normal_guess);
-    double radius = 0.0;
-    for (int i = 0; i < count; ++i) {
-        radius = std::max(radius, (neighbours[static_cast<std::size_t>(i)] - centre).norm());
+    Jet jet;
+    const Vector3d x = across(centre, normal_guess, neighbours);
+    jet.height.frame << x, normal_guess.cross(x), normal_guess;
+    const Scaled s = scale(centre, jet.height.frame, neighbours);
+    if (!(std::min(s.x_mm, s.y_mm) > kMinSpread * std::max(s.x_mm, s.y_mm))) {
+        return std::nullopt;
     }
-    Design design(count, unknowns);
-    Heights heights(count);
-    for (int i = 0; i < count; ++i) {
-        const Eigen::Vector3d d = (neighbours[static_cast<std::size_t>(i)] - centre) / radius;
-        const double x = d.dot(frame.x);
-        const double y = d.dot(frame.y);
-        heights[i] = d.dot(frame.z);
-        design(i, 0) = x;
-        design(i, 1) = y;
-        design(i, 2) = x * x;
-        design(i, 3) = x * y;
-        design(i, 4) = y * y;
-        if (degree == 3) {
-            design(i, 5) = x * x * x;
-            design(i, 6) = x * x * y;
-            design(i, 7) = x * y * y;
-            design(i, 8) = y * y * y;
+    OrderedFit fit(s.height.cwiseProduct(s.weight));
+    std::array<std::size_t, kJetTerms> taken{};
+    std::size_t tried = 0;
+    int degree = 0;  // up to which every term was taken
+    for (int d = 1; d <= max_degree; ++d) {
+        for (; tried < kTermsTo[at(d)] && fit.count() + kSpareNeighbours < neighbours.size();
+             ++tried) {
+            if (fit.add(s.column(kPower[tried]))) {
+                taken[fit.count() - 1] = tried;
+            }
+        }
+        if (fit.count() == kTermsTo[at(d)]) {
+            degree = d;
         }
     }
-    Eigen::ColPivHouseholderQR<Design> qr(design);
-    qr.setThreshold(kRankThreshold);
-    if (qr.rank() < unknowns) {
+    // The plane and some curvature at least.
+    if (degree < 1 || tried < kTermsTo[2] || fit.count() == kTermsTo[1]) {
         return std::nullopt;
     }
-    const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxCoefficients, 1> c =
-        qr.solve(heights);
-    Jet jet;
-    const double stretch = std::sqrt(1.0 + c[0] * c[0] + c[1] * c[1]);
-    jet.normal = (frame.z - c[0] * frame.x - c[1] * frame.y) / stretch;
+    const std::size_t count = degree > 1 ? kTermsTo[at(degree)] : fit.count();
+    const std::array<double, kJetTerms> c = fit.solve(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        jet.height.coefficient[taken[k]] = c[k] / s.unit(kPower[taken[k]]);
+    }
+    jet.terms = degree == 4   ? JetTerms::Quartic
+                : degree == 3 ? JetTerms::Cubic
+                : degree == 2 ? JetTerms::Quadratic
+                              : JetTerms::Reduced;
+    differentiate(jet);
     if (!(jet.normal.dot(normal_guess) >= kMinNormalAgreement)) {
         return std::nullopt;
     }
-    const Eigen::Matrix3d hessian =
-        2.0 * c[2] * frame.x * frame.x.transpose() + 2.0 * c[4] * frame.y * frame.y.transpose() +
-        c[3] * (frame.x * frame.y.transpose() + frame.y * frame.x.transpose());
-    const Eigen::Matrix3d tangential =
-        Eigen::Matrix3d::Identity() - jet.normal * jet.normal.transpose();
-    jet.shape_operator_per_mm = tangential * hessian * tangential * (-1.0 / (stretch * radius));
     return jet;
 }
 
-Eigen::Matrix3d shape_operator_from_normals(const Eigen::Vector3d& centre,
-                                            const Eigen::Vector3d& normal,
-                                            std::span<const Eigen::Vector3d> neighbours,
-                                            std::span<const Eigen::Vector3d> normals) {
+Jet jet_from_normals(const Vector3d& centre, const Vector3d& normal,
+                     std::span<const Vector3d> neighbours, std::span<const Vector3d> normals) {
+    Jet jet;
+    const Vector3d x = normal.unitOrthogonal();
+    const Vector3d y = normal.cross(x);
+    jet.height.frame << x, y, normal;
     // Each neighbour asks for S d = dn; solved for the three entries of the symmetric 2 x 2 matrix.
-    const Frame frame = frame_about(normal);
-    Eigen::Matrix3d lhs = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
+    Matrix3d lhs = Matrix3d::Zero();
+    Vector3d rhs = Vector3d::Zero();
     for (std::size_t i = 0; i < neighbours.size(); ++i) {
-        const Eigen::Vector3d d = neighbours[i] - centre;
-        const Eigen::Vector3d dn = normals[i] - normal;
+        const Vector3d d = neighbours[i] - centre;
+        const Vector3d dn = normals[i] - normal;
         Eigen::Matrix<double, 2, 3> rows;
-        rows << d.dot(frame.x), d.dot(frame.y), 0.0, 0.0, d.dot(frame.x), d.dot(frame.y);
-        const Eigen::Vector2d change(dn.dot(frame.x), dn.dot(frame.y));
+        rows << d.dot(x), d.dot(y), 0.0, 0.0, d.dot(x), d.dot(y);
         const double weight = 1.0 / d.squaredNorm();
         lhs += weight * rows.transpose() * rows;
-        rhs += weight * rows.transpose() * change;
+        rhs += weight * rows.transpose() * Eigen::Vector2d(dn.dot(x), dn.dot(y));
     }
-    Eigen::ColPivHouseholderQR<Eigen::Matrix3d> qr(lhs);
-    qr.setThreshold(kRankThreshold * kRankThreshold);
-    const Eigen::Vector3d s = qr.solve(rhs);
-    return s[0] * frame.x * frame.x.transpose() + s[2] * frame.y * frame.y.transpose() +
-           s[1] * (frame.x * frame.y.transpose() + frame.y * frame.x.transpose());
+    Eigen::ColPivHouseholderQR<Matrix3d> qr(lhs);
+    qr.setThreshold(kDetermined * kDetermined);
+    const Vector3d s = qr.solve(rhs);
+    jet.height.coefficient[2] = -0.5 * s[0];
+    jet.height.coefficient[3] = -s[1];
+    jet.height.coefficient[4] = -0.5 * s[2];
+    jet.terms = JetTerms::Averaged;
+    differentiate(jet);
+    return jet;
 }
 
 }  // namespace meshwind

@@ -14,8 +14,9 @@ namespace {
 
 using Index = std::int32_t;
 
-constexpr int kRings = 2;            // of neighbours for a cubic fit: 18 on a regular mesh
-constexpr std::size_t kEnough = 14;  // fewer than this and one more ring is taken
+constexpr int kRings = 2;            // of neighbours for a fit: 18 on a regular mesh
+constexpr std::size_t kEnough = 16;  // fewer than this and one more ring is taken
+constexpr double kMinFacing = 0.5;   // cosine between the normals of neighbours in one fit (60 deg)
 constexpr std::size_t kFitChunk = 256;
 
 std::size_t at(Index i) {
@@ -140,44 +141,19 @@ Rows one_rings(const Surface& surface, std::size_t corners) {
     return rows;
 }
 
-// The corners within `kRings` rings of `centre`, nearest rings first; one ring more where few.
-void gather(const Rows& rings, Index centre, std::vector<Index>& found) {
-    found.assign(1, centre);
-    std::size_t begin = 0;
-    for (int ring = 0; ring < kRings || (ring == kRings && found.size() <= kEnough); ++ring) {
-        const std::size_t end = found.size();
-        for (std::size_t i = begin; i < end; ++i) {
-            for (const Index next : rings[found[i]]) {
-                if (std::find(found.begin(), found.end(), next) == found.end()) {
-                    found.push_back(next);
-                }
-            }
-        }
-        begin = end;
-    }
-    found.erase(found.begin());
-}
-
-enum class Fit : std::uint8_t { Cubic, Quadratic, Averaged };
-
 class CornerFitter {
 public:
     CornerFitter(const Surface& surface, const Rows& rings, std::span<const Index> corner_vertex,
                  std::span<const Eigen::Vector3d> averaged)
         : surface_(surface), rings_(rings), corner_vertex_(corner_vertex), averaged_(averaged) {}
 
-    Fit fit(Index corner, Jet& jet) {
+    Jet fit(Index corner) {
         const Eigen::Vector3d& centre = position(corner);
         const Eigen::Vector3d& guess = averaged_[at(corner)];
-        gather(rings_, corner, found_);
+        gather(corner);
         collect(found_);
-        if (const auto cubic = fit_jet(centre, guess, points_, 3)) {
-            jet = *cubic;
-            return Fit::Cubic;
-        }
-        if (const auto quadratic = fit_jet(centre, guess, points_, 2)) {
-            jet = *quadratic;
-            return Fit::Quadratic;
+        if (const auto jet = fit_jet(centre, guess, points_)) {
+            return *jet;
         }
         found_.assign(rings_[corner].begin(), rings_[corner].end());
         collect(found_);
@@ -185,14 +161,32 @@ public:
         for (const Index i : found_) {
             normals_.push_back(averaged_[at(i)]);
         }
-        jet.normal = guess;
-        jet.shape_operator_per_mm = shape_operator_from_normals(centre, guess, points_, normals_);
-        return Fit::Averaged;
+        return jet_from_normals(centre, guess, points_, normals_);
     }
 
 private:
     [[nodiscard]] const Eigen::Vector3d& position(Index corner) const {
         return surface_.position_mm[at(corner_vertex_[at(corner)])];
+    }
+
+    // The corners within `kRings` rings, nearest first; one ring more where they are few. What has
+    // turned too far away is no height over the centre's plane.
+    void gather(Index centre) {
+        found_.assign(1, centre);
+        std::size_t begin = 0;
+        for (int ring = 0; ring < kRings || (ring == kRings && found_.size() <= kEnough); ++ring) {
+            const std::size_t end = found_.size();
+            for (std::size_t i = begin; i < end; ++i) {
+                for (const Index next : rings_[found_[i]]) {
+                    if (averaged_[at(next)].dot(averaged_[at(centre)]) > kMinFacing &&
+                        std::find(found_.begin(), found_.end(), next) == found_.end()) {
+                        found_.push_back(next);
+                    }
+                }
+            }
+            begin = end;
+        }
+        found_.erase(found_.begin());
     }
 
     void collect(const std::vector<Index>& corners) {
@@ -217,20 +211,23 @@ void fit_corners(Surface& surface, std::span<const Index> corner_vertex) {
     const Rows rings = one_rings(surface, corners);
     surface.normal.resize(corners);
     surface.shape_operator_per_mm.resize(corners);
-    std::vector<Fit> used(corners);
+    surface.jet.resize(corners);
+    std::vector<JetTerms> terms(corners);
     parallel_for(corners, kFitChunk, [&](std::size_t begin, std::size_t end) {
         CornerFitter fitter(surface, rings, corner_vertex, averaged);
         for (std::size_t i = begin; i < end; ++i) {
-            Jet jet;
-            used[i] = fitter.fit(static_cast<Index>(i), jet);
+            const Jet jet = fitter.fit(static_cast<Index>(i));
+            terms[i] = jet.terms;
             surface.normal[i] = jet.normal;
             surface.shape_operator_per_mm[i] = jet.shape_operator_per_mm;
+            surface.jet[i] = jet.height;
         }
     });
-    const auto count = [&](Fit fit) {
-        return static_cast<int>(std::count(used.begin(), used.end(), fit));
+    const auto count = [&](JetTerms kind) {
+        return static_cast<int>(std::count(terms.begin(), terms.end(), kind));
     };
-    surface.fit = {count(Fit::Cubic), count(Fit::Quadratic), count(Fit::Averaged)};
+    surface.fit = {count(JetTerms::Quartic), count(JetTerms::Cubic), count(JetTerms::Quadratic),
+                   count(JetTerms::Reduced), count(JetTerms::Averaged)};
 }
 
 double mean_edge(const Surface& surface) {

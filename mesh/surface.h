@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "mesh/jet_fit.h"
 #include "mesh/triangle_soup.h"
 
 namespace meshwind {
@@ -17,9 +18,11 @@ inline constexpr std::int32_t kNoFace = -1;
 
 /// How the smooth normals and shape operators were obtained.
 struct FitReport {
-    int cubic = 0;      ///< corners whose neighbourhood carried a cubic height fit
-    int quadratic = 0;  ///< fell back: too few or badly placed neighbours for a cubic
-    int averaged = 0;   ///< fell back again: angle-weighted facet normal, curvature from facets
+    int quartic = 0;    ///< corners whose neighbours carried a height fit of degree four
+    int cubic = 0;      ///< fell back: too few or badly placed neighbours for degree four
+    int quadratic = 0;  ///< fell back again, to degree two
+    int reduced = 0;    ///< ruled where nothing is known: long facets between two end circles
+    int averaged = 0;   ///< last: angle-weighted facet normal, curvature from facets
 };
 
 /// Positions, adjacency, smooth normals and curvature. Vertices on a feature edge have one normal
@@ -36,6 +39,7 @@ struct Surface {
     /// Per corner index: dn, symmetric, with `normal` in its kernel; t . S t = kn in 1/mm, > 0
     /// convex.
     std::vector<Eigen::Matrix3d> shape_operator_per_mm;
+    std::vector<HeightJet> jet;  ///< per corner index: the fitted surface about the corner
     double mean_edge_mm = 0.0;
     FitReport fit;
 };
@@ -49,9 +53,9 @@ struct FreezeInput {
 };
 
 /// Flat arrays from an oriented manifold soup in the mandrel frame. Normals and shape operators
-/// come from a local least-squares height fit, cubic where the neighbourhood allows; never across a
-/// feature edge. \pre soup is manifold, oriented, without degenerate faces (see repair.h) Accuracy:
-/// tests/mesh/surface_test.cpp (normals third order, curvature second order in edge length).
+/// come from a local least-squares height fit, of degree four where the neighbourhood allows; never
+/// across a feature edge. \pre soup is manifold, oriented, without degenerate faces (see repair.h)
+/// Accuracy: tests/mesh/surface_test.cpp (normals fourth order, curvature third in edge length).
 [[nodiscard]] Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input);
 
 }  // namespace meshwind

@@ -54,35 +54,33 @@ FitErrors torus_errors(double edge_mm) {
     return errors;
 }
 
-// A cubic fit leaves the fourth-order term of the height: third order in the slope, second in the
-// curvature. Half an order is given for the irregular stencils of the coarsest mesh. Measured:
-// normals 3.7e-3, 4.1e-4, 5.0e-5 rad (order 3.1), curvatures 7.5e-4, 1.8e-4, 4.3e-5 / mm
-// (order 2.06).
-TEST(FreezeSurface, NormalsAreThirdAndCurvaturesSecondOrder) {
+// A fit of degree four leaves the fifth-order term of the height: fourth order in the slope, third
+// in the curvature. Half an order is given for the irregular stencils. Measured: normals 9.9e-5,
+// 4.3e-6, 2.3e-7 rad (order 4.4), curvatures 4.7e-5, 2.9e-6, 2.4e-7 / mm (order 3.8).
+TEST(FreezeSurface, NormalsAreFourthAndCurvaturesThirdOrder) {
     std::vector<FitErrors> errors;
     for (const double edge_mm : {10.0, 5.0, 2.5}) {
         errors.push_back(torus_errors(edge_mm));
         const FitErrors& e = errors.back();
         std::printf(
-            "h %4.1f mm: normal rms %.3e worst %.3e rad, curvature rms %.3e / mm, fits %d %d %d\n",
-            edge_mm, e.normal_rad, e.normal_worst_rad, e.curvature_per_mm, e.fit.cubic,
-            e.fit.quadratic, e.fit.averaged);
+            "h %4.1f mm: normal rms %.3e worst %.3e rad, curvature rms %.3e / mm, fits %d %d\n",
+            edge_mm, e.normal_rad, e.normal_worst_rad, e.curvature_per_mm, e.fit.quartic,
+            e.fit.averaged);
     }
-    EXPECT_GE(0.5 * std::log2(errors[0].normal_rad / errors[2].normal_rad), 2.5);
-    EXPECT_GE(0.5 * std::log2(errors[0].curvature_per_mm / errors[2].curvature_per_mm), 1.5);
+    EXPECT_GE(0.5 * std::log2(errors[0].normal_rad / errors[2].normal_rad), 3.5);
+    EXPECT_GE(0.5 * std::log2(errors[0].curvature_per_mm / errors[2].curvature_per_mm), 2.5);
     for (const FitErrors& e : errors) {
         EXPECT_EQ(e.fit.averaged, 0);  // no stencil of a closed made mesh is that poor
     }
 }
 
-// Two circles of vertices determine neither y^2 nor anything above it, so every corner falls back
-// to averaging. There, by symmetry, the normal is radial and the curvature 1 / R to rounding.
-TEST(FreezeSurface, FallsBackOnACylinderOfEndCirclesOnly) {
+// Two circles of vertices determine neither y^2 nor what it takes with it: the wall is ruled from
+// circle to circle. Across it the fit of degree four to three segments either side misses the
+// circle's sixth-order term, (3 * 2 pi / 48)^4 / 8 of the curvature; normals are off by 4e-7 rad.
+TEST(FreezeSurface, RulesACylinderOfEndCirclesOnly) {
     constexpr int kSegments = 48;
     const Surface surface = test::frozen(test::tube(50.0, 300.0, kSegments, 1));
-    EXPECT_EQ(surface.fit.cubic, 0);
-    EXPECT_EQ(surface.fit.quadratic, 0);
-    EXPECT_EQ(surface.fit.averaged, 2 * kSegments);
+    EXPECT_EQ(surface.fit.reduced, 2 * kSegments);
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
             Vector3d radial = surface.position_mm[at(surface.face[f][c])];
@@ -90,9 +88,9 @@ TEST(FreezeSurface, FallsBackOnACylinderOfEndCirclesOnly) {
             radial.normalize();
             const Vector3d around = Vector3d::UnitZ().cross(radial);
             const std::size_t corner = at(surface.corner[f][c]);
-            EXPECT_LT((surface.normal[corner] - radial).norm(), 1e-13);
+            EXPECT_LT((surface.normal[corner] - radial).norm(), 1e-6);
             const Matrix3d exact = 0.02 * around * around.transpose();
-            EXPECT_LT((surface.shape_operator_per_mm[corner] - exact).norm(), 1e-13);
+            EXPECT_LT((surface.shape_operator_per_mm[corner] - exact).norm(), 3e-3 * 0.02);
         }
     }
 }
@@ -101,7 +99,8 @@ TEST(FreezeSurface, FallsBackOnACylinderOfEndCirclesOnly) {
 TEST(FreezeSurface, CountsEveryCorner) {
     for (const char* kind : {"tee", "combination", "vessel"}) {
         const Surface surface = test::frozen(make_mandrel(kind, {}, {.edge_mm = 10.0}));
-        EXPECT_EQ(surface.fit.cubic + surface.fit.quadratic + surface.fit.averaged,
+        EXPECT_EQ(surface.fit.quartic + surface.fit.cubic + surface.fit.quadratic +
+                      surface.fit.reduced + surface.fit.averaged,
                   static_cast<int>(surface.normal.size()))
             << kind;
         EXPECT_EQ(surface.normal.size(), surface.shape_operator_per_mm.size());
