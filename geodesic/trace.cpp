@@ -29,8 +29,8 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
-// Turns below this are evaluated by a few terms of the series, exact to rounding: the first term
-// left out is 4e-20.
+// Turns below this are evaluated by a few terms of the series, exact to rounding: the terms left
+// out are below 6e-18.
 constexpr double kSmallTurn_rad = 0.05;
 
 struct Turn {
@@ -52,7 +52,8 @@ Turn turn_by(double rad) {
 Vector3d carried(const Vector3d& tangent, const Vector3d& from, const Vector3d& to) {
     const double c = from.dot(to);
     if (c < -1.0 + 1e-9) {
-        return tangent;  // a fold by half a turn has no minimal rotation; the path ends up bridging
+        // A fold by half a turn has no minimal rotation; the path ends up bridging.
+        return (tangent - to * to.dot(tangent)).normalized();
     }
     return tangent - (from + to) * (1.0 / (1.0 + c)) * tangent.dot(to);
 }
