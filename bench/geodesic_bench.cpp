@@ -1,14 +1,19 @@
 // The tracer and the freezing of a surface on irregular tori of real part sizes.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <map>
+#include <numeric>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <Eigen/Geometry>
 
+#include "bench/unfolding_kernel.h"
 #include "core/units.h"
 #include "geodesic/trace.h"
 #include "mesh/edge_table.h"
@@ -19,7 +24,10 @@
 namespace {
 
 constexpr double kPath_mm = 600.0;
-constexpr std::size_t kPaths = 64;
+
+// So many that a pass outlasts what it evicts from the caches of the other, and that no branch
+// predictor learns the ways by heart.
+constexpr std::size_t kPaths = 512;
 
 struct Parts {
     meshwind::TriangleSoup soup;
@@ -52,40 +60,105 @@ const meshwind::Surface& torus(double edge_mm) {
                                : made.emplace(edge_mm, torus_parts(edge_mm).freeze()).first->second;
 }
 
-/// 64 paths of 600 mm from random faces, fixed seed; items are stations, nearly all edge crossings.
-void trace_torus(benchmark::State& state, double edge_mm, double slip_ratio) {
-    const meshwind::Surface& surface = torus(edge_mm);
+struct Start {
+    meshwind::SurfacePoint at;
+    Eigen::Vector3d direction;
+};
+
+/// The centres of random faces with random directions, fixed seed.
+std::vector<Start> random_starts(const meshwind::Surface& surface) {
     std::mt19937_64 random(1);
     std::uniform_int_distribution<std::int32_t> face(
         0, static_cast<std::int32_t>(surface.face.size()) - 1);
     std::uniform_real_distribution<double> turn(0.0, 2.0 * meshwind::kPi);
-    std::vector<meshwind::SurfacePoint> starts;
-    std::vector<Eigen::Vector3d> directions;
+    std::vector<Start> starts;
     for (std::size_t i = 0; i < kPaths; ++i) {
-        starts.push_back({.face = face(random)});
-        const Eigen::Vector3d n = meshwind::smooth_normal(surface, starts.back());
+        const meshwind::SurfacePoint at{.face = face(random)};
+        const Eigen::Vector3d n = meshwind::smooth_normal(surface, at);
         const Eigen::Vector3d x = n.unitOrthogonal();
         const double angle = turn(random);
-        directions.emplace_back(std::cos(angle) * x + std::sin(angle) * n.cross(x));
+        starts.push_back({at, std::cos(angle) * x + std::sin(angle) * n.cross(x)});
     }
-    std::size_t stations = 0;
+    return starts;
+}
+
+/// CPU seconds of one call of `work`, and the time of many calls: the median, as the machine may be
+/// busy with something else.
+template <class Work>
+double seconds(const Work& work) {
+    const std::clock_t begun = std::clock();
+    work();
+    return static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+struct Tracer {
+    const char* name;
+    meshwind::Steering steering;
+    meshwind::TraceOptions options;
+};
+
+const std::array kTracers = {
+    Tracer{"geodesic", {}, {.max_length_mm = kPath_mm}},
+    Tracer{"steered", {0.1, 0.1}, {.max_length_mm = kPath_mm}},
+};
+
+struct Size {
+    const char* name;
+    double edge_mm;
+};
+
+constexpr std::array kSizes = {Size{"10k", 9.5}, Size{"100k", 3.0}, Size{"1M_large", 0.96}};
+
+/// 512 paths of 600 mm; items are edge crossings. The unfolding kernel takes turns with the tracer
+/// on the same starts for as many crossings: `x_kernel` is the tracer's time divided by the
+/// kernel's, medians of the same run.
+void trace_torus(benchmark::State& state, double edge_mm, const Tracer& tracer) {
+    const meshwind::Surface& surface = torus(edge_mm);
+    const meshwind::bench::UnfoldingKernel kernel(surface);
+    const std::vector<Start> starts = random_starts(surface);
+    std::vector<std::size_t> crossings(starts.size());
+    std::vector<double> tracer_s;
+    std::vector<double> kernel_s;
     for (auto _ : state) {
-        for (std::size_t i = 0; i < kPaths; ++i) {
-            const auto result =
-                meshwind::trace(surface, starts[i], directions[i], {slip_ratio, slip_ratio},
-                                {.max_length_mm = kPath_mm});
-            stations += result.path.size();
+        tracer_s.push_back(seconds([&] {
+            for (std::size_t i = 0; i < kPaths; ++i) {
+                const auto result = meshwind::trace(surface, starts[i].at, starts[i].direction,
+                                                    tracer.steering, tracer.options);
+                crossings[i] = result.path.size() - 2;  // without both ends
+            }
+        }));
+        kernel_s.push_back(seconds([&] {
+            for (std::size_t i = 0; i < kPaths; ++i) {
+                benchmark::DoNotOptimize(
+                    kernel.length_mm(surface, starts[i].at, starts[i].direction, crossings[i]));
+            }
+        }));
+        state.SetIterationTime(tracer_s.back());
+    }
+    const auto all = std::accumulate(crossings.begin(), crossings.end(), 0.0);
+    state.counters["triangles"] = static_cast<double>(surface.face.size());
+    state.counters["ns"] = 1e9 * median(tracer_s) / all;
+    state.counters["kernel_ns"] = 1e9 * median(kernel_s) / all;
+    state.counters["x_kernel"] = median(tracer_s) / median(kernel_s);
+}
+
+const bool kRegistered = [] {
+    for (const Size& size : kSizes) {
+        for (const Tracer& tracer : kTracers) {
+            const std::string name = std::string("trace_torus/") + tracer.name + "_" + size.name;
+            benchmark::RegisterBenchmark(name.c_str(), trace_torus, size.edge_mm, tracer)
+                ->Unit(benchmark::kMillisecond)
+                ->UseManualTime();
         }
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(stations));
-    state.counters["triangles"] = static_cast<double>(surface.face.size());
-}
-BENCHMARK_CAPTURE(trace_torus, geodesic_10k, 9.5, 0.0);
-BENCHMARK_CAPTURE(trace_torus, steered_10k, 9.5, 0.1);
-BENCHMARK_CAPTURE(trace_torus, geodesic_100k, 3.0, 0.0);
-BENCHMARK_CAPTURE(trace_torus, steered_100k, 3.0, 0.1);
-BENCHMARK_CAPTURE(trace_torus, geodesic_1M_large, 0.96, 0.0);
-BENCHMARK_CAPTURE(trace_torus, steered_1M_large, 0.96, 0.1);
+    return true;
+}();
 
 /// Adjacency, corners and cubic fits; items are triangles.
 void freeze_torus(benchmark::State& state, double edge_mm) {

@@ -1,24 +1,42 @@
 #include "mesh/edge_table.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace meshwind {
 
 std::vector<EdgeUse> edge_uses(std::span<const std::array<std::int32_t, 3>> faces) {
-    std::vector<EdgeUse> uses;
-    uses.reserve(3 * faces.size());
+    const auto low = [&](std::size_t f, std::size_t e) {
+        return static_cast<std::size_t>(std::min(faces[f][e], faces[f][(e + 1) % 3]));
+    };
+    // By the lower vertex first, by counting; what is left to sort is a handful at each vertex.
+    std::vector<std::size_t> end(1, 0);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            end.resize(std::max(end.size(), low(f, e) + 1), 0);
+            ++end[low(f, e)];
+        }
+    }
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), std::size_t{0});
+    std::vector<EdgeUse> uses(3 * faces.size());
     for (std::size_t f = 0; f < faces.size(); ++f) {
         for (std::size_t e = 0; e < 3; ++e) {
             const std::int32_t from = faces[f][e];
             const std::int32_t to = faces[f][(e + 1) % 3];
-            uses.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(f),
-                            static_cast<std::int8_t>(e), static_cast<std::int8_t>(from < to)});
+            uses[end[low(f, e)]++] = {std::min(from, to), std::max(from, to),
+                                      static_cast<std::int32_t>(f), static_cast<std::int8_t>(e),
+                                      static_cast<std::int8_t>(from < to)};
         }
     }
-    std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-        return std::tie(a.low, a.high, a.face, a.edge) < std::tie(b.low, b.high, b.face, b.edge);
-    });
+    for (std::size_t v = 0; v < end.size(); ++v) {
+        const auto at = [&](std::size_t i) {
+            return uses.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        std::sort(at(v == 0 ? 0 : end[v - 1]), at(end[v]), [](const EdgeUse& a, const EdgeUse& b) {
+            return std::tie(a.high, a.face, a.edge) < std::tie(b.high, b.face, b.edge);
+        });
+    }
     return uses;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
+#include "mesh/edge_table.h"
 #include "mesh/jet_fit.h"
 
 namespace meshwind {
@@ -21,31 +21,6 @@ constexpr std::size_t kFitChunk = 256;
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
-}
-
-void link_neighbours(Surface& surface) {
-    std::unordered_map<std::uint64_t, std::pair<Index, int>> open;
-    open.reserve(surface.face.size() * 2);
-    const auto key = [](Index a, Index b) {
-        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32U) |
-               static_cast<std::uint32_t>(b);
-    };
-    surface.neighbour.assign(surface.face.size(), {kNoFace, kNoFace, kNoFace});
-    for (std::size_t f = 0; f < surface.face.size(); ++f) {
-        for (std::size_t e = 0; e < 3; ++e) {
-            const Index a = surface.face[f][e];
-            const Index b = surface.face[f][(e + 1) % 3];
-            const auto twin = open.find(key(b, a));
-            if (twin == open.end()) {
-                open.emplace(key(a, b), std::pair{static_cast<Index>(f), static_cast<int>(e)});
-                continue;
-            }
-            const auto [g, j] = twin->second;
-            surface.neighbour[f][e] = g;
-            surface.neighbour[at(g)][static_cast<std::size_t>(j)] = static_cast<Index>(f);
-            open.erase(twin);
-        }
-    }
 }
 
 std::size_t corner_of_vertex(const Surface& surface, Index face, Index vertex) {
@@ -230,6 +205,31 @@ void fit_corners(Surface& surface, std::span<const Index> corner_vertex) {
                    count(JetTerms::Reduced), count(JetTerms::Averaged)};
 }
 
+void pack_for_walks(Surface& surface, std::span<const Index> corner_vertex) {
+    surface.walk_face.resize(surface.face.size());
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        WalkFace& packed = surface.walk_face[f];
+        packed.corner = surface.corner[f];
+        packed.feature = surface.feature[f];
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Index next = surface.neighbour[f][e];
+            const Index start = surface.face[f][(e + 1) % 3];  // of the edge as `next` runs it
+            packed.across[e] =
+                next == kNoFace
+                    ? kNoFace
+                    : 4 * next + static_cast<Index>(corner_of_vertex(surface, next, start));
+        }
+    }
+    surface.walk_corner.resize(corner_vertex.size());
+    for (std::size_t i = 0; i < corner_vertex.size(); ++i) {
+        const Eigen::Matrix3d& s = surface.shape_operator_per_mm[i];
+        WalkCorner& packed = surface.walk_corner[i];
+        packed.position_mm = surface.position_mm[at(corner_vertex[i])];
+        packed.normal = surface.normal[i];
+        packed.shape_operator_per_mm << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2);
+    }
+}
+
 double mean_edge(const Surface& surface) {
     double sum = 0.0;
     for (const auto& v : surface.face) {
@@ -249,10 +249,11 @@ Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input) {
     surface.feature.assign(input.feature.begin(), input.feature.end());
     surface.region.assign(input.region.begin(), input.region.end());
     surface.rim.assign(input.rim.begin(), input.rim.end());
-    link_neighbours(surface);
+    surface.neighbour = face_neighbours(soup.faces);
     std::vector<Index> corner_vertex;
     number_corners(surface, corner_vertex);
     fit_corners(surface, corner_vertex);
+    pack_for_walks(surface, corner_vertex);
     surface.mean_edge_mm = mean_edge(surface);
     return surface;
 }

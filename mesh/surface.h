@@ -25,6 +25,21 @@ struct FitReport {
     int averaged = 0;   ///< last: angle-weighted facet normal, curvature from facets
 };
 
+/// What a walk reads of a face, packed: all of it in one cache line.
+struct alignas(32) WalkFace {
+    /// 4 * face across edge e + that face's number of the edge; negative at a rim
+    std::array<std::int32_t, 3> across;
+    std::array<std::int32_t, 3> corner;   ///< as Surface::corner
+    std::array<std::uint8_t, 3> feature;  ///< as Surface::feature
+};
+
+/// What a walk reads of a corner index, packed: all of it in two cache lines.
+struct alignas(32) WalkCorner {
+    Eigen::Vector3d position_mm;
+    Eigen::Vector3d normal;
+    Eigen::Matrix<double, 6, 1> shape_operator_per_mm;  ///< xx, yy, zz, xy, xz, yz
+};
+
 /// Positions, adjacency, smooth normals and curvature. Vertices on a feature edge have one normal
 /// per smooth side, so normals and shape operators belong to `corner` indices, not to vertices.
 struct Surface {
@@ -40,6 +55,8 @@ struct Surface {
     /// convex.
     std::vector<Eigen::Matrix3d> shape_operator_per_mm;
     std::vector<HeightJet> jet;  ///< per corner index: the fitted surface about the corner
+    std::vector<WalkFace> walk_face;      ///< per face: the above once more
+    std::vector<WalkCorner> walk_corner;  ///< per corner index: the above once more
     double mean_edge_mm = 0.0;
     FitReport fit;
 };

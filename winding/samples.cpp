@@ -1,6 +1,7 @@
 #include "winding/samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -19,6 +20,9 @@ constexpr double kDiscShare = 0.7;
 // Darts per disc area: eight leave fewer than one hole in a thousand discs.
 constexpr double kDartsPerDisc = 8.0;
 
+// Cells beside a dart's own, which is the likeliest to be taken: most darts come too late.
+constexpr std::array kOwnFirst = {0, -1, 1};
+
 class Grid {
 public:
     explicit Grid(double cell) : cell_(cell) {}
@@ -31,10 +35,10 @@ public:
         const std::array<std::int64_t, 3> c = {static_cast<std::int64_t>(std::floor(scaled.x())),
                                                static_cast<std::int64_t>(std::floor(scaled.y())),
                                                static_cast<std::int64_t>(std::floor(scaled.z()))};
-        for (std::int64_t x = c[0] - 1; x <= c[0] + 1; ++x) {
-            for (std::int64_t y = c[1] - 1; y <= c[1] + 1; ++y) {
-                for (std::int64_t z = c[2] - 1; z <= c[2] + 1; ++z) {
-                    if (taken(key(x, y, z), point, normal, samples)) {
+        for (const int x : kOwnFirst) {
+            for (const int y : kOwnFirst) {
+                for (const int z : kOwnFirst) {
+                    if (taken(key(c[0] + x, c[1] + y, c[2] + z), point, normal, samples)) {
                         return false;
                     }
                 }
