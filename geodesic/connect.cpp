@@ -21,6 +21,10 @@ using Eigen::Vector3d;
 constexpr double kWindowShare = 0.25;
 constexpr double kWindowEdges = 5.0;
 
+// An end that is right over or under the target is at it when no higher than this many edges:
+// facets and patches are within a small share of an edge of each other.
+constexpr double kHeightEdges = 0.5;
+
 // No step of the start angle is longer, rad: beyond, the Jacobi field says little.
 constexpr double kMaxStep_rad = 0.5;
 
@@ -32,7 +36,7 @@ constexpr double kConjugateShare = 0.01;
 // the facets' own error is h^2 / (24 R^2), below 1 % for triangles that a cubic can be fitted to.
 constexpr double kDetourShare = 0.02;
 
-// A chord shorter than this share of the whole way (a start on an edge) gives no first direction.
+// A chord shorter than this share of the whole way, or of an edge, has no direction worth taking.
 constexpr double kChordShare = 1e-6;
 
 // The arc length at which a path is abreast of the target settles in two or three traces.
@@ -41,11 +45,28 @@ constexpr int kMaxCuts = 6;
 // A shot that leaves more than this share of the miss is not followed by another Newton step.
 constexpr double kGoodStep = 0.5;
 
+// Where so small a share of Newton's step does not help, none does.
+constexpr double kLeastDamping = 1e-6;
+
+// Going to the target by stages: the least stage as a share of the way, the tolerance as a share
+// of an edge and the iterations for a stage that is worth following.
+constexpr double kLeastStage = 1.0 / 64.0;
+constexpr double kStageTolerance = 1e-3;
+constexpr int kStageIterations = 20;
+
 // Where the tracer sees a surface point, which with curved patches is not on the facet.
 struct Place {
     Vector3d position_mm;
-    Vector3d normal;
+    Vector3d normal;  // zero: not known
 };
+
+// A trace's first station lies where the tracer sees its start.
+Place place_of(const Surface& surface, const SurfacePoint& point, TraceOptions options) {
+    options.max_length_mm = kChordShare * surface.mean_edge_mm;
+    const Vector3d direction = smooth_normal(surface, point).unitOrthogonal();
+    const PathPoint at = trace(surface, point, direction, {}, options).path.front();
+    return {at.position_mm, at.normal};
+}
 
 // A traced path that ends abreast of the target, or as near to that as it gets.
 struct Shot {
@@ -55,6 +76,7 @@ struct Shot {
     std::int32_t rim = -1;
     double across_mm = 0.0;
     double along_mm = 0.0;
+    bool on_sheet = false;  // the end is on the target's side of a thin wall
     double jacobi_mm = 0.0;
     int conjugate_points = 0;
 
@@ -71,7 +93,7 @@ double nearest_s_mm(const SurfacePath& path, const Place& target, double low_mm,
         const PathPoint& a = path[i - 1];
         const PathPoint& b = path[i];
         if (b.s_mm < low_mm || a.s_mm > high_mm || !(b.s_mm > a.s_mm) ||
-            b.normal.dot(target.normal) <= 0.0) {
+            b.normal.dot(target.normal) < 0.0) {
             continue;
         }
         const Vector3d chord = b.position_mm - a.position_mm;
@@ -107,12 +129,14 @@ struct Bracket {
 
 class Shooter {
 public:
-    Shooter(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+    Shooter(const Surface& surface, const SurfacePoint& from, const Place& target,
             double slip_ratio, const ConnectOptions& options)
-        : surface_(surface), from_(from), slip_ratio_(slip_ratio), options_(options) {
-        target_ = place_of(to);
-        start_ = place_of(from);
-    }
+        : surface_(surface),
+          from_(from),
+          start_(place_of(surface, from, options.trace)),
+          target_(target),
+          slip_ratio_(slip_ratio),
+          options_(options) {}
 
     ConnectResult run(const ConnectGuess& guess) {
         if ((start_.position_mm - target_.position_mm).norm() <= options_.tolerance_mm &&
@@ -127,15 +151,6 @@ public:
     }
 
 private:
-    // A trace's first station lies where the tracer sees its start.
-    [[nodiscard]] Place place_of(const SurfacePoint& point) const {
-        TraceOptions options = options_.trace;
-        options.max_length_mm = options_.tolerance_mm;
-        const Vector3d direction = smooth_normal(surface_, point).unitOrthogonal();
-        const PathPoint at = trace(surface_, point, direction, {}, options).path.front();
-        return {at.position_mm, at.normal};
-    }
-
     [[nodiscard]] TraceResult trace_to(double angle_rad, double length_mm) const {
         TraceOptions options = options_.trace;
         options.max_length_mm = std::min(length_mm, options.max_length_mm);
@@ -150,6 +165,8 @@ private:
         const Vector3d miss = target_.position_mm - end.position_mm;
         shot.along_mm = miss.dot(end.tangent);
         shot.across_mm = miss.dot(end.normal.cross(end.tangent));
+        shot.on_sheet = end.normal.dot(target_.normal) >= 0.0 &&
+                        std::abs(miss.dot(end.normal)) < kHeightEdges * surface_.mean_edge_mm;
     }
 
     [[nodiscard]] Shot shoot(double angle_rad, double expected_mm) const {
@@ -186,7 +203,7 @@ private:
     }
 
     [[nodiscard]] bool hits(const Shot& shot) const {
-        return shot.miss_mm() <= options_.tolerance_mm;
+        return shot.on_sheet && shot.miss_mm() <= options_.tolerance_mm;
     }
 
     // What ended a path before it was abreast of the target, if anything did.
@@ -197,8 +214,7 @@ private:
         if (shot.stop == TraceStop::Rim) {
             return ConnectStop::Rim;
         }
-        if (shot.stop == TraceStop::FaceLimit ||
-            shot.length_mm() >= options_.trace.max_length_mm) {
+        if (shot.stop == TraceStop::FaceLimit || shot.length_mm() >= options_.trace.max_length_mm) {
             return ConnectStop::TraceLimit;
         }
         return std::nullopt;
@@ -210,13 +226,13 @@ private:
 
     // Newton's step from the best shot, shortened while shots get worse; the middle of the bracket
     // where that leads out of it or did not help.
-    [[nodiscard]] static double next_angle(const Shot& best, const Bracket& bracket, double damping) {
+    [[nodiscard]] double next_angle(const Shot& best, const Bracket& bracket,
+                                    double damping) const {
         const double slope = std::copysign(
-            std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm()),
-            best.jacobi_mm);
+            std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm()), best.jacobi_mm);
         const double step = std::clamp(best.across_mm / slope, -kMaxStep_rad, kMaxStep_rad);
         const double angle = best.angle_rad + damping * step;
-        if (bracket.closed() && (damping < 1.0 || !bracket.holds(angle))) {
+        if (bracket.closed() && (bisect_ || !bracket.holds(angle))) {
             return bracket.middle();
         }
         return angle;
@@ -225,15 +241,14 @@ private:
     // Nothing is left between both sides that could come nearer than the tolerance.
     [[nodiscard]] bool shut(const Bracket& bracket, const Shot& best) const {
         const double reach = std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm());
-        return bracket.closed() &&
-               bracket.width() * reach <= kCutShare * options_.tolerance_mm;
+        return bracket.closed() && bracket.width() * reach <= kCutShare * options_.tolerance_mm;
     }
 
     void search(Shot best) {
         Bracket bracket;
         bracket.take(best);
         double damping = 1.0;
-        ConnectStop end = ConnectStop::IterationLimit;
+        ConnectStop end = ConnectStop::Stalled;
         for (result_.iterations = 1; result_.iterations < options_.max_iterations;
              ++result_.iterations) {
             if (hits(best)) {
@@ -250,9 +265,12 @@ private:
             Shot shot = shoot(next_angle(best, bracket, damping), best.length_mm());
             bracket.take(shot);
             const double share = shot.miss_mm() / best.miss_mm();
-            damping = share < kGoodStep ? 1.0 : 0.5 * damping;
+            bisect_ = share >= kGoodStep;
+            damping = share < 1.0 ? std::min(1.0, 2.0 * damping) : 0.5 * damping;
             if (share < 1.0) {
                 best = std::move(shot);
+            } else if (damping < kLeastDamping) {
+                break;
             }
         }
         conclude(end, std::move(best));
@@ -280,11 +298,12 @@ private:
 
     const Surface& surface_;
     const SurfacePoint& from_;
-    double slip_ratio_;
-    const ConnectOptions& options_;
     Place start_;
     Place target_;
+    double slip_ratio_;
+    const ConnectOptions& options_;
     Vector3d ahead_ = Vector3d::Zero();
+    bool bisect_ = false;  // the last step gained little
     ConnectResult result_;
 };
 
@@ -299,6 +318,59 @@ ConnectGuess guess_of(const PolyhedralPath& way) {
         }
     }
     return {chord, way.length_mm};
+}
+
+// The point that parts a way at a share of its length.
+Place waypoint(const PolyhedralPath& way, double share) {
+    double left = share * way.length_mm;
+    for (std::size_t i = 1; i < way.points_mm.size(); ++i) {
+        const Vector3d chord = way.points_mm[i] - way.points_mm[i - 1];
+        const double length = chord.norm();
+        if (left < length) {
+            return {way.points_mm[i - 1] + left / length * chord, Vector3d::Zero()};
+        }
+        left -= length;
+    }
+    return {way.points_mm.back(), Vector3d::Zero()};
+}
+
+// To points ever farther along the way, from the first angle that was found for the point before.
+// The first stage is the whole way; one that fails is halved.
+ConnectResult by_stages(const Surface& surface, const SurfacePoint& from, const Place& target,
+                        const PolyhedralPath& way, double slip_ratio,
+                        const ConnectOptions& options) {
+    ConnectOptions coarse = options;
+    coarse.tolerance_mm = std::max(options.tolerance_mm, kStageTolerance * surface.mean_edge_mm);
+    coarse.max_iterations = std::min(options.max_iterations, kStageIterations);
+    ConnectGuess guess = guess_of(way);
+    ConnectResult best;
+    int iterations = 0;
+    double done = 0.0;       // share of the way to which a path was found
+    double length_mm = 0.0;  // of that path
+    for (double stage = 1.0; stage >= kLeastStage;) {
+        const double next = std::min(1.0, done + stage);
+        const bool whole = next == 1.0;
+        guess.length_mm = length_mm + (next - done) * way.length_mm;
+        Shooter shooter(surface, from, whole ? target : waypoint(way, next), slip_ratio,
+                        whole ? options : coarse);
+        ConnectResult result = shooter.run(guess);
+        iterations += result.iterations;
+        if (!whole && result.stop == ConnectStop::Reached) {
+            done = next;
+            length_mm = result.length_mm;
+            guess.direction = result.path.front().tangent;
+            continue;
+        }
+        stage *= 0.5;
+        if (whole && (best.path.empty() || result.miss_mm < best.miss_mm)) {
+            best = std::move(result);
+        }
+        if (whole && best.miss_mm <= coarse.tolerance_mm) {
+            break;
+        }
+    }
+    best.iterations = iterations;
+    return best;
 }
 
 }  // namespace
@@ -319,8 +391,8 @@ const char* name_of(ConnectStop stop) {
             return "rim";
         case ConnectStop::TraceLimit:
             return "trace-limit";
-        case ConnectStop::IterationLimit:
-            return "iteration-limit";
+        case ConnectStop::Stalled:
+            return "stalled";
         case ConnectStop::Unreachable:
             return "unreachable";
     }
@@ -329,22 +401,26 @@ const char* name_of(ConnectStop stop) {
 
 ConnectResult connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
                       const ConnectGuess& guess, double slip_ratio, const ConnectOptions& options) {
-    return Shooter(surface, from, to, slip_ratio, options).run(guess);
+    const Place target = place_of(surface, to, options.trace);
+    return Shooter(surface, from, target, slip_ratio, options).run(guess);
+}
+
+ConnectResult connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+                      const PolyhedralPath& way, double slip_ratio, const ConnectOptions& options) {
+    ConnectResult result =
+        by_stages(surface, from, place_of(surface, to, options.trace), way, slip_ratio, options);
+    result.polyhedral_mm = way.length_mm;
+    if (result.stop == ConnectStop::Reached && slip_ratio == 0.0 &&
+        result.length_mm > (1.0 + kDetourShare) * way.length_mm) {
+        result.stop = ConnectStop::Detour;
+    }
+    return result;
 }
 
 ConnectResult connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
                       double slip_ratio, const ConnectOptions& options) {
     const std::optional<PolyhedralPath> way = ShortestPaths(surface, from).to(to);
-    if (!way) {
-        return {};
-    }
-    ConnectResult result = connect(surface, from, to, guess_of(*way), slip_ratio, options);
-    result.polyhedral_mm = way->length_mm;
-    if (result.stop == ConnectStop::Reached && slip_ratio == 0.0 &&
-        result.length_mm > (1.0 + kDetourShare) * way->length_mm) {
-        result.stop = ConnectStop::Detour;
-    }
-    return result;
+    return way ? connect(surface, from, to, *way, slip_ratio, options) : ConnectResult{};
 }
 
 }  // namespace meshwind

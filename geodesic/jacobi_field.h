@@ -16,7 +16,8 @@ namespace meshwind {
 /// **conjugate points**, where neighbouring paths meet. With kg = lambda kn and the torsion
 /// tau = b . S t of the surface along the path,
 ///
-///     j = y exp(lambda * integral of tau ds),   y'' + (1 + lambda^2) K y = 0,   y(0) = 0, y'(0) = 1
+///     j = y exp(lambda * integral of tau ds),   y'' + (1 + lambda^2) K y = 0,   y(0) = 0, y'(0) =
+///     1
 ///
 /// which is Jacobi's equation for lambda = 0; docs/geometry.md has the derivation. It does not see
 /// the bend of neighbours at a feature edge that is curved within the surface.

@@ -20,8 +20,7 @@ Mesh mesh_of(const Surface& surface) {
     Mesh mesh;
     const std::size_t faces = surface.face.size();
     mesh.reserve(static_cast<Mesh::size_type>(surface.position_mm.size()),
-                 static_cast<Mesh::size_type>(3 * faces / 2),
-                 static_cast<Mesh::size_type>(faces));
+                 static_cast<Mesh::size_type>(3 * faces / 2), static_cast<Mesh::size_type>(faces));
     for (const Eigen::Vector3d& p : surface.position_mm) {
         mesh.add_vertex({p.x(), p.y(), p.z()});
     }
@@ -38,8 +37,7 @@ Mesh mesh_of(const Surface& surface) {
 }  // namespace
 
 struct ShortestPaths::Impl {
-    explicit Impl(const Surface& facets)
-        : surface(facets), mesh(mesh_of(facets)), tree(mesh) {}
+    explicit Impl(const Surface& facets) : surface(facets), mesh(mesh_of(facets)), tree(mesh) {}
 
     // CGAL counts the corners of a face from the source of its first halfedge.
     [[nodiscard]] Tree::Face_location location(const SurfacePoint& point) const {
