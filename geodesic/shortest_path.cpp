@@ -8,6 +8,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_shortest_path.h>
 
+#include "core/tolerances.h"
+
 namespace meshwind {
 namespace {
 
@@ -39,13 +41,17 @@ Mesh mesh_of(const Surface& surface) {
 struct ShortestPaths::Impl {
     explicit Impl(const Surface& facets) : surface(facets), mesh(mesh_of(facets)), tree(mesh) {}
 
-    // CGAL counts the corners of a face from the source of its first halfedge.
+    // CGAL counts the corners of a face from the source of its first halfedge, and decides by exact
+    // zeros whether a place is on an edge or a vertex: rounding there gives ways that are too long
+    // (github.com/CGAL/cgal/issues/9646).
     [[nodiscard]] Tree::Face_location location(const SurfacePoint& point) const {
         const Mesh::Face_index face(static_cast<Mesh::size_type>(point.face));
         const auto first = static_cast<std::int32_t>(mesh.source(mesh.halfedge(face)).idx());
         const auto& corner = surface.face[static_cast<std::size_t>(point.face)];
         const auto shift = std::find(corner.begin(), corner.end(), first) - corner.begin();
-        const auto bary = [&](std::ptrdiff_t i) { return point.bary[(shift + i) % 3]; };
+        Eigen::Vector3d clean = (point.bary.array() < kBaryEps).select(0.0, point.bary);
+        clean /= clean.sum();
+        const auto bary = [&](std::ptrdiff_t i) { return clean[(shift + i) % 3]; };
         return {face, {bary(0), bary(1), bary(2)}};
     }
 

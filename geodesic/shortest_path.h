@@ -27,8 +27,10 @@ public:
 
     /// Shortest way to `target`; one of them where several are equally short; none where the
     /// target lies on another piece of the surface. \pre target.face is a face of the surface
-    /// Accuracy: exact to rounding on the facets, which are second order in edge length
-    /// (tests/geodesic/connect_test.cpp). Source: xin_2009_exact_geodesics.
+    /// Accuracy: exact to rounding on even meshes (tests/geodesic/connect_order_test.cpp). CGAL
+    /// decides with rounded constructions: on CAD tessellations with slivers ways up to 8 % too
+    /// long were seen, so a way is a first guess and a path may be found that is shorter.
+    /// Source: xin_2009_exact_geodesics.
     [[nodiscard]] std::optional<PolyhedralPath> to(const SurfacePoint& target);
 
 private:
