@@ -18,6 +18,10 @@ using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Traits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
 using Tree = CGAL::Surface_mesh_shortest_path<Traits>;
 
+// From a source on a rim CGAL finds ways that are too long (github.com/CGAL/cgal/issues/6681): one
+// on an edge or vertex is moved inside its face by this barycentric share, 1e-6 of an edge.
+constexpr double kSourceInset = 1e-6;
+
 Mesh mesh_of(const Surface& surface) {
     Mesh mesh;
     const std::size_t faces = surface.face.size();
@@ -62,7 +66,10 @@ struct ShortestPaths::Impl {
 
 ShortestPaths::ShortestPaths(const Surface& surface, const SurfacePoint& source)
     : impl_(std::make_unique<Impl>(surface)) {
-    impl_->tree.add_source_point(impl_->location(source));
+    SurfacePoint inside = source;
+    inside.bary = source.bary.cwiseMax(kSourceInset);
+    inside.bary /= inside.bary.sum();
+    impl_->tree.add_source_point(impl_->location(inside));
     impl_->tree.build_sequence_tree();
 }
 

@@ -27,9 +27,8 @@ public:
 
     /// Shortest way to `target`; one of them where several are equally short; none where the
     /// target lies on another piece of the surface. \pre target.face is a face of the surface
-    /// Accuracy: exact to rounding on even meshes (tests/geodesic/connect_order_test.cpp). CGAL
-    /// decides with rounded constructions: on CAD tessellations with slivers ways up to 8 % too
-    /// long were seen, so a way is a first guess and a path may be found that is shorter.
+    /// Accuracy: exact to rounding (tests/geodesic/connect_order_test.cpp), but for a source on an
+    /// edge, which is moved by 1e-6 of the edge: CGAL's ways from rims were up to 8 % too long.
     /// Source: xin_2009_exact_geodesics.
     [[nodiscard]] std::optional<PolyhedralPath> to(const SurfacePoint& target);
 
