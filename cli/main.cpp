@@ -185,7 +185,7 @@ void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>
 }
 
 struct TraceOptionsText {
-    std::string mandrel, start, direction, frame = "mandrel";
+    std::string mandrel, start, direction, to, frame = "mandrel";
     double angle_deg = 0.0;
     TraceRequest request;
 };
@@ -199,9 +199,14 @@ CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
         app.add_option("--angle", text.angle_deg,
                        "degrees from the local axial direction, counter-clockwise from outside");
     direction->excludes(angle);
+    auto* to = app.add_option("--to", text.to,
+                              "X,Y,Z where the path ends, instead of a direction: its start angle "
+                              "is found");
+    to->excludes(direction)->excludes(angle);
     app.add_option("--lambda", text.request.slip_ratio, "slip ratio kg / kn to steer with")
         ->capture_default_str();
-    app.add_option("--length", text.request.length_mm, "longest path, mm")->capture_default_str();
+    auto* length = app.add_option("--length", text.request.length_mm, "longest path, mm");
+    length->capture_default_str()->excludes(to);
     app.add_option("--frame", text.frame, "frame of the output")
         ->check(CLI::IsMember({"mandrel", "file"}))
         ->capture_default_str();
@@ -219,8 +224,11 @@ int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& comm
         request.angle_deg = text.angle_deg;
     } else if (!text.direction.empty()) {
         request.direction = vector_of("--direction", text.direction);
+    } else if (!text.to.empty()) {
+        request.to = vector_of("--to", text.to);
     } else {
-        throw InputError("cli.direction", "trace", "give --direction X,Y,Z or --angle DEG");
+        throw InputError("cli.direction", "trace",
+                         "give --direction X,Y,Z, --angle DEG or --to X,Y,Z");
     }
     const std::string line = run_trace(request);
     if (!common.quiet) {

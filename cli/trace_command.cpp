@@ -9,6 +9,7 @@
 #include "core/text_number.h"
 #include "core/tolerances.h"
 #include "core/units.h"
+#include "geodesic/connect.h"
 #include "geodesic/measure.h"
 #include "geodesic/trace.h"
 #include "mesh/mandrel.h"
@@ -27,12 +28,18 @@ constexpr int kDirectionDecimals = 9;
 constexpr int kCurvatureDecimals = 10;
 constexpr int kRatioDecimals = 6;
 
-SurfacePoint snap(const Mandrel& mandrel, const Vector3d& start_mm, double& distance_mm) {
+// A point of the command line on the surface.
+struct Snapped {
+    SurfacePoint at;
+    double moved_mm;
+};
+
+Snapped snap(const Mandrel& mandrel, const Vector3d& point_file) {
+    const Vector3d point_mm = mandrel.file_to_mandrel * point_file;
     const TriangleSoup wall{mandrel.surface.position_mm, mandrel.surface.face};
     const RayQuery query({&wall, 1});
-    const ClosestPoint found = query.closest(start_mm, start_mm.norm() + 10.0 * diagonal_mm(wall));
-    distance_mm = found.distance_mm;
-    return {found.face, found.bary};
+    const ClosestPoint found = query.closest(point_mm, point_mm.norm() + 10.0 * diagonal_mm(wall));
+    return {{found.face, found.bary}, found.distance_mm};
 }
 
 Vector3d direction_at(const TraceRequest& request, const Mandrel& mandrel, const Vector3d& normal) {
@@ -93,9 +100,7 @@ Eigen::Isometry3d file_from_mandrel_mm(const Mandrel& mandrel) {
     return mandrel_from_file.inverse();
 }
 
-}  // namespace
-
-std::string run_trace(const TraceRequest& request) {
+void check(const TraceRequest& request) {
     if (!(request.length_mm > 0.0) || !std::isfinite(request.length_mm)) {
         throw InputError("trace.length", "--length", "must be positive and finite");
     }
@@ -108,24 +113,85 @@ std::string run_trace(const TraceRequest& request) {
     if (!(request.start.norm() < kFarthestStart)) {
         throw InputError("trace.start", "--start", "lies beyond any part; give a point near it");
     }
-    const Mandrel mandrel = load_mandrel(request.mandrel, {.unit_mm = request.unit_mm});
-    double off_mm = 0.0;
-    const SurfacePoint start = snap(mandrel, mandrel.file_to_mandrel * request.start, off_mm);
+    if (request.to && !(request.to->norm() < kFarthestStart)) {
+        throw InputError("trace.to", "--to", "lies beyond any part; give a point near it");
+    }
+}
+
+// A path and how it came to its end, in words.
+struct Traced {
+    SurfacePath path;
+    std::string end;
+};
+
+Traced trace_from(const TraceRequest& request, const Mandrel& mandrel, const SurfacePoint& start) {
     const Vector3d direction =
         direction_at(request, mandrel, smooth_normal(mandrel.surface, start));
-    const TraceResult result =
+    TraceResult result =
         trace(mandrel.surface, start, direction, {request.slip_ratio, request.slip_ratio},
               {.max_length_mm = request.length_mm});
-    const TautString string = taut_string(result.path);
-    const SlipMeasure slip = measure_slip(mandrel.surface, result.path, string, {});
-    write_file(request.out, table(result.path, string, slip,
+    return {std::move(result.path),
+            name_of(result.stop) +
+                (result.rim >= 0 ? " " + std::to_string(result.rim) : std::string())};
+}
+
+std::string reason_of(const ConnectResult& result) {
+    const std::string nearest = "the nearest path found is " + fixed(result.length_mm, 3) +
+                                " mm long and misses by " + fixed(result.miss_mm, 6) + " mm";
+    switch (result.stop) {
+        case ConnectStop::Unreachable:
+            return "lies on another piece of the surface than --start; choose both on one";
+        case ConnectStop::SamePoint:
+            return "is the same point of the surface as --start; choose another";
+        case ConnectStop::Conjugate:
+            return "no path reaches it: neighbouring paths meet before; " + nearest +
+                   "; choose a nearer point or another --lambda";
+        case ConnectStop::Rim:
+            return "the path there leaves the surface at rim " + std::to_string(result.rim) + "; " +
+                   nearest + "; choose a point that is not behind a rim";
+        case ConnectStop::Gap:
+            return "traces pass on both sides of it; " + nearest +
+                   "; a finer mesh or a nearer point helps";
+        default:
+            return "no path was found (" + std::string(name_of(result.stop)) + "); " + nearest +
+                   "; choose a nearer point or another --lambda";
+    }
+}
+
+Traced trace_between(const TraceRequest& request, const Mandrel& mandrel, const SurfacePoint& start,
+                     const Snapped& to) {
+    const ConnectOptions options;
+    ConnectResult result = connect(mandrel.surface, start, to.at, request.slip_ratio, options);
+    if (result.path.empty() || result.miss_mm > options.tolerance_mm) {
+        throw InputError("trace.not_connected", "--to", reason_of(result));
+    }
+    std::string end = "target, which moved " + fixed(to.moved_mm, 4) + " mm onto the surface, " +
+                      fixed(result.length_mm - result.polyhedral_mm, 4) +
+                      " mm longer than the shortest way over the facets";
+    if (result.stop != ConnectStop::Reached) {
+        end += std::string(", ") + name_of(result.stop);
+    }
+    return {std::move(result.path), std::move(end)};
+}
+
+}  // namespace
+
+std::string run_trace(const TraceRequest& request) {
+    check(request);
+    const Mandrel mandrel = load_mandrel(request.mandrel, {.unit_mm = request.unit_mm});
+    const Snapped start = snap(mandrel, request.start);
+    const auto& [path, end] =
+        request.to ? trace_between(request, mandrel, start.at, snap(mandrel, *request.to))
+                   : trace_from(request, mandrel, start.at);
+    const TautString string = taut_string(path);
+    const SlipMeasure slip = measure_slip(mandrel.surface, path, string, {});
+    write_file(request.out, table(path, string, slip,
                                   request.file_frame ? file_from_mandrel_mm(mandrel)
                                                      : Eigen::Isometry3d::Identity()));
-    return request.out.string() + ": " + std::to_string(result.path.size()) + " points, " +
-           fixed(result.path.back().s_mm, 3) + " mm, ended at: " + name_of(result.stop) +
-           (result.rim >= 0 ? " " + std::to_string(result.rim) : std::string()) + ", start moved " +
-           fixed(off_mm, 4) + " mm onto the surface, worst slip ratio " + fixed(slip.worst, 4) +
-           ", bridging " + fixed(string.worst_gap_mm, 3) + " mm";
+    return request.out.string() + ": " + std::to_string(path.size()) + " points, " +
+           fixed(path.back().s_mm, 3) + " mm, ended at: " + end + ", start moved " +
+           fixed(start.moved_mm, 4) + " mm onto the surface, worst slip ratio " +
+           fixed(slip.worst, 4) + ", bridging " + fixed(string.worst_gap_mm, 3) + " mm";
 }
 
 }  // namespace meshwind

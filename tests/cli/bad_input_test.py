@@ -232,10 +232,27 @@ class BadInput(program.ProgramTest):
                                 (["50,0,0", "--angle", "45", "--length", "nan"], "length"),
                                 (["50,0,0", "--angle", "45", "--frame", "moon"], "frame"),
                                 (["50,0,0"], "--direction"),
+                                (["50,0,0"], "--to"),
+                                (["50,0,0", "--to", "0,50"], "--to"),
+                                (["50,0,0", "--to", "nan,0,0"], "--to"),
+                                (["50,0,0", "--to", "1e300,0,0"], "--to"),
+                                (["50,0,0", "--to", "50,0,0"], "same point"),
+                                (["50,0,0", "--to", "0,50,0", "--angle", "45"], "--to"),
+                                (["50,0,0", "--to", "0,50,0", "--direction", "0,0,1"], "--to"),
+                                (["50,0,0", "--to", "0,50,0", "--length", "50"], "--to"),
+                                (["50,0,0", "--to", "0,50,0", "--lambda", "nan"], "lambda"),
                                 (["50,0,0", "--angle", "45", "--direction", "0,0,1"], "")):
             with self.subTest(" ".join(arguments)):
                 self.refused(*start, *arguments, word=word)
                 self.assertFalse((self.folder / "path.csv").exists())
+
+    def test_no_path_between_two_points(self):
+        """With a slip ratio of 0.5 a path on a sphere is a circle of radius R / sqrt(1.25)."""
+        mandrel = self.make("ellipsoid", "--equator-radius", "50", "--pole-radius", "50",
+                            "--edge", "10")
+        self.refused("trace", mandrel, "--start", "50,0,0", "--to=-49,9,3", "--lambda", "0.5",
+                     "-o", self.folder / "path.csv", word="meet")
+        self.assertFalse((self.folder / "path.csv").exists())
 
 
 if __name__ == "__main__":

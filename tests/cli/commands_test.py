@@ -84,6 +84,29 @@ class Commands(program.ProgramTest):
             self.assertAlmostEqual(max(p["z_mm"] for p in path), run - 100, delta=0.3)
             self.assertAlmostEqual(max(abs(p["slip"]) for p in path), 0.3, delta=0.02)
 
+    def test_path_between_two_points(self):
+        """The helix of one radian over 80 mm: hypot(50, 80) mm long. Points on facets are up to
+        0.1 mm inside at an edge of 8 mm, and lengths around short by h^2 / (24 R^2) = 0.1 %."""
+        mandrel = self.make("cylinder", "--radius", "50", "--length", "120", "--edge", "8")
+        end = (50 * math.cos(1.0), 50 * math.sin(1.0), 40.0)
+        for slip in ("0", "0.2", "-0.2"):
+            path = self.trace(mandrel, "--start", "50,0,-40", "--to", "%.6f,%.6f,%.6f" % end,
+                              "--lambda", slip, "--frame", "file")
+            for axis, x in zip("xyz", end):
+                self.assertAlmostEqual(path[-1][axis + "_mm"], x, delta=0.2)
+            if slip == "0":
+                geodesic_mm = path[-1]["s_mm"]
+                self.assertAlmostEqual(geodesic_mm, math.hypot(50, 80), delta=0.2)
+            else:
+                # Longer by kg^2 L^3 / 24 with kg = 0.2 kn, kn = (50 / L)^2 / 50: 0.044 mm.
+                self.assertAlmostEqual(path[-1]["s_mm"] - geodesic_mm, 0.044, delta=0.01)
+                # kg turns to the left of travel for a positive ratio.
+                middle = path[len(path) // 2]
+                self.assertGreater(float(slip) * middle["kg_per_mm"], 0.0)
+        line = self.done("trace", mandrel, "--start", "50,0,-40", "--to", "50,0,40", "-o",
+                         self.folder / "path.csv").stdout
+        self.assertIn("ended at: target", line)
+
     def test_frames_differ_by_file_to_mandrel(self):
         mandrel = self.make("elbow", "--edge", "8")
         start = ["--start", "40,0,40", "--direction", "0,1,1", "--length", "60"]

@@ -13,6 +13,7 @@ Eigen/Geometry          *
 Eigen/                  *.cpp
 OpenMesh/               mesh/*.cpp
 OpenMesh/               mesh/open_mesh.h
+CGAL/                   geodesic/shortest_path.cpp
 CGAL/                   mesh/planar_delaunay.cpp
 CGAL/                   mesh/self_intersections.cpp
 CGAL/                   mesh/*repair*.cpp
