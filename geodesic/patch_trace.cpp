@@ -28,13 +28,16 @@ constexpr double kMaxStepTurn_rad = 0.2;
 
 // Barycentric coordinate below which a step has left the triangle, and tries to end on the edge.
 constexpr double kOutside = 1e-10;
-constexpr double kOnEdge = 1e-14;
-constexpr int kMaxLandings = 8;
+constexpr int kMaxLandings = 16;
+
+// Share of a step by which its end is moved onto an edge without taking it again.
+constexpr double kLandingShare = 0.02;
 
 // One minus the cosine below which two normals at one place are the same.
 constexpr double kSameNormal = 1e-9;
 
 constexpr std::size_t kNoEdge = 3;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -84,7 +87,7 @@ double first_root(double b, double rate, double half) {
             return (root + rate) / (-2.0 * half);
         }
     }
-    return std::numeric_limits<double>::infinity();
+    return kNever;
 }
 
 class PatchWalker {
@@ -96,7 +99,8 @@ public:
           options_(options),
           patch_(surface, start.face),
           face_(start.face),
-          min_station_mm_(kMinStationShare * surface.mean_edge_mm) {
+          min_station_mm_(kMinStationShare * surface.mean_edge_mm),
+          clearance_mm_(kVertexClearance * surface.mean_edge_mm) {
         const Vector2d uv(start.bary[1], start.bary[2]);
         begin(uv, patch_.at(uv), direction);
     }
@@ -115,7 +119,7 @@ public:
 
 private:
     struct Exit {
-        double length_mm = std::numeric_limits<double>::infinity();
+        double length_mm = kNever;
         std::size_t opposite = kNoEdge;  // bary index that becomes zero
     };
 
@@ -171,25 +175,27 @@ private:
                 a4};
     }
 
+    // One step: to the edge by which the path leaves, or within the patch where that is far.
     bool step() {
-        Exit exit = predict_exit();
         const double left = options_.max_length_mm - length_mm_;
-        double h = std::min(exit.length_mm, left);
-        if (h > max_step_mm_) {
-            h /= std::ceil(h / max_step_mm_);
-            exit.opposite = kNoEdge;
+        Exit exit = predict_exit();
+        if (exit.length_mm > std::min(left, max_step_mm_)) {
+            const double length = std::min(left, exit.length_mm);
+            exit = {length / std::max(1.0, std::ceil(length / max_step_mm_)), kNoEdge};
         }
-        State next = advanced(h);
-        double length = h;
-        if ((h < left || !inside(next)) && land_on_edge(next, exit.opposite, length)) {
-            if (length < left) {
-                return cross(next, exit.opposite, length);
-            }
-            next = advanced(left);  // the edge lies just beyond the end
-            length = left;
+        State next = advanced(exit.length_mm);
+        for (int i = 0; i < kMaxLandings && !land(next, exit); ++i) {
+            next = advanced(exit.length_mm);
         }
-        move_within(next, length);
-        if (length < left) {
+        if (exit.opposite != kNoEdge && exit.length_mm < left) {
+            return cross(next, exit.opposite, exit.length_mm);
+        }
+        if (exit.opposite != kNoEdge) {  // the edge lies just beyond the end
+            exit.length_mm = left;
+            next = advanced(left);
+        }
+        move_within(next, exit.length_mm);
+        if (exit.length_mm < left) {
             record(motion_.kn_per_mm);
             return true;
         }
@@ -199,31 +205,40 @@ private:
         return false;
     }
 
-    [[nodiscard]] static bool inside(const State& state) {
-        return bary(state.uv, 0, 1.0) >= -kOutside && state.uv.minCoeff() >= -kOutside;
-    }
-
-    // Moves a state back or ahead onto the edge by which the path leaves: of the edges already
-    // behind it the first, else the predicted one. `length` grows by what this adds. False where
-    // there is neither.
-    bool land_on_edge(State& state, std::size_t& opposite, double& length) const {
+    // Moves the end of a step onto the edge by which the path leaves: of the edges already behind
+    // it the first, else the predicted one, else none. False where that is too far for this step:
+    // then `exit` says how long another should be.
+    bool land(State& state, Exit& exit) const {
         for (int i = 0; i < kMaxLandings; ++i) {
-            double time = opposite == kNoEdge ? std::numeric_limits<double>::infinity()
-                                              : time_to(state, opposite);
+            double time = exit.opposite == kNoEdge ? kNever : time_to(state, exit.opposite);
+            bool returning = false;  // out of the triangle and on its way back in
             for (std::size_t k = 0; k < 3; ++k) {
-                if (bary(state.uv, k, 1.0) < -kOutside && time_to(state, k) < time) {
-                    time = time_to(state, k);
-                    opposite = k;
+                if (bary(state.uv, k, 1.0) < -kOutside) {
+                    const double back = time_to(state, k);
+                    returning = returning || back == kNever;
+                    if (back < time) {
+                        time = back;
+                        exit.opposite = k;
+                    }
                 }
             }
-            if (!std::isfinite(time)) {
+            if (exit.length_mm > clearance_mm_ && (returning || time < -exit.length_mm)) {
+                exit = {0.5 * exit.length_mm, kNoEdge};
                 return false;
             }
+            if (time == kNever) {
+                exit.opposite = kNoEdge;
+                return true;
+            }
+            exit.length_mm = std::max(0.0, exit.length_mm + time);
+            if (std::abs(time) > kLandingShare * exit.length_mm + clearance_mm_) {
+                return false;
+            }
+            // By the parabola: over so short a way its error is far below the step's.
             state.uv += time * state.rate + 0.5 * time * time * state.acceleration;
             state.rate += time * state.acceleration;
-            length += time;
-            if (std::abs(bary(state.uv, opposite, 1.0)) < kOnEdge) {
-                break;
+            if (std::abs(time) <= clearance_mm_) {
+                return true;
             }
         }
         return true;
@@ -233,8 +248,7 @@ private:
     // not go there.
     [[nodiscard]] static double time_to(const State& state, std::size_t i) {
         const double rate = bary(state.rate, i, 0.0);
-        return rate < 0.0 ? bary(state.uv, i, 1.0) / -rate
-                          : std::numeric_limits<double>::infinity();
+        return rate < 0.0 ? bary(state.uv, i, 1.0) / -rate : kNever;
     }
 
     void move_within(const State& next, double length) {
@@ -338,6 +352,7 @@ private:
     Patch patch_;
     Index face_;
     double min_station_mm_;
+    double clearance_mm_;
     TraceResult result_;
     std::size_t entry_ =
         kNoEdge;  // bary index that is zero on the edge by which the face was entered

@@ -11,9 +11,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Sine of the angle between the normals of both sides (no unit) below which a crease has no
-// tangent of its own: the end of a crease that runs out.
-constexpr double kMinCreaseSine = 1e-3;
+// Sine of the angle between the fitted normals of both sides (10 deg) below which an edge is no
+// crease of the smooth surface but a fold of too coarse facets, or the end of a crease that runs
+// out: the normals' errors would turn the tangent.
+constexpr double kMinCreaseSine = 0.17;
 
 // Rates of the barycentric coordinates by u and v.
 constexpr std::array<double, 3> kBaryByU = {-1.0, 1.0, 0.0};

@@ -12,6 +12,7 @@
 #include "../mesh/frozen.h"
 #include "core/units.h"
 #include "geodesic/trace.h"
+#include "mesh/patch.h"
 
 namespace meshwind::test {
 
@@ -95,14 +96,39 @@ inline void expect_sound(const Surface& surface, const TraceResult& result,
         ASSERT_TRUE(p.at.face >= 0 && static_cast<std::size_t>(p.at.face) < surface.face.size());
         ASSERT_NEAR(p.at.bary.sum(), 1.0, 1e-14);
         ASSERT_GE(p.at.bary.minCoeff(), 0.0);
-        // Rounding of coordinates of up to 1000 mm, three products.
-        ASSERT_LT((position_mm(surface, p.at) - p.position_mm).norm(), 1e-12 * 1000.0);
+        // Rounding of coordinates of up to 1000 mm, three products; on a patch of its height too.
+        const Eigen::Vector3d there = options.method == TraceMethod::Walk
+                                          ? position_mm(surface, p.at)
+                                          : on_patch(surface, p.at.face, p.at.bary).position_mm;
+        ASSERT_LT((there - p.position_mm).norm(), 1e-12 * 1000.0);
     }
     ASSERT_LE(last_s, options.max_length_mm);
     if (result.stop == TraceStop::Length) {
         ASSERT_EQ(last_s, options.max_length_mm);
     }
     ASSERT_EQ(result.stop == TraceStop::Rim, result.rim >= 0);
+}
+
+/// Tests of what holds for both methods: trace() is that of the parameter.
+class BothTracers : public testing::TestWithParam<TraceMethod> {
+protected:
+    static TraceOptions with_method(TraceOptions options) {
+        options.method = GetParam();
+        return options;
+    }
+    static TraceResult trace(const Surface& surface, const SurfacePoint& start,
+                             const Eigen::Vector3d& direction, const Steering& steering = {},
+                             const TraceOptions& options = {}) {
+        return meshwind::trace(surface, start, direction, steering, with_method(options));
+    }
+    static void expect_sound(const Surface& surface, const TraceResult& result,
+                             const TraceOptions& options = {}) {
+        test::expect_sound(surface, result, with_method(options));
+    }
+};
+
+inline std::string method_name(const testing::TestParamInfo<TraceMethod>& info) {
+    return info.param == TraceMethod::Walk ? "Walk" : "Patches";
 }
 
 /// The vertex, edge or inner point of a face: corner shares by name.

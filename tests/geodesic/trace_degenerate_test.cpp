@@ -40,19 +40,27 @@ Surface grid(int cells) {
 // A path through a vertex passes it 1e-9 of an edge to one side; over 20 cells that is 2e-8 mm.
 constexpr double kVertexDrift_mm = 1e-7;
 
-void expect_line(const Surface& surface, const SurfacePoint& start, const Vector3d& direction,
-                 double length_mm) {
-    const TraceOptions options{.max_length_mm = length_mm};
-    const TraceResult traced = trace(surface, start, direction, {}, options);
-    test::expect_sound(surface, traced, options);
-    EXPECT_EQ(traced.stop, TraceStop::Length);
-    const Vector3d end = position_mm(surface, start) + length_mm * direction.normalized();
-    EXPECT_LT((traced.path.back().position_mm - end).norm(), kVertexDrift_mm)
-        << "from " << position_mm(surface, start).transpose() << " along " << direction.transpose();
-}
+class TraceDegenerate : public test::BothTracers {
+protected:
+    static void expect_line(const Surface& surface, const SurfacePoint& start,
+                            const Vector3d& direction, double length_mm) {
+        const TraceOptions options{.max_length_mm = length_mm};
+        const TraceResult traced = trace(surface, start, direction, {}, options);
+        expect_sound(surface, traced, options);
+        EXPECT_EQ(traced.stop, TraceStop::Length);
+        const Vector3d end = position_mm(surface, start) + length_mm * direction.normalized();
+        EXPECT_LT((traced.path.back().position_mm - end).norm(), kVertexDrift_mm)
+            << "from " << position_mm(surface, start).transpose() << " along "
+            << direction.transpose();
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(, TraceDegenerate,
+                         testing::Values(TraceMethod::Walk, TraceMethod::Patches),
+                         test::method_name);
 
 // Every face around the vertex names the same start; directions along mesh lines included.
-TEST(TraceDegenerate, StartsOnAVertexInAnyDirection) {
+TEST_P(TraceDegenerate, StartsOnAVertexInAnyDirection) {
     const Surface surface = grid(20);
     constexpr std::int32_t kVertex = 10 * 21 + 10;
     int faces = 0;
@@ -73,7 +81,7 @@ TEST(TraceDegenerate, StartsOnAVertexInAnyDirection) {
     EXPECT_EQ(faces, 6);
 }
 
-TEST(TraceDegenerate, StartsOnAnEdgeInAnyDirection) {
+TEST_P(TraceDegenerate, StartsOnAnEdgeInAnyDirection) {
     const Surface surface = grid(20);
     for (const std::int32_t face : {420, 421}) {
         for (int c = 0; c < 3; ++c) {
@@ -91,14 +99,14 @@ TEST(TraceDegenerate, StartsOnAnEdgeInAnyDirection) {
 }
 
 // Along rows, columns and diagonals through vertices from rim to rim.
-TEST(TraceDegenerate, PassesVerticesAlongMeshLines) {
+TEST_P(TraceDegenerate, PassesVerticesAlongMeshLines) {
     const Surface surface = grid(20);
     const SurfacePoint corner = test::point_in(2 * (10 * 20 + 10), 1.0, 0.0, 0.0);  // at (10, 10)
     for (const Vector3d& d :
          {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(-1, 0, 0), Vector3d(0, -1, 0),
           Vector3d(1, 1, 0), Vector3d(-1, 1, 0), Vector3d(1, -1, 0), Vector3d(-1, -1, 0)}) {
         const TraceResult traced = trace(surface, corner, d);
-        test::expect_sound(surface, traced);
+        expect_sound(surface, traced);
         EXPECT_EQ(traced.stop, TraceStop::Rim);
         EXPECT_NEAR(traced.path.back().s_mm, 10.0 * d.norm(), kVertexDrift_mm);
         expect_line(surface, corner, d, 9.0);
@@ -106,7 +114,7 @@ TEST(TraceDegenerate, PassesVerticesAlongMeshLines) {
 }
 
 // Inside the square or along its rim the trace goes on; out of it, it ends where it stands.
-TEST(TraceDegenerate, StartsAtARim) {
+TEST_P(TraceDegenerate, StartsAtARim) {
     const Surface surface = grid(20);
     const SurfacePoint start = test::point_in(20, 0.5, 0.5, 0.0);  // (10.5, 0) on the lower rim
     for (int i = 0; i < 48; ++i) {
@@ -114,7 +122,7 @@ TEST(TraceDegenerate, StartsAtARim) {
         const Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
         const TraceOptions options{.max_length_mm = 5.0};
         const TraceResult traced = trace(surface, start, direction, {}, options);
-        test::expect_sound(surface, traced, options);
+        expect_sound(surface, traced, options);
         if (direction.y() > 1e-9) {
             EXPECT_EQ(traced.stop, TraceStop::Length);
         } else if (direction.y() < -1e-9) {
@@ -128,7 +136,7 @@ TEST(TraceDegenerate, StartsAtARim) {
         for (int i = 0; i < 48; ++i) {
             const double angle = 2.0 * kPi * i / 48.0;
             const TraceOptions options{.max_length_mm = 5.0};
-            test::expect_sound(
+            expect_sound(
                 surface,
                 trace(surface, corner, {std::cos(angle), std::sin(angle), 0.0}, {}, options),
                 options);
@@ -162,7 +170,7 @@ Surface icosahedron() {
 }
 
 // Twenty faces, thirty creases (42 deg), twelve vertices: along each edge and across each vertex.
-TEST(TraceDegenerate, EndsOnAnIcosahedron) {
+TEST_P(TraceDegenerate, EndsOnAnIcosahedron) {
     const Surface surface = icosahedron();
     ASSERT_EQ(surface.face.size(), 20U);
     const TraceOptions options{.max_length_mm = 50.0};
@@ -177,7 +185,7 @@ TEST(TraceDegenerate, EndsOnAnIcosahedron) {
             for (const Vector3d& d : {Vector3d(q - p), Vector3d(p - q), Vector3d(r - p),
                                       Vector3d(q + r - 2.0 * p), Vector3d(2.0 * p - q - r)}) {
                 const TraceResult traced = trace(surface, corner, d, {}, options);
-                test::expect_sound(surface, traced, options);
+                expect_sound(surface, traced, options);
                 EXPECT_EQ(traced.stop, TraceStop::Length);
             }
         }
@@ -186,7 +194,7 @@ TEST(TraceDegenerate, EndsOnAnIcosahedron) {
 
 // A plane strip of needles 100 mm long and 1e-4 mm wide, aspect 1e6: crossed, followed, and
 // slanted.
-TEST(TraceDegenerate, WalksOverNeedles) {
+TEST_P(TraceDegenerate, WalksOverNeedles) {
     constexpr int kNeedles = 2000;
     constexpr double kStep_mm = 1e-4;
     TriangleSoup soup;
@@ -205,7 +213,7 @@ TEST(TraceDegenerate, WalksOverNeedles) {
          {0.0, 1e-7, 1e-6, 1e-3, 0.5, 0.5 * kPi, 2.0, kPi, -1e-6, -0.5 * kPi}) {
         const Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
         const TraceResult traced = trace(surface, start, direction);
-        test::expect_sound(surface, traced);
+        expect_sound(surface, traced);
         EXPECT_EQ(traced.stop, TraceStop::Rim) << angle;
         // Rounding of 100 mm over a height of 1e-4 mm tilts a needle's rates by 1e-10 at most; each
         // of up to 2000 crossings may add its share of a vertex clearance, 1e-7 mm.
@@ -214,7 +222,7 @@ TEST(TraceDegenerate, WalksOverNeedles) {
     }
 }
 
-TEST(TraceDegenerate, StopsAtTheFaceLimit) {
+TEST_P(TraceDegenerate, StopsAtTheFaceLimit) {
     const Surface surface =
         test::frozen(make_mandrel("torus", {}, {.edge_mm = 10.0, .irregular = true}));
     for (const int limit : {1, 2, 17}) {
@@ -226,14 +234,14 @@ TEST(TraceDegenerate, StopsAtTheFaceLimit) {
 }
 
 // Cut exactly, inside the first facet as after many.
-TEST(TraceDegenerate, CutsExactlyAtTheLength) {
+TEST_P(TraceDegenerate, CutsExactlyAtTheLength) {
     const Surface surface =
         test::frozen(make_mandrel("torus", {}, {.edge_mm = 10.0, .irregular = true}));
     for (const double length : {1e-300, 1e-9, 1e-4, 0.1, 33.3, 777.7}) {
         const TraceOptions options{.max_length_mm = length};
         const TraceResult traced =
             trace(surface, test::point_in(3, 0.2, 0.3, 0.5), {1, 2, 3}, {0.1, 0.0}, options);
-        test::expect_sound(surface, traced, options);
+        expect_sound(surface, traced, options);
         EXPECT_EQ(traced.stop, TraceStop::Length);
         EXPECT_EQ(traced.path.back().s_mm, length);
     }
@@ -241,11 +249,13 @@ TEST(TraceDegenerate, CutsExactlyAtTheLength) {
 
 // The direction is projected: its share along the normal and its length change nothing but
 // rounding.
-TEST(TraceDegenerate, ProjectsTheDirection) {
+TEST_P(TraceDegenerate, ProjectsTheDirection) {
     const Surface surface =
         test::frozen(make_mandrel("torus", {}, {.edge_mm = 10.0, .irregular = true}));
     const SurfacePoint start = test::point_in(3, 0.2, 0.3, 0.5);
-    const Vector3d n = smooth_normal(surface, start);
+    const Vector3d n = GetParam() == TraceMethod::Walk
+                           ? smooth_normal(surface, start)
+                           : on_patch(surface, start.face, start.bary).normal();
     const Vector3d t = n.unitOrthogonal();
     const TraceOptions options{.max_length_mm = 100.0};
     const Vector3d end = trace(surface, start, t, {}, options).path.back().position_mm;
@@ -256,7 +266,7 @@ TEST(TraceDegenerate, ProjectsTheDirection) {
 }
 
 // Signed zeros in the start and the direction are plain zeros.
-TEST(TraceDegenerate, TakesNegativeZeros) {
+TEST_P(TraceDegenerate, TakesNegativeZeros) {
     const Surface surface = grid(20);
     const SurfacePoint plus = test::point_in(420, 0.5, 0.5, 0.0);
     const SurfacePoint minus = test::point_in(420, 0.5, 0.5, -0.0);
@@ -267,7 +277,7 @@ TEST(TraceDegenerate, TakesNegativeZeros) {
     EXPECT_EQ(a.path.back().position_mm, b.path.back().position_mm);
 }
 
-TEST(TraceDegenerate, RandomStartsOnATeeAlwaysEnd) {
+TEST_P(TraceDegenerate, RandomStartsOnATeeAlwaysEnd) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const Surface surface = test::frozen(
             make_mandrel("tee", {}, {.edge_mm = 10.0, .irregular = true, .seed = seed}));
@@ -286,7 +296,7 @@ TEST(TraceDegenerate, RandomStartsOnATeeAlwaysEnd) {
             const TraceOptions options{.max_length_mm = 2000.0};
             const TraceResult traced =
                 trace(surface, start.at, start.direction, {slip, 0.0}, options);
-            test::expect_sound(surface, traced, options);
+            expect_sound(surface, traced, options);
             EXPECT_NE(traced.stop, TraceStop::FaceLimit);
             rims += traced.stop == TraceStop::Rim ? 1 : 0;
         }

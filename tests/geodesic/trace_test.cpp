@@ -207,6 +207,11 @@ TEST(TraceGeodesic, IsAStraightLineOnAPlane) {
     }
 }
 
+class BothOnAPrism : public test::BothTracers {};
+
+INSTANTIATE_TEST_SUITE_P(, BothOnAPrism, testing::Values(TraceMethod::Walk, TraceMethod::Patches),
+                         test::method_name);
+
 // Unfolded position of a point on the side faces of a prism: way around along the facets, and z.
 Eigen::Vector2d unfolded(const Vector3d& p, int sides, double radius_mm, int& turns, double& last) {
     const double step = 2.0 * kPi / sides;
@@ -222,34 +227,67 @@ Eigen::Vector2d unfolded(const Vector3d& p, int sides, double radius_mm, int& tu
     return {whole * side_mm + (p - corner).norm(), p.z()};
 }
 
-// Facet strips of a prism with creases (6 sides, 60 deg each) and of a smooth one (24, 15 deg
-// each): vertices only on the end circles make every normal perpendicular to z, so the angle to z
-// is kept at each edge and the strip unfolds to a line. Tolerance: rounding over some 40 crossings.
-TEST(TraceGeodesic, UnfoldsFacetStripsToALine) {
-    for (const int sides : {6, 24}) {
-        const Surface surface = test::frozen(test::tube(kRadius_mm, 300.0, sides, 1));
-        for (const double alpha : {0.3, 0.9, 1.3}) {
-            const SurfacePoint start = test::point_in(0, 0.7, 0.2, 0.1);
-            const Vector3d p = position_mm(surface, start);
-            const Vector3d along = Vector3d::UnitZ().cross(smooth_normal(surface, start));
-            const Vector3d direction =
-                std::cos(alpha) * Vector3d::UnitZ() + std::sin(alpha) * along;
-            const TraceResult traced = trace(surface, start, direction);
-            test::expect_sound(surface, traced);
-            EXPECT_EQ(traced.stop, TraceStop::Rim);
-            int turns = 0;
-            double last = 0.0;
-            const Eigen::Vector2d from = unfolded(p, sides, kRadius_mm, turns, last);
-            double worst = 0.0;
-            for (const PathPoint& point : traced.path) {
-                const Eigen::Vector2d here =
-                    unfolded(point.position_mm, sides, kRadius_mm, turns, last);
-                const Eigen::Vector2d line =
-                    from + point.s_mm * Eigen::Vector2d(std::sin(alpha), std::cos(alpha));
-                worst = std::max(worst, (here - line).norm());
+// Six flat sides with creases of 60 deg and vertices only on the end circles: every normal is
+// perpendicular to z, so the angle to z is kept at each edge and the strip unfolds to a line by
+// either method. Tolerance: rounding over some 40 crossings.
+TEST_P(BothOnAPrism, UnfoldTheStripToALine) {
+    constexpr int kSides = 6;
+    const Surface surface = test::frozen(test::tube(kRadius_mm, 300.0, kSides, 1));
+    for (const double alpha : {0.3, 0.9, 1.3}) {
+        const SurfacePoint start = test::point_in(0, 0.7, 0.2, 0.1);
+        const Vector3d p = position_mm(surface, start);
+        const Vector3d along = Vector3d::UnitZ().cross(smooth_normal(surface, start));
+        const Vector3d direction = std::cos(alpha) * Vector3d::UnitZ() + std::sin(alpha) * along;
+        const TraceResult traced = trace(surface, start, direction);
+        expect_sound(surface, traced);
+        EXPECT_EQ(traced.stop, TraceStop::Rim);
+        int turns = 0;
+        double last = 0.0;
+        const Eigen::Vector2d from = unfolded(p, kSides, kRadius_mm, turns, last);
+        double worst = 0.0;
+        for (const PathPoint& point : traced.path) {
+            const Eigen::Vector2d here =
+                unfolded(point.position_mm, kSides, kRadius_mm, turns, last);
+            const Eigen::Vector2d line =
+                from + point.s_mm * Eigen::Vector2d(std::sin(alpha), std::cos(alpha));
+            worst = std::max(worst, (here - line).norm());
+        }
+        EXPECT_LT(worst, 1e-9);
+    }
+}
+
+// Cylinders as CAD writes them: facets as long as the part, vertices only on the end circles, here
+// not even evenly around. A helix keeps its winding angle within 0.01 deg by either method.
+TEST_P(BothOnAPrism, KeepTheHelixOnLongFacets) {
+    for (const int sides : {24, 48}) {
+        for (const double unevenness : {0.0, 0.2}) {
+            TriangleSoup soup = test::tube(kRadius_mm, 300.0, sides, 1);
+            std::mt19937_64 random(9);
+            std::uniform_real_distribution<double> shift(-0.5, 0.5);
+            for (Vector3d& p : soup.points_mm) {
+                const double angle =
+                    std::atan2(p.y(), p.x()) + unevenness * shift(random) * 2.0 * kPi / sides;
+                p.head<2>() = kRadius_mm * Eigen::Vector2d(std::cos(angle), std::sin(angle));
             }
-            std::printf("strip of %d, alpha %.1f: %.2e mm off the line\n", sides, alpha, worst);
-            EXPECT_LT(worst, 1e-9);
+            const Surface surface = test::frozen(soup);
+            double worst_rad = 0.0;
+            for (const double alpha : {0.3, 0.9, 1.3}) {
+                const SurfacePoint start = test::point_in(0, 0.7, 0.2, 0.1);
+                const Vector3d n = GetParam() == TraceMethod::Walk
+                                       ? smooth_normal(surface, start)
+                                       : on_patch(surface, 0, start.bary).normal();
+                const Vector3d direction = std::cos(alpha) * Vector3d::UnitZ() +
+                                           std::sin(alpha) * Vector3d::UnitZ().cross(n);
+                const TraceResult traced = trace(surface, start, direction);
+                expect_sound(surface, traced);
+                EXPECT_EQ(traced.stop, TraceStop::Rim);
+                for (const PathPoint& point : traced.path) {
+                    worst_rad = std::max(worst_rad, std::abs(std::acos(point.tangent.z()) - alpha));
+                }
+            }
+            std::printf("%d long facets, uneven by %.1f: winding angle off by %.1e deg\n", sides,
+                        unevenness, deg_from_rad(worst_rad));
+            EXPECT_LT(deg_from_rad(worst_rad), 0.01);
         }
     }
 }
