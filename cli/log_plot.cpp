@@ -241,15 +241,16 @@ private:
     }
 
     void draw(std::size_t r, std::size_t c, const PlotLine& line) {
+        const std::string dot = "<circle class=\"d" + std::to_string(line.style.colour % kColours) +
+                                "\" r=\"2.2\" cx=\"";
         std::string path;
         std::string dots;
         for (const auto& [x, y] : line.points) {
             if (y > 0.0) {
                 const std::string px = number(x_px(c, x));
                 const std::string py = number(y_px(r, c, y));
-                path += (path.empty() ? "M" : "L") + px + " " + py;
-                dots += "<circle class=\"d" + std::to_string(line.style.colour % kColours) +
-                        "\" r=\"2.2\" cx=\"" + px + "\" cy=\"" + py + "\"/>\n";
+                path.append(path.empty() ? "M" : "L").append(px).append(" ").append(py);
+                dots.append(dot).append(px).append("\" cy=\"").append(py).append("\"/>\n");
             }
         }
         if (!path.empty()) {

@@ -46,7 +46,7 @@ std::vector<StudyMandrel> mandrels_of(const StudyRequest& request) {
     return mandrels;
 }
 
-std::string padded(std::string text, std::size_t width, bool right = false) {
+std::string padded(const std::string& text, std::size_t width, bool right = false) {
     const std::string blanks(width > text.size() ? width - text.size() : 1, ' ');
     return right ? blanks + text : text + blanks;
 }
