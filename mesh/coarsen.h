@@ -7,10 +7,10 @@ namespace meshwind {
 
 /// Collapses edges, shortest first, until the mean edge is about `edge_mm` long. Every point
 /// that is left is one of the given ones, so nothing leaves the surface; rims stay on rims and
-/// creases (feature_edges.h) on creases. A collapse is not made where the given facets around the point
-/// that goes turn by more than the crease angle, or where it leaves a worse sliver than there was:
-/// sharply curved places stay finer. The outcome depends on the input alone.
-/// \pre soup is manifold and oriented; edge_mm > 0
+/// creases (feature_edges.h) on creases. A collapse is not made where the given facets around the
+/// point that goes turn by more than the crease angle, or where it leaves a worse sliver than there
+/// was: sharply curved places stay finer. The outcome depends on the input alone. \pre soup is
+/// manifold and oriented; edge_mm > 0
 [[nodiscard]] TriangleSoup coarsened(const TriangleSoup& soup, double edge_mm);
 
 }  // namespace meshwind
