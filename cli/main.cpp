@@ -17,6 +17,8 @@
 #include "cli/project_files.h"
 #include "cli/report.h"
 #include "cli/report_mandrel.h"
+#include "cli/report_study.h"
+#include "cli/study_command.h"
 #include "cli/trace_command.h"
 #include "cli/wind.h"
 #include "core/error.h"
@@ -237,6 +239,72 @@ int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& comm
     return kDone;
 }
 
+constexpr const char* kMeshSizeHelp =
+    "Accuracy against mesh size.\n"
+    "Lays the same random fibres on ever finer meshes of known surfaces and compares them with "
+    "the\n"
+    "exact fibres: the path's end, the winding angle and the slip; then, with the fibre's "
+    "direction\n"
+    "taken from the landing points by chord (P1-P2), central chord (P1-P3), parabola or tracer, "
+    "the\n"
+    "spindle angle C and the eye point. An error that falls by 2^k when the edges are halved is "
+    "of\n"
+    "order k.\n"
+    "Cylinders are compared with closed forms; torus, ellipsoid and tee with the differential\n"
+    "equation of their exact surface; a file with itself, coarsened: choose edges well above its\n"
+    "own, and mind that what its own mesh has wrong is not seen.\n"
+    "To choose a mesh for a part: take the row of the surface most like it, and the edge length "
+    "at\n"
+    "which the error that matters is small enough.\n"
+    "  meshwind study mesh-size\n"
+    "  meshwind study mesh-size --mandrel cylinder --radius 35 --edges 8,4,2,1 -o pipe\n"
+    "  meshwind study mesh-size --mandrel part.stl --edges 12,8,6";
+
+void add_mesh_size(CLI::App& app, StudyRequest& request) {
+    MeshSizeOptions& options = request.options;
+    request.out = "study-mesh-size";
+    app.add_option(
+        "--mandrel", request.mandrels,
+        "cylinder, torus, ellipsoid, tee, or a mesh file; several may be named [all four]");
+    app.add_option("--radius", request.radii_mm, "radii of the cylinders, mm")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--edges", options.edges_mm, "edge lengths of the meshes, mm")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--lambda", options.slip_ratios,
+                   "slip ratios kg / kn to steer with; the eye is shown for the first")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--paths", options.paths, "fibres on each mesh")->capture_default_str();
+    app.add_option("--length", options.length_mm, "length of a fibre unless it meets a rim, mm")
+        ->capture_default_str();
+    app.add_option("--free-length", options.free_length_mm, "from landing point to eye, mm")
+        ->capture_default_str();
+    app.add_flag("--irregular,!--regular", options.irregular,
+                 "jittered vertices and random diagonals, as scans and CAD give them [irregular]");
+    app.add_flag("--timing", options.timing,
+                 "measure the cost of tracing too, one mesh at a time; writes timing.csv");
+    app.add_option("-o,--out", request.out, "output folder")->capture_default_str();
+}
+
+int run_mesh_size(StudyRequest& request, const Common& common) {
+    Progress progress(common.quiet);
+    request.unit_mm = unit_mm(common.units);
+    request.options.seed = common.seed;
+    request.options.progress = [&](const std::string& step, double share) {
+        progress.show(step, share);
+    };
+    const StudyOutcome outcome = run_study(request);
+    progress.clear();
+    if (common.json) {
+        std::cout << study_json(outcome);
+    } else if (!common.quiet) {
+        print_study(std::cout, outcome, request.out);
+    }
+    return kDone;
+}
+
 // A machine file names its schema; everything else is read as a job.
 int run_validate(const std::string& name, const Common& common) {
     const std::string file = find_input(name).string();
@@ -295,7 +363,13 @@ int run(int argc, char** argv) {
     std::string validate_file;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
     validate->add_option("file", validate_file, "JSON file")->required();
-    for (CLI::App* command : {wind_command, inspect, make, trace_command, validate}) {
+    StudyRequest study_request;
+    CLI::App* study = app.add_subcommand("study", "studies of accuracy");
+    study->require_subcommand(1);
+    CLI::App* mesh_size = study->add_subcommand("mesh-size", kMeshSizeHelp);
+    add_mesh_size(*mesh_size, study_request);
+    for (CLI::App* command :
+         {wind_command, inspect, make, trace_command, validate, study, mesh_size}) {
         command->fallthrough();
     }
 
@@ -335,6 +409,9 @@ int run(int argc, char** argv) {
     }
     if (trace_command->parsed()) {
         return run_trace_command(trace_text, angle->count() > 0, common);
+    }
+    if (mesh_size->parsed()) {
+        return run_mesh_size(study_request, common);
     }
     if (validate->parsed()) {
         return run_validate(validate_file, common);

@@ -1,7 +1,7 @@
 include(CMakePackageConfigHelpers)
 
 set(meshwind_targets meshwind_core meshwind_mesh meshwind_geodesic meshwind_winding meshwind_machines
-                     meshwind_postproc)
+                     meshwind_postproc meshwind_study)
 install(
     TARGETS ${meshwind_targets}
     EXPORT meshwindTargets

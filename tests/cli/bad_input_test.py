@@ -254,6 +254,31 @@ class BadInput(program.ProgramTest):
                      "-o", self.folder / "path.csv", word="meet")
         self.assertFalse((self.folder / "path.csv").exists())
 
+    def test_study(self):
+        part = self.make("cylinder", "--edge", "15")
+        out = self.folder / "out"
+        for arguments, word in ((["--edges", "0"], "edges"),
+                                (["--edges", "nan"], "edges"),
+                                (["--edges", "fine"], "edges"),
+                                (["--mandrel", "torus", "--edges", "400"], "none of the edge lengths"),
+                                (["--mandrel", "nothing.stl"], "nothing.stl"),
+                                (["--mandrel", part, "--edges", "2"], "its own edges"),
+                                (["--mandrel", "torus", "torus"], "twice"),
+                                (["--mandrel", "cylinder", "--radius", "5,5"], "twice"),
+                                (["--mandrel", "cylinder", "--radius", "-5"], "radius"),
+                                (["--lambda", "3"], "lambda"),
+                                (["--lambda", "nan"], "lambda"),
+                                (["--paths", "0"], "paths"),
+                                (["--paths", "1000000"], "paths"),
+                                (["--length", "-1"], "length"),
+                                (["--length", "inf"], "length"),
+                                (["--free-length", "0"], "free length")):
+            with self.subTest(" ".join(map(str, arguments))):
+                self.refused("study", "mesh-size", *arguments, "-o", out, word=word)
+                self.assertFalse(out.exists())
+        self.refused("study", word="subcommand")
+        self.refused("study", "mesh-shape", word="subcommand")
+
 
 if __name__ == "__main__":
     program.main(sys.modules[__name__])

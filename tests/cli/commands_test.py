@@ -3,6 +3,7 @@ import csv
 import json
 import math
 import sys
+import xml.etree.ElementTree
 
 import program
 
@@ -17,6 +18,7 @@ class Commands(program.ProgramTest):
         self.assertRegex(self.done("--version").stdout, r"^meshwind \d+\.\d+\.\d+\n$")
         for arguments in (["--help"], ["wind", "--help"], ["inspect", "--help"],
                           ["make", "--help"], ["make", "tee", "--help"], ["trace", "--help"],
+                          ["study", "--help"], ["study", "mesh-size", "--help"],
                           ["validate", "--help"]):
             result = self.done(*arguments)
             self.assertIn("--help", result.stdout)
@@ -55,6 +57,45 @@ class Commands(program.ProgramTest):
             rows = list(csv.reader(file))
         self.assertEqual(rows[0], PATH_HEADER)
         return [dict(zip(rows[0], map(float, row))) for row in rows[1:]]
+
+    STUDY = ("study", "mesh-size", "--edges", "8,16", "--paths", "6", "--length", "120")
+
+    def test_study_writes_table_report_and_plot(self):
+        out = self.folder / "study"
+        result = self.done(*self.STUDY, "--mandrel", "cylinder", "torus", "--radius", "40,60",
+                           "-o", out, "--timing")
+        self.assertIn("holds:", result.stdout)
+        self.assertEqual(sorted(f.name for f in out.iterdir()),
+                         ["study.csv", "study.json", "study.svg", "timing.csv"])
+        with open(out / "study.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({r["mandrel"] for r in rows}, {"cylinder-40", "cylinder-60", "torus"})
+        self.assertEqual({r["tangent_rule"] for r in rows},
+                         {"", "chord", "central", "parabola", "traced"})
+        self.assertTrue(all(float(r["worst"]) >= float(r["rms"]) >= 0 for r in rows))
+        report = json.loads((out / "study.json").read_text())
+        self.assertEqual(report["options"]["paths"], 6)
+        self.assertEqual(sum(len(line["points"]) for line in report["lines"]), len(rows))
+        self.assertEqual(len(report["advice"]), 5)
+        svg = xml.etree.ElementTree.parse(out / "study.svg").getroot()
+        self.assertTrue(svg.tag.endswith("svg"))
+        self.done(*self.STUDY, "--mandrel", "torus", "-o", out)
+        self.assertFalse((out / "timing.csv").exists(), "of another run")
+
+    def test_study_is_the_same_for_any_number_of_threads(self):
+        part = self.make("tee", "--edge", "5")
+        for threads in ("1", "2"):
+            self.done(*self.STUDY, "--mandrel", "cylinder", "ellipsoid", part, "-o",
+                      self.folder / threads, "--threads", threads)
+        for name in ("study.csv", "study.json", "study.svg"):
+            self.assertEqual((self.folder / "1" / name).read_bytes(),
+                             (self.folder / "2" / name).read_bytes(), name)
+
+    def test_study_prints_its_report(self):
+        result = self.done(*self.STUDY, "--mandrel", "torus", "--json", "--regular", "-o",
+                           self.folder / "out")
+        self.assertEqual(result.stdout, (self.folder / "out" / "study.json").read_text())
+        self.assertFalse(json.loads(result.stdout)["options"]["irregular"])
 
     def test_helix_on_a_cylinder_ends_where_it_must(self):
         """A geodesic at 45 degrees from (50, 0, -100): z = s cos 45, turn = s sin 45 / R. The

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "${1:-"$(dirname -- "${BASH_SOURCE[0]}")/../.."}"
 
-folders=(core mesh geodesic winding machines postproc cli)
+folders=(core mesh geodesic winding machines postproc study cli)
 
 # Start of the include, then the files that may have it (a pattern). Other <a/b> includes are refused.
 allowed='
@@ -21,6 +21,7 @@ embree3/                mesh/ray_query.cpp
 flann/                  mesh/nearest.cpp
 assimp/                 mesh/import_assimp.cpp
 boost/math/             *.cpp
+boost/numeric/odeint/    study/path_reference.cpp
 nlohmann/               machines/strict_json.cpp
 nlohmann/               */*_json.cpp
 nlohmann/               cli/report*.cpp

@@ -1,0 +1,154 @@
+#include "study/study_mandrel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "core/error.h"
+#include "core/text_number.h"
+#include "core/units.h"
+#include "mesh/coarsen.h"
+#include "mesh/edge_table.h"
+#include "mesh/feature_edges.h"
+#include "mesh/rims.h"
+#include "winding/random.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kCylinderLengthMm = 400.0;
+
+// Edges of the triangles from which starts are drawn, in radii: their nearest surface points are
+// spread as evenly as the points themselves.
+constexpr double kSampleShare = 0.2;
+
+// Coarser meshes of a file have edges at least this much longer than its own: nearer than that the
+// error of the reference is as large as what is measured.
+constexpr double kLeastCoarsening = 1.4;
+
+StudyMandrel made_study(const std::string& kind, const MakeValues& values, double sample_edge_mm) {
+    StudyMandrel study;
+    study.name = kind;
+    study.samples = make_mandrel(kind, values, {.edge_mm = sample_edge_mm});
+    study.mesh = [kind, values](const StudyMeshOptions& options) {
+        return make_mandrel(
+            kind, values,
+            {.edge_mm = options.edge_mm, .irregular = options.irregular, .seed = options.seed});
+    };
+    return study;
+}
+
+double area_mm2(const TriangleSoup& soup, std::size_t face) {
+    const auto& [a, b, c] = soup.faces[face];
+    const Vector3d& p = soup.points_mm[static_cast<std::size_t>(a)];
+    return 0.5 * (soup.points_mm[static_cast<std::size_t>(b)] - p)
+                     .cross(soup.points_mm[static_cast<std::size_t>(c)] - p)
+                     .norm();
+}
+
+}  // namespace
+
+StudyMandrel cylinder_study(double radius_mm) {
+    const CylinderShape shape{radius_mm, kCylinderLengthMm};
+    shape.validate();
+    StudyMandrel study = made_study(
+        "cylinder", {{"radius", radius_mm}, {"length", shape.length_mm}}, kSampleShare * radius_mm);
+    study.name += '-';
+    append_shortest(study.name, radius_mm);
+    study.reference_words = "closed form";
+    study.reference = cylinder_reference(radius_mm);
+    return study;
+}
+
+StudyMandrel torus_study() {
+    const TorusShape shape;
+    StudyMandrel study = made_study("torus", {}, kSampleShare * shape.tube_radius_mm);
+    study.reference_words = "differential equation of the exact surface";
+    study.reference = torus_reference(shape);
+    return study;
+}
+
+StudyMandrel ellipsoid_study() {
+    const EllipsoidShape shape;
+    StudyMandrel study = made_study("ellipsoid", {}, kSampleShare * shape.pole_radius_mm);
+    study.reference_words = "differential equation of the exact surface";
+    study.reference = ellipsoid_reference(shape);
+    return study;
+}
+
+StudyMandrel tee_study() {
+    const TeeShape shape;
+    StudyMandrel study = made_study("tee", {}, kSampleShare * shape.branch_radius_mm);
+    study.reference_words = "differential equation of the exact surface";
+    study.reference = made_reference("tee", {});
+    return study;
+}
+
+StudyMandrel file_study(Mandrel mandrel, const TraceOptions& options) {
+    StudyMandrel study;
+    study.mandrel = std::make_unique<Mandrel>(std::move(mandrel));
+    const Surface& given = study.mandrel->surface;
+    study.name = study.mandrel->file;
+    study.reference_words = "the mesh as given, edges of " + fixed(given.mean_edge_mm, 2) + " mm";
+    study.samples = {given.position_mm, given.face};
+    // The finest mesh known of this surface. A refinement onto curved patches would take the place
+    // of `given` here and allow edges down to the file's own.
+    study.reference = mesh_reference(given, options);
+    study.mesh = [&given, name = study.name](const StudyMeshOptions& mesh_options) {
+        const double least_mm = kLeastCoarsening * given.mean_edge_mm;
+        if (!(mesh_options.edge_mm >= least_mm)) {
+            throw InputError("study.edge", name,
+                             "its own edges are " + fixed(given.mean_edge_mm, 2) +
+                                 " mm; a study of it takes edges of at least " +
+                                 fixed(least_mm, 2) + " mm");
+        }
+        return coarsened({given.position_mm, given.face}, mesh_options.edge_mm);
+    };
+    return study;
+}
+
+Surface frozen_surface(const TriangleSoup& soup) {
+    const auto neighbours = face_neighbours(soup.faces);
+    const auto feature = feature_edges(steady_normals(soup, neighbours), neighbours);
+    const Rims rims = find_rims(soup);
+    const std::vector<std::int32_t> region(soup.faces.size(), 0);
+    return freeze_surface(soup, {.feature = feature, .region = region, .rim = rims.of_edge});
+}
+
+std::vector<CurveState> random_starts(const StudyMandrel& mandrel, int count, std::uint64_t seed) {
+    const TriangleSoup& soup = mandrel.samples;
+    std::vector<double> total_mm2(soup.faces.size());
+    double sum = 0.0;
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        sum += area_mm2(soup, f);
+        total_mm2[f] = sum;
+    }
+    std::vector<CurveState> starts;
+    std::uint64_t draw = 0;
+    for (int i = 0; i < count; ++i) {
+        const double wanted = sum * random_unit(seed, draw++);
+        const auto above = std::upper_bound(total_mm2.begin(), total_mm2.end() - 1, wanted);
+        const auto& face = soup.faces[static_cast<std::size_t>(above - total_mm2.begin())];
+        double u = random_unit(seed, draw++);
+        double v = random_unit(seed, draw++);
+        if (u + v > 1.0) {
+            u = 1.0 - u;
+            v = 1.0 - v;
+        }
+        const Vector3d near_mm = (1.0 - u - v) * soup.points_mm[static_cast<std::size_t>(face[0])] +
+                                 u * soup.points_mm[static_cast<std::size_t>(face[1])] +
+                                 v * soup.points_mm[static_cast<std::size_t>(face[2])];
+        const double angle = 2.0 * kPi * random_unit(seed, draw++);
+        const SurfaceFoot foot = mandrel.reference->foot(near_mm);
+        const Vector3d ahead = foot.normal.unitOrthogonal();
+        starts.push_back(
+            {foot.point_mm, std::cos(angle) * ahead + std::sin(angle) * foot.normal.cross(ahead)});
+    }
+    return starts;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,51 @@
+/// The parts of a study: meshes of any edge length of one surface, and what is exact on it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesh/mandrel.h"
+#include "study/path_reference.h"
+
+namespace meshwind {
+
+struct StudyMeshOptions {
+    double edge_mm = 5.0;
+    bool irregular = true;  ///< made parts; a file's mesh is as irregular as it is
+    std::uint64_t seed = 1;
+};
+
+struct StudyMandrel {
+    std::string name;             ///< "cylinder-70", "torus", "tee.stl"
+    std::string reference_words;  ///< what the paths are compared with, in a few words
+    std::unique_ptr<PathReference> reference;
+    /// \throws InputError make.* or study.edge when the surface cannot be shown with such edges
+    std::function<TriangleSoup(const StudyMeshOptions&)> mesh;
+    TriangleSoup samples;              ///< triangles on or near the surface: where paths may start
+    std::unique_ptr<Mandrel> mandrel;  ///< of a file; what `reference` and `mesh` use
+};
+
+/// Cylinder around z, 400 mm long, against the closed form. \throws InputError make.not_positive
+[[nodiscard]] StudyMandrel cylinder_study(double radius_mm);
+
+/// The default shapes of `meshwind make`.
+[[nodiscard]] StudyMandrel torus_study();
+[[nodiscard]] StudyMandrel ellipsoid_study();
+[[nodiscard]] StudyMandrel tee_study();
+
+/// A part of which only its mesh is known: coarser meshes of it against the mesh itself.
+/// \param options how the reference paths are traced
+[[nodiscard]] StudyMandrel file_study(Mandrel mandrel, const TraceOptions& options = {});
+
+/// The winding surface of triangles, creases and rims as the import finds them.
+[[nodiscard]] Surface frozen_surface(const TriangleSoup& soup);
+
+/// Where a path starts, on the reference's surface, into any direction in it.
+/// \return `count` starts, spread evenly by area; the same for the same seed
+[[nodiscard]] std::vector<CurveState> random_starts(const StudyMandrel& mandrel, int count,
+                                                    std::uint64_t seed);
+
+}  // namespace meshwind
