@@ -45,8 +45,8 @@ Parts torus_parts(double edge_mm) {
     Parts parts;
     parts.soup = meshwind::make_mandrel("torus", {}, {.edge_mm = edge_mm, .irregular = true});
     const auto neighbours = meshwind::face_neighbours(parts.soup.faces);
-    parts.feature =
-        meshwind::feature_edges(meshwind::steady_normals(parts.soup, neighbours), neighbours);
+    parts.feature = meshwind::feature_edges(
+        parts.soup.faces, meshwind::steady_normals(parts.soup, neighbours), neighbours);
     parts.region.assign(parts.soup.faces.size(), 0);
     parts.rims = meshwind::find_rims(parts.soup);
     return parts;

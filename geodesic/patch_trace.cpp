@@ -33,6 +33,11 @@ constexpr int kMaxLandings = 16;
 // Share of a step by which its end is moved onto an edge without taking it again.
 constexpr double kLandingShare = 0.02;
 
+// So many steps in a row of less than this share of the mean edge: around a vertex there may be
+// dozens; hundreds mean a patch folded over itself.
+constexpr int kIdleSteps = 500;
+constexpr double kIdleShare = 1e-7;
+
 // One minus the cosine below which two normals at one place are the same.
 constexpr double kSameNormal = 1e-9;
 
@@ -100,7 +105,8 @@ public:
           patch_(surface, start.face),
           face_(start.face),
           min_station_mm_(kMinStationShare * surface.mean_edge_mm),
-          clearance_mm_(kVertexClearance * surface.mean_edge_mm) {
+          clearance_mm_(kVertexClearance * surface.mean_edge_mm),
+          idle_mm_(kIdleShare * surface.mean_edge_mm) {
         const Vector2d uv(start.bary[1], start.bary[2]);
         begin(uv, patch_.at(uv), direction);
     }
@@ -108,8 +114,15 @@ public:
     TraceResult run() {
         result_.path.reserve(256);
         record(motion_.kn_per_mm);
+        int idle = 0;
         for (int steps = 0; steps < options_.max_faces; ++steps) {
+            const double before_mm = length_mm_;
             if (!step()) {
+                return std::move(result_);
+            }
+            idle = length_mm_ - before_mm < idle_mm_ ? idle + 1 : 0;
+            if (idle == kIdleSteps) {
+                fold();
                 return std::move(result_);
             }
         }
@@ -194,7 +207,9 @@ private:
             exit.length_mm = left;
             next = advanced(left);
         }
-        move_within(next, exit.length_mm);
+        if (!move_within(next, exit.length_mm)) {
+            return fold();
+        }
         if (exit.length_mm < left) {
             record(motion_.kn_per_mm);
             return true;
@@ -251,11 +266,18 @@ private:
         return rate < 0.0 ? bary(state.uv, i, 1.0) / -rate : kNever;
     }
 
-    void move_within(const State& next, double length) {
+    // False where there is no surface.
+    bool move_within(const State& next, double length) {
         state_ = next;
         length_mm_ += length;
         entry_ = kNoEdge;
         motion_ = motion_of(patch_.at(state_.uv), state_.rate);
+        return patch_.holds(motion_.normal);
+    }
+
+    bool fold() {
+        result_.stop = TraceStop::Folded;
+        return false;
     }
 
     // Over the edge opposite `opposite` into the next face.
@@ -264,8 +286,11 @@ private:
         const std::size_t to = (opposite + 2) % 3;
         const double share =
             std::clamp(bary(at_edge.uv, to, 1.0), kVertexClearance, 1.0 - kVertexClearance);
-        move_within({corner_uv(from) + share * (corner_uv(to) - corner_uv(from)), at_edge.rate},
-                    length);
+        if (!move_within(
+                {corner_uv(from) + share * (corner_uv(to) - corner_uv(from)), at_edge.rate},
+                length)) {
+            return fold();
+        }
         const Index next = surface_.neighbour[at(face_)][from];
         if (next == kNoFace) {
             record(motion_.kn_per_mm);
@@ -287,6 +312,10 @@ private:
         const Vector2d uv = corner_uv(second) + share * (corner_uv(first) - corner_uv(second));
         const PatchPlace place = patch_.at(uv);
         begin(uv, place, unfolded(leaving, edge, place.normal(), feature));
+        if (!patch_.holds(motion_.normal)) {
+            add(leaving);
+            return fold();
+        }
         if (feature) {
             add(leaving);
             record(motion_.kn_per_mm);
@@ -353,6 +382,7 @@ private:
     Index face_;
     double min_station_mm_;
     double clearance_mm_;
+    double idle_mm_;
     TraceResult result_;
     std::size_t entry_ =
         kNoEdge;  // bary index that is zero on the edge by which the face was entered

@@ -342,6 +342,8 @@ const char* name_of(TraceStop stop) {
             return "rim";
         case TraceStop::FaceLimit:
             return "face-limit";
+        case TraceStop::Folded:
+            return "folded";
     }
     return "";
 }

@@ -7,10 +7,11 @@
 
 namespace meshwind {
 
-/// Why a trace ended. Every value is a normal outcome, none is an error.
-enum class TraceStop { Length, Rim, FaceLimit };
+/// Why a trace ended. Every value is a normal outcome, none is an error. Folded: on curved patches
+/// alone, where the mesh is so coarse that a patch turns over; the path ends before it.
+enum class TraceStop { Length, Rim, FaceLimit, Folded };
 
-/// "length", "rim", "face-limit".
+/// "length", "rim", "face-limit", "folded".
 [[nodiscard]] const char* name_of(TraceStop stop);
 
 /// The law of steering: kg = slip_ratio * kn. A fibre is pressed on only where kn > 0, so a plan

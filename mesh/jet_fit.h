@@ -19,6 +19,12 @@ struct HeightJet {
     std::array<double, kJetTerms> coefficient{};          ///< in mm^(1 - degree of the term)
 };
 
+/// The polynomial and its derivatives at a place in the plane.
+struct JetHeight {
+    double value, by_x, by_y, by_xx, by_xy, by_yy;
+};
+[[nodiscard]] JetHeight height_at(const HeightJet& jet, double x, double y);
+
 /// Which terms the neighbours determined: all up to a degree; some of the quadratic ones and above;
 /// none, so that normal and curvature are averages of the facets.
 enum class JetTerms : std::uint8_t { Quartic, Cubic, Quadratic, Reduced, Averaged };

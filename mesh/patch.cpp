@@ -16,37 +16,15 @@ using Eigen::Vector3d;
 // out: the normals' errors would turn the tangent.
 constexpr double kMinCreaseSine = 0.17;
 
+// Cosine of the largest angle between a patch and its facet (60 deg).
+constexpr double kMinFacing = 0.5;
+
 // Rates of the barycentric coordinates by u and v.
 constexpr std::array<double, 3> kBaryByU = {-1.0, 1.0, 0.0};
 constexpr std::array<double, 3> kBaryByV = {-1.0, 0.0, 1.0};
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
-}
-
-struct Height {
-    double value, by_x, by_y, by_xx, by_xy, by_yy;
-};
-
-// The polynomial and its derivatives, by Horner in x inside Horner in y.
-Height height_at(const HeightJet& jet, double x, double y) {
-    const auto& c = jet.coefficient;
-    const double y1 = c[1] + x * (c[3] + x * (c[6] + x * c[10]));
-    const double y2 = c[4] + x * (c[7] + x * c[11]);
-    const double y3 = c[8] + x * c[12];
-    Height h;
-    h.value = x * (c[0] + x * (c[2] + x * (c[5] + x * c[9]))) +
-              y * (y1 + y * (y2 + y * (y3 + y * c[13])));
-    h.by_x =
-        c[0] + x * (2.0 * c[2] + x * (3.0 * c[5] + x * 4.0 * c[9])) +
-        y * (c[3] + x * (2.0 * c[6] + x * 3.0 * c[10]) + y * (c[7] + x * 2.0 * c[11] + y * c[12]));
-    h.by_y = y1 + y * (2.0 * y2 + y * (3.0 * y3 + y * 4.0 * c[13]));
-    h.by_xx = 2.0 * c[2] + x * (6.0 * c[5] + x * 12.0 * c[9]) +
-              y * (2.0 * c[6] + x * 6.0 * c[10] + y * 2.0 * c[11]);
-    h.by_xy = c[3] + x * (2.0 * c[6] + x * 3.0 * c[10]) +
-              y * (2.0 * c[7] + x * 4.0 * c[11] + y * 3.0 * c[12]);
-    h.by_yy = 2.0 * y2 + y * (6.0 * y3 + y * 12.0 * c[13]);
-    return h;
 }
 
 // Lift of the facet's point along the frame's third axis, with its derivatives along two directions
@@ -56,7 +34,7 @@ struct Lift {
 };
 
 Lift lift_at(const HeightJet& jet, const Vector3d& at, const Vector3d& a, const Vector3d& b) {
-    const Height h = height_at(jet, at.x(), at.y());
+    const JetHeight h = height_at(jet, at.x(), at.y());
     const double xa = h.by_xx * a.x() + h.by_xy * a.y();
     const double ya = h.by_xy * a.x() + h.by_yy * a.y();
     const double xb = h.by_xx * b.x() + h.by_xy * b.y();
@@ -124,6 +102,12 @@ PatchPlace Patch::at(const Vector2d& uv) const {
         bend_to_crease(crease_[i], uv, place);
     }
     return place;
+}
+
+bool Patch::holds(const Vector3d& normal) const {
+    const Vector3d facet =
+        (position_mm_[1] - position_mm_[0]).cross(position_mm_[2] - position_mm_[0]);
+    return normal.dot(facet) > kMinFacing * facet.norm();
 }
 
 double Patch::curvature_per_mm() const {

@@ -47,6 +47,10 @@ public:
     /// \param uv barycentric coordinates of the second and the third corner
     [[nodiscard]] PatchPlace at(const Eigen::Vector2d& uv) const;
 
+    /// Whether a normal is one of a surface over this triangle: within 60 deg of the facet's. Fits
+    /// on far too coarse a mesh may turn a patch over. False for what is not a number.
+    [[nodiscard]] bool holds(const Eigen::Vector3d& normal) const;
+
     /// Largest curvature of the fits at the corners, 1/mm.
     [[nodiscard]] double curvature_per_mm() const;
 

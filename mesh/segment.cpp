@@ -440,7 +440,7 @@ Segmentation segment(const TriangleSoup& soup) {
         make_regions(s, facts);
         look_around(soup, normals, facts, face_area, visibility, s.regions);
     };
-    s.feature = feature_edges(normals, s.neighbours);
+    s.feature = feature_edges(soup.faces, normals, s.neighbours);
     s.region = label_faces(s);
     survey();
     mark_end_caps(soup, s, facts);

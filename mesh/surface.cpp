@@ -17,6 +17,7 @@ using Index = std::int32_t;
 constexpr int kRings = 2;            // of neighbours for a fit: 18 on a regular mesh
 constexpr std::size_t kEnough = 16;  // fewer than this and one more ring is taken
 constexpr double kMinFacing = 0.5;   // cosine between the normals of neighbours in one fit (60 deg)
+constexpr double kMinFollowing = 0.95;  // cosine between a fit's normal and the facets' (18 deg)
 constexpr std::size_t kFitChunk = 256;
 
 std::size_t at(Index i) {
@@ -127,8 +128,11 @@ public:
         const Eigen::Vector3d& guess = averaged_[at(corner)];
         gather(corner);
         collect(found_);
-        if (const auto jet = fit_jet(centre, guess, points_)) {
-            return *jet;
+        for (int degree = kMaxJetDegree; degree >= 2; --degree) {
+            const auto jet = fit_jet(centre, guess, points_, degree);
+            if (jet && follows_facets(*jet, corner)) {
+                return *jet;
+            }
         }
         found_.assign(rings_[corner].begin(), rings_[corner].end());
         collect(found_);
@@ -162,6 +166,21 @@ private:
             begin = end;
         }
         found_.erase(found_.begin());
+    }
+
+    // Whether the fit's normals next to the corner are those of the facets, roughly: a polynomial
+    // that swings between its points is worse than one of a lower degree.
+    [[nodiscard]] bool follows_facets(const Jet& jet, Index corner) const {
+        const Eigen::Matrix3d& frame = jet.height.frame;
+        const auto follows = [&](Index next) {
+            const Eigen::Vector3d d = frame.transpose() * (position(next) - position(corner));
+            const JetHeight h = height_at(jet.height, d.x(), d.y());
+            const Eigen::Vector3d normal =
+                frame * Eigen::Vector3d(-h.by_x, -h.by_y, 1.0).normalized();
+            return normal.dot(averaged_[at(next)]) > kMinFollowing;
+        };
+        const auto ring = rings_[corner];
+        return follows(corner) && std::all_of(ring.begin(), ring.end(), follows);
     }
 
     void collect(const std::vector<Index>& corners) {

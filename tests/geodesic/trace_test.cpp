@@ -432,6 +432,7 @@ TEST(TraceStopNames, AreStable) {
     EXPECT_STREQ(name_of(TraceStop::Length), "length");
     EXPECT_STREQ(name_of(TraceStop::Rim), "rim");
     EXPECT_STREQ(name_of(TraceStop::FaceLimit), "face-limit");
+    EXPECT_STREQ(name_of(TraceStop::Folded), "folded");
 }
 
 }  // namespace
