@@ -25,10 +25,12 @@ constexpr double kMaxSamples = 6e5;
 // A candidate whose half is longer than this many bounding boxes circles without meeting a rim.
 constexpr double kMaxHalfLengthBoxes = 8.0;
 
-// Times that rejected courses are replaced by others before the plan does without.
-constexpr int kMaxReplacements = 12;
+// Times that rejected courses are replaced by others before the plan does without. Most plans need
+// under ten; each round fills only what the one before left open.
+constexpr int kMaxReplacements = 30;
 
 constexpr std::size_t kHardRatio = 2;  // a way is hard when less than one in two can be wound
+
 // Added to the clearance while candidates are judged at a few stations, so that a course still
 // fits when every station is tried.
 constexpr double kHeadMargin_mm = 0.3;
@@ -36,8 +38,9 @@ constexpr double kHeadMargin_mm = 0.3;
 // Plans that are tried until the machine can wind the whole.
 constexpr int kMaxAttempts = 8;
 
-// Rounds after which a plan of several fibres is not waited for any longer but narrowed to one.
-constexpr int kSettling = 3;
+// Rounds after which a plan of several fibres is narrowed to one although courses in it are still
+// being replaced: narrowing cannot be undone.
+constexpr int kSettling = 20;
 
 // Distance of the stations of a plan: what the machine is told of the curve between them is below
 // its own following error.
@@ -263,6 +266,9 @@ private:
             const bool narrower = fibres_in(order_).size() > 1 && narrow_to_main_fibre();
             if (settled && !narrower) {
                 break;
+            }
+            if (narrower) {
+                selection_.chosen.clear();  // the choice starts anew among what is left
             }
         }
         order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);

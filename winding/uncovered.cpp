@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <map>
 #include <numeric>
 #include <set>
 #include <string>
+#include <tuple>
 
 namespace meshwind {
 namespace {
@@ -22,7 +22,10 @@ struct Reason {
     Rejection rejection = Rejection::None;
     Refusal refusal = Refusal::None;
 
-    [[nodiscard]] auto operator<=>(const Reason&) const = default;
+    [[nodiscard]] bool operator<(const Reason& other) const {
+        return std::tie(region, reached, rejection, refusal) <
+               std::tie(other.region, other.reached, other.rejection, other.refusal);
+    }
 };
 
 // Per sample: what became of most members that pass it; None as soon as one could have been laid.
@@ -90,6 +93,7 @@ std::vector<Uncovered> uncovered_wall(const Surface& surface, const CoverageSamp
         }
     }
     std::vector<Uncovered> uncovered;
+    uncovered.reserve(area_mm2.size());
     for (const auto& [reason, mm2] : area_mm2) {
         uncovered.push_back({reason.region, mm2, words(reason, courses[reason])});
     }
