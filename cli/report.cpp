@@ -32,6 +32,10 @@ json plan_report(const Plan& plan) {
     for (std::size_t r = 0; r < kRefusals; ++r) {
         refusals[name_of(static_cast<Refusal>(r))] = plan.effort.refusals[r];
     }
+    json rejections = json::object();
+    for (std::size_t r = 1; r < kRejections; ++r) {
+        rejections[name_of(static_cast<Rejection>(r))] = plan.effort.rejections[r];
+    }
     json report = {
         {"planner", plan.planner},
         {"courses", plan.courses},
@@ -48,7 +52,8 @@ json plan_report(const Plan& plan) {
         {"library",
          {{"candidates", plan.effort.candidates},
           {"outcomes", refusals},
-          {"rejected_courses", plan.effort.rejected_courses}}}};
+          {"rejected_courses", plan.effort.rejected_courses},
+          {"rejections", rejections}}}};
     if (!plan.failure.empty()) {
         report["failure"] = plan.failure;
     }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <memory>
-#include <set>
 #include <sstream>
 
 #include "cli/digest.h"
@@ -208,27 +208,34 @@ private:
         obstacles_ = std::make_unique<RayQuery>(parts, kTableReach_mm);
     }
 
-    // Indices of the pieces, in a stretch of the plan, that the machine cannot wind: no free
-    // length, beyond an axis' travel, or hitting something.
-    [[nodiscard]] std::vector<std::size_t> refused_pieces(std::span<const Piece> pieces) const {
+    // Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason:
+    // no free length, beyond an axis' travel, or hitting something.
+    [[nodiscard]] std::map<std::size_t, Rejection> refused_pieces(
+        std::span<const Piece> pieces) const {
         const EyePathResult eyes = equal_free_length(pieces, *obstacles_, rule_.free_fibre);
-        std::vector<std::size_t> points = eyes.blocked;
+        std::map<std::size_t, Rejection> refused;
+        const auto refuse = [&](std::size_t point, Rejection reason) {
+            refused.emplace(static_cast<std::size_t>(eyes.path[point].piece), reason);
+        };
+        for (const std::size_t point : eyes.blocked) {
+            refuse(point, Rejection::FreeLength);
+        }
         const JointPath joints =
             solve_joints(result_.machine, eyes.path, RedundancyPolicy::CentralAngle);
         for (const LimitViolation& violation : joints.violations) {
-            points.push_back(violation.point);
+            refuse(violation.point, Rejection::AxisTravel);
         }
-        if (points.empty()) {
+        if (refused.empty()) {
             const CollisionReport report =
                 check_collisions(result_.machine, envelope_, *obstacles_, eyes.path, joints, rule_);
-            points.insert(points.end(), report.fibre_hits.begin(), report.fibre_hits.end());
-            points.insert(points.end(), report.head_hits.begin(), report.head_hits.end());
+            for (const std::size_t point : report.fibre_hits) {
+                refuse(point, Rejection::FibreHit);
+            }
+            for (const std::size_t point : report.head_hits) {
+                refuse(point, Rejection::HeadHit);
+            }
         }
-        std::set<std::size_t> refused;
-        for (const std::size_t point : points) {
-            refused.insert(static_cast<std::size_t>(eyes.path[point].piece));
-        }
-        return {refused.begin(), refused.end()};
+        return refused;
     }
 
     void plan() {
@@ -241,8 +248,17 @@ private:
         options.select.target_layers =
             static_cast<int>(std::ceil(job.layers.front().target_layers));
         options.seed = request_.seed;
-        options.accept = [this](const Piece& piece) { return refused_pieces({&piece, 1}).empty(); };
-        options.refused = [this](std::span<const Piece> pieces) { return refused_pieces(pieces); };
+        options.accept = [this](const Piece& piece) {
+            const auto refused = refused_pieces({&piece, 1});
+            return refused.empty() ? Rejection::None : refused.begin()->second;
+        };
+        options.refused = [this](std::span<const Piece> pieces) {
+            std::vector<std::size_t> indices;
+            for (const auto& [piece, reason] : refused_pieces(pieces)) {
+                indices.push_back(piece);
+            }
+            return indices;
+        };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         result_.plan = plan_cover(result_.mandrel, *obstacles_, options);
         watch_.stage("plan");
@@ -296,18 +312,29 @@ private:
         result_.checks.push_back(check);
     }
 
+    // ": 12.3 cm2 are bare, for ..." with the reason that keeps most wall bare.
+    [[nodiscard]] std::string largest_bare_wall() const {
+        std::map<std::string, double> area_mm2;
+        for (const Uncovered& bare : result_.plan.uncovered) {
+            area_mm2[bare.reason] += bare.area_mm2;
+        }
+        const auto largest =
+            std::max_element(area_mm2.begin(), area_mm2.end(),
+                             [](const auto& a, const auto& b) { return a.second < b.second; });
+        return largest == area_mm2.end() ? ""
+                                         : "; " + fixed(largest->second / 100.0, 2) +
+                                               " cm2 are bare for this: " + largest->first;
+    }
+
     void check_coverage() {
         const Coverage& coverage = result_.plan.coverage;
         const double limit = kCoveredShare * coverage.reachable;
         Check check{"coverage", coverage.fraction >= limit, {}, {}};
         check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
         if (!check.ok) {
-            check.words =
-                "only " + fixed(100.0 * coverage.fraction, 1) +
-                " % of the wall is covered although single courses reach " +
-                fixed(100.0 * coverage.reachable, 1) +
-                " %: one fibre cannot join them all; a slimmer head, a longer extension or more "
-                "friction gives more ways";
+            check.words = "only " + fixed(100.0 * coverage.fraction, 1) +
+                          " % of the wall is covered although single courses reach " +
+                          fixed(100.0 * coverage.reachable, 1) + " %" + largest_bare_wall();
         }
         result_.checks.push_back(check);
     }

@@ -14,6 +14,10 @@ using Eigen::Vector3d;
 // square of the window stays below the curvature that friction can hold.
 constexpr double kWindowEdges = 3.0;
 
+// Chords seen along one normal: over a turn of a rad to either side their angle is wrong by about
+// a^2 / 6 of itself, here 4 %, half of what steering leaves free below the friction.
+constexpr double kWindowTurn_rad = 0.5;
+
 // Position noise of a path over the smooth surface as a share of the edge length: chordal sag is
 // normal to the surface and does not count; the lateral scatter of the walk was measured below
 // this.
@@ -65,39 +69,45 @@ std::vector<std::size_t> upper_hull(const SurfacePath& path, const std::vector<d
     return hull;
 }
 
-// Walks along a path by arc length with linear interpolation of positions.
-class Positions {
-public:
-    explicit Positions(const SurfacePath& path) : path_(path) {}
-
-    // Queries must ascend.
-    Vector3d at(double s_mm) {
-        while (index_ + 2 < path_.size() && path_[index_ + 1].s_mm < s_mm) {
-            ++index_;
-        }
-        const PathPoint& a = path_[index_];
-        const PathPoint& b = path_[index_ + 1];
-        const double span = b.s_mm - a.s_mm;
-        const double share = span > 0.0 ? std::clamp((s_mm - a.s_mm) / span, 0.0, 1.0) : 0.0;
-        return a.position_mm + share * (b.position_mm - a.position_mm);
-    }
-
-private:
-    const SurfacePath& path_;
-    std::size_t index_ = 0;
+// A path rolled flat at its feature edges: what comes after an edge is turned about the crossing
+// until the normals of both sides agree. A string pulled over the edge runs straight across it
+// then.
+struct UnfoldedPath {
+    std::vector<Vector3d> position_mm;
+    std::vector<Vector3d> normal;
 };
 
-// Integral of kn over s up to each station.
-std::vector<double> total_kn(const SurfacePath& path) {
+UnfoldedPath unfold(const SurfacePath& path) {
+    UnfoldedPath flat;
+    Eigen::Affine3d moved = Eigen::Affine3d::Identity();
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const PathPoint& point = path[i];
+        if (i > 0 && point.s_mm <= path[i - 1].s_mm) {
+            const Eigen::Quaterniond back =
+                Eigen::Quaterniond::FromTwoVectors(point.normal, path[i - 1].normal);
+            moved = moved * Eigen::Translation3d(point.position_mm) * back *
+                    Eigen::Translation3d(-point.position_mm);
+        }
+        flat.position_mm.push_back(moved * point.position_mm);
+        flat.normal.push_back(moved.linear() * point.normal);
+    }
+    return flat;
+}
+
+// Integral of |kn| over s up to each station.
+std::vector<double> total_turn(const SurfacePath& path) {
     std::vector<double> total(path.size(), 0.0);
     for (std::size_t i = 1; i < path.size(); ++i) {
-        total[i] = total[i - 1] + 0.5 * (path[i - 1].kn_per_mm + path[i].kn_per_mm) *
-                                      (path[i].s_mm - path[i - 1].s_mm);
+        total[i] =
+            total[i - 1] + 0.5 * (std::abs(path[i - 1].kn_per_mm) + std::abs(path[i].kn_per_mm)) *
+                               (path[i].s_mm - path[i - 1].s_mm);
     }
     return total;
 }
 
-double value_at(const SurfacePath& path, const std::vector<double>& values, double s_mm) {
+// Linear in arc length between the stations.
+template <typename Value>
+Value value_at(const SurfacePath& path, const std::vector<Value>& values, double s_mm) {
     const auto after = std::upper_bound(path.begin(), path.end(), s_mm,
                                         [](double s, const PathPoint& p) { return s < p.s_mm; });
     if (after == path.begin()) {
@@ -150,23 +160,26 @@ SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path, const 
         return measure;
     }
     const double edge = surface.mean_edge_mm;
-    const double window = options.window_mm > 0.0 ? options.window_mm : kWindowEdges * edge;
-    // Lateral noise e at three points a window apart reads as a curvature of 4 e / window^2.
-    const double noise_per_mm = 4.0 * kLateralNoiseShare * edge / (window * window);
-    const double straight_kn_per_mm = noise_per_mm / std::max(options.friction, 1e-3);
-    const std::vector<double> total = total_kn(path);
+    const double widest = options.window_mm > 0.0 ? options.window_mm : kWindowEdges * edge;
+    const UnfoldedPath flat = unfold(path);
+    const std::vector<double> turned = total_turn(path);
+    std::vector<double> height = profile_of(path).height_mm;  // of the string
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        height[i] += string.gap_mm[i];
+    }
     const double length = path.back().s_mm;
-    Positions behind(path);
-    Positions ahead(path);
     for (std::size_t i = 0; i < path.size(); ++i) {
         const double s = path[i].s_mm;
+        const double turn_rad =
+            0.5 * (value_at(path, turned, s + widest) - value_at(path, turned, s - widest));
+        const double window = widest * std::min(1.0, kWindowTurn_rad / turn_rad);
         if (s < window || s > length - window) {
             continue;
         }
-        const Vector3d& here = path[i].position_mm;
-        const Vector3d in = here - behind.at(s - window);
-        const Vector3d out = ahead.at(s + window) - here;
-        const Vector3d& n = path[i].normal;
+        const Vector3d& here = flat.position_mm[i];
+        const Vector3d in = here - value_at(path, flat.position_mm, s - window);
+        const Vector3d out = value_at(path, flat.position_mm, s + window) - here;
+        const Vector3d& n = flat.normal[i];
         const Vector3d flat_in = in - n * n.dot(in);
         const Vector3d flat_out = out - n * n.dot(out);
         const double turn = std::atan2(n.dot(flat_in.cross(flat_out)), flat_in.dot(flat_out));
@@ -175,8 +188,13 @@ SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path, const 
         if (string.gap_mm[i] > 0.0) {
             continue;  // lifted: nothing to slip on
         }
-        const double kn = (value_at(path, total, s + window) - value_at(path, total, s - window)) /
-                          (2.0 * window);
+        // Over the same chords as kg, with the same weights.
+        const double kn = (2.0 * height[i] - value_at(path, height, s - window) -
+                           value_at(path, height, s + window)) /
+                          (window * window);
+        // Lateral noise e at three points a window apart reads as a curvature of 4 e / window^2.
+        const double noise_per_mm = 4.0 * kLateralNoiseShare * edge / (window * window);
+        const double straight_kn_per_mm = noise_per_mm / std::max(options.friction, 1e-3);
         if (kn < straight_kn_per_mm && std::abs(kg) <= noise_per_mm) {
             continue;
         }

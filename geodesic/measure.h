@@ -35,10 +35,11 @@ struct SlipOptions {
 };
 
 /// kg from the turn between the chords of +-window about each station, seen along the smooth
-/// normal; kn from the smooth shape operator, averaged over the same window. Where kn is so small
-/// that a string with it sags less than the position noise of the path over the window, a ratio has
-/// no meaning: there the station counts as straight if its |kg| is within the same noise, and with
-/// the ratio of |kg| to the noise curvature otherwise. Accuracy: second order in edge length
+/// normal; kn from the string's height over the same three points. The path is unfolded at feature
+/// edges first, and the window is shorter where the path turns by more than 0.5 rad along it. Where
+/// kn is so small that a string with it sags less than the position noise over the window, a ratio
+/// has no meaning: there the station counts as straight if its |kg| is within the same noise, and
+/// with the ratio of |kg| to the noise curvature otherwise. Accuracy: second order in edge length
 /// (tests/geodesic/measure_test.cpp).
 [[nodiscard]] SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path,
                                        const TautString& string, const SlipOptions& options = {});

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
 #include "core/units.h"
 #include "winding/coverage.h"
+#include "winding/grow.h"
 #include "winding/one_fibre.h"
 #include "winding/random.h"
+#include "winding/uncovered.h"
 
 namespace meshwind {
 namespace {
-
-// Steering of the candidates as shares of the friction: geodesic, and three strengths to either
-// side. The strongest leaves room for the error of measuring slip on the mesh.
-constexpr std::array<double, 7> kSteering = {0.0, 0.31, -0.31, 0.62, -0.62, 0.92, -0.92};
 
 // Samples per band width: a gap of a quarter band is seen.
 constexpr double kSamplesPerBand = 4.0;
@@ -28,19 +25,11 @@ constexpr double kMaxSamples = 6e5;
 // A candidate whose half is longer than this many bounding boxes circles without meeting a rim.
 constexpr double kMaxHalfLengthBoxes = 8.0;
 
-// Times that rejected courses are replaced by others before the plan does without.
-constexpr int kMaxReplacements = 12;
+// Times that rejected courses are replaced by others before the plan does without. Most plans need
+// under ten; each round fills only what the one before left open.
+constexpr int kMaxReplacements = 30;
 
-// A way between two nodes is scarce with fewer courses than this, and worth the search when at
-// least so many lie there, windable or not.
-constexpr std::size_t kScarce = 48;
-constexpr std::size_t kEstablished = 8;
-constexpr int kScarceRounds = 4;
 constexpr std::size_t kHardRatio = 2;  // a way is hard when less than one in two can be wound
-constexpr std::size_t kShare = 240;    // of every scarce way in the draw: all count the same
-
-// How far a candidate near a member is turned at most.
-constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
 
 // Added to the clearance while candidates are judged at a few stations, so that a course still
 // fits when every station is tried.
@@ -49,15 +38,13 @@ constexpr double kHeadMargin_mm = 0.3;
 // Plans that are tried until the machine can wind the whole.
 constexpr int kMaxAttempts = 8;
 
-// Rounds after which a plan of several fibres is not waited for any longer but narrowed to one.
-constexpr int kSettling = 3;
+// Rounds after which a plan of several fibres is narrowed to one although courses in it are still
+// being replaced: narrowing cannot be undone.
+constexpr int kSettling = 20;
 
 // Distance of the stations of a plan: what the machine is told of the curve between them is below
 // its own following error.
 constexpr double kStation_mm = 4.0;
-
-// Streams of random numbers, so that one draw never depends on another.
-enum Stream : std::uint64_t { Sampling = 1, Seeds = 2, Angles = 3, Steerings = 4 };
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
@@ -71,7 +58,7 @@ public:
         : mandrel_(mandrel),
           options_(options),
           samples_(sample_surface(mandrel.surface, sample_spacing_mm(mandrel, options),
-                                  stream(Sampling))),
+                                  seed_of(Stream::Sampling, options.seed))),
           footprints_(mandrel.surface, samples_, options.tow.width_mm),
           rules_{mandrel,
                  obstacles,
@@ -83,24 +70,26 @@ public:
         rules_.turn.friction = options.tow.friction;
         rules_.turn.band_mm = options.tow.width_mm;
         rules_.free_fibre.clearance_mm += kHeadMargin_mm;
-        reached_.assign(samples_.size(), 0);
-        closest_miss_.assign(samples_.size(), Refusal::None);
         plan_.planner = "cover";
     }
 
     Plan run() {
-        grow_library();
+        library_ = grow_library(rules_, samples_, options_);
+        plan_.effort.candidates = library_.candidates;
+        plan_.effort.refusals = library_.refusals;
+        tell("library", 1.0);
         if (members_.empty()) {
             plan_.failure = "no admissible course: " + commonest_refusal();
             describe_uncovered();
             return std::move(plan_);
         }
         verdict_.assign(members_.size(), Verdict::Unknown);
+        rejection_.assign(members_.size(), Rejection::None);
         verify_hard_ways();
         for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
             choose();
             if (order_.empty()) {
-                plan_.failure = "every course was refused by the machine or by its measured slip";
+                plan_.failure = "every course was refused, " + commonest_rejection();
                 describe_uncovered();
                 return std::move(plan_);
             }
@@ -127,140 +116,10 @@ private:
         return std::max(options.tow.width_mm / kSamplesPerBand, std::sqrt(area / kMaxSamples));
     }
 
-    [[nodiscard]] std::uint64_t stream(Stream which) const { return options_.seed * 16 + which; }
-
     void tell(const char* step, double share) const {
         if (options_.progress) {
             options_.progress(step, share);
         }
-    }
-
-    // A candidate through a given sample; `draw` numbers the random draws of the whole run.
-    Candidate candidate_at(std::int32_t sample, std::uint64_t draw) const {
-        const auto pick = random_bits(stream(Steerings), draw) % kSteering.size();
-        return {samples_.at[at(sample)], kPi * random_unit(stream(Angles), draw),
-                kSteering[pick] * options_.tow.friction};
-    }
-
-    void try_candidates(const std::vector<std::int32_t>& seeds) {
-        std::vector<Candidate> candidates;
-        candidates.reserve(seeds.size());
-        for (const std::int32_t sample : seeds) {
-            candidates.push_back(candidate_at(sample, draws_++));
-        }
-        const std::vector<Refusal> outcome = judge_candidates(candidates);
-        for (std::size_t i = 0; i < seeds.size(); ++i) {
-            closest_miss_[at(seeds[i])] = std::max(closest_miss_[at(seeds[i])], outcome[i]);
-        }
-    }
-
-    // Adds the admissible ones to the library; says what became of each.
-    std::vector<Refusal> judge_candidates(const std::vector<Candidate>& candidates) {
-        LibraryPart part = build_library(rules_, candidates);
-        plan_.effort.candidates += static_cast<std::int64_t>(candidates.size());
-        for (const Refusal refusal : part.outcome) {
-            ++plan_.effort.refusals[static_cast<std::size_t>(refusal)];
-        }
-        for (Member& member : part.members) {
-            for (const std::int32_t sample : member.footprint) {
-                reached_[at(sample)] = 1;
-            }
-            members_.push_back(std::move(member));
-        }
-        return std::move(part.outcome);
-    }
-
-    void grow_library() {
-        std::vector<std::int32_t> seeds;
-        seeds.reserve(static_cast<std::size_t>(options_.candidates));
-        for (int i = 0; i < options_.candidates; ++i) {
-            seeds.push_back(static_cast<std::int32_t>(
-                random_bits(stream(Seeds), static_cast<std::uint64_t>(i)) % samples_.size()));
-        }
-        tell("library", 0.0);
-        try_candidates(seeds);
-        for (int round = 0; round < options_.rounds; ++round) {
-            tell("library", (round + 1.0) / (options_.rounds + 1.0));
-            const std::vector<std::int32_t> missed = unreached();
-            if (missed.empty()) {
-                break;
-            }
-            seeds.clear();
-            for (int i = 0; i < options_.aimed_candidates; ++i) {
-                const auto draw = static_cast<std::uint64_t>(i) << 8U;
-                seeds.push_back(missed[random_bits(stream(Seeds),
-                                                   draw + 1 + static_cast<std::uint64_t>(round)) %
-                                       missed.size()]);
-            }
-            try_candidates(seeds);
-        }
-        for (int round = 0; round < kScarceRounds; ++round) {
-            grow_scarce_ways();
-        }
-        tell("library", 1.0);
-    }
-
-    // Ways between nodes that few courses take although many lie there: mostly those that can
-    // hardly be wound in that direction. One continuous fibre needs them, so further candidates are
-    // drawn near them.
-    void grow_scarce_ways() {
-        std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> ways;
-        std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> windable;
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            for (const bool backward : {false, true}) {
-                const std::pair way{departure_node(start_of(members_[i], backward)),
-                                    arrival_node(end_of(members_[i], backward))};
-                ways[way].push_back(i);
-                if (backward ? members_[i].windable_backward : members_[i].windable_forward) {
-                    windable[way].push_back(i);
-                }
-            }
-        }
-        // Near those that can be wound, once there are any.
-        std::vector<std::size_t> near;
-        for (const auto& [way, lying] : ways) {
-            const auto& wound = windable[way];
-            if (wound.size() < kScarce && lying.size() >= kEstablished) {
-                const auto& source = wound.empty() ? lying : wound;
-                for (std::size_t i = 0; i < kShare; ++i) {
-                    near.push_back(source[i % source.size()]);
-                }
-            }
-        }
-        std::vector<Candidate> candidates;
-        for (int i = 0; !near.empty() && i < options_.scarce_candidates / kScarceRounds; ++i) {
-            const std::uint64_t draw = draws_++;
-            candidates.push_back(candidate_near(
-                members_[near[random_bits(stream(Seeds), ~draw) % near.size()]], draw));
-        }
-        judge_candidates(candidates);
-    }
-
-    // A candidate through a station of a member, turned a little, with the same or another
-    // steering.
-    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) const {
-        const SurfacePath path = trace_both_ways(rules_, member.candidate);
-        const auto pick = static_cast<std::size_t>(random_unit(stream(Sampling), draw) *
-                                                   static_cast<double>(path.size()));
-        const PathPoint& station = path[pick];
-        const double turn = (2.0 * random_unit(stream(Angles), draw) - 1.0) * kNearTurn_rad;
-        Candidate candidate{station.at, direction_angle(station.normal, station.tangent) + turn,
-                            member.candidate.slip_ratio};
-        const auto steering = random_bits(stream(Steerings), draw) % (2 * kSteering.size());
-        if (steering < kSteering.size()) {
-            candidate.slip_ratio = kSteering[steering] * options_.tow.friction;
-        }
-        return candidate;
-    }
-
-    [[nodiscard]] std::vector<std::int32_t> unreached() const {
-        std::vector<std::int32_t> missed;
-        for (std::size_t i = 0; i < reached_.size(); ++i) {
-            if (reached_[i] == 0) {
-                missed.push_back(static_cast<std::int32_t>(i));
-            }
-        }
-        return missed;
     }
 
     [[nodiscard]] std::string commonest_refusal() const {
@@ -268,6 +127,14 @@ private:
         const auto most = std::max_element(refusals.begin() + 1, refusals.end());
         return std::to_string(*most) + " of " + std::to_string(plan_.effort.candidates) +
                " candidates: " + name_of(static_cast<Refusal>(most - refusals.begin()));
+    }
+
+    // "123 of 456: the head would come too near"
+    [[nodiscard]] std::string commonest_rejection() const {
+        const auto& rejections = plan_.effort.rejections;
+        const auto most = std::max_element(rejections.begin() + 1, rejections.end());
+        return std::to_string(*most) + " of " + std::to_string(members_.size()) + ": " +
+               name_of(static_cast<Rejection>(most - rejections.begin()));
     }
 
     // The finished course of a member, wound in one direction, with its measured slip.
@@ -288,8 +155,10 @@ private:
         return piece;
     }
 
-    // Checks the slip of a member as measured and asks the machine; direction by direction.
-    Verdict verify(Member& member) const {
+    // Checks the slip of a member as measured and asks the machine; direction by direction. None
+    // when it can be wound at least one way, else what the last direction failed for.
+    Rejection verify(Member& member) const {
+        Rejection rejection = Rejection::None;
         for (const bool backward : {false, true}) {
             bool& windable = backward ? member.windable_backward : member.windable_forward;
             if (!windable) {
@@ -298,12 +167,24 @@ private:
             Piece piece = course_of(member, backward);
             thin_out(piece, kStation_mm);
             if (piece.worst_slip > options_.tow.friction) {
-                return Verdict::Rejected;
+                rejection = Rejection::Slip;
+            } else if (options_.accept) {
+                rejection = options_.accept(piece);
+            } else {
+                rejection = Rejection::None;
             }
-            windable = !options_.accept || options_.accept(piece);
+            windable = rejection == Rejection::None;
         }
-        return member.windable_forward || member.windable_backward ? Verdict::Accepted
-                                                                   : Verdict::Rejected;
+        return member.windable_forward || member.windable_backward ? Rejection::None : rejection;
+    }
+
+    void reject(std::size_t member, Rejection reason) {
+        verdict_[member] = Verdict::Rejected;
+        rejection_[member] = reason;
+        members_[member].windable_forward = false;
+        members_[member].windable_backward = false;
+        ++plan_.effort.rejections[static_cast<std::size_t>(reason)];
+        plan_.effort.rejected_courses += reason == Rejection::Apart ? 0 : 1;
     }
 
     // Verifies what is chosen and not yet known; false when any of it was rejected.
@@ -320,17 +201,16 @@ private:
 
     // \pre every member is listed once; false when any was rejected
     bool verify_all(const std::vector<std::int32_t>& unknown) {
+        std::vector<Rejection> found(unknown.size());
         parallel_for(unknown.size(), 1, [&](std::size_t begin, std::size_t) {
-            const std::int32_t i = unknown[begin];
-            verdict_[at(i)] = verify(members_[at(i)]);
+            found[begin] = verify(members_[at(unknown[begin])]);
         });
         bool all = true;
-        for (const std::int32_t i : unknown) {
-            if (verdict_[at(i)] == Verdict::Rejected) {
+        for (std::size_t k = 0; k < unknown.size(); ++k) {
+            verdict_[at(unknown[k])] = Verdict::Accepted;
+            if (found[k] != Rejection::None) {
+                reject(at(unknown[k]), found[k]);
                 all = false;
-                members_[at(i)].windable_forward = false;
-                members_[at(i)].windable_backward = false;
-                ++plan_.effort.rejected_courses;
             }
         }
         return all;
@@ -339,22 +219,10 @@ private:
     // Verifies the members of hard ways, where few of those that lie there can be wound: the one
     // fibre depends on them, so it must be known early which the machine accepts.
     void verify_hard_ways() {
-        std::map<std::pair<std::size_t, std::size_t>, std::vector<std::int32_t>> windable;
-        std::map<std::pair<std::size_t, std::size_t>, std::size_t> lying;
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            for (const bool backward : {false, true}) {
-                const std::pair way{departure_node(start_of(members_[i], backward)),
-                                    arrival_node(end_of(members_[i], backward))};
-                ++lying[way];
-                if (backward ? members_[i].windable_backward : members_[i].windable_forward) {
-                    windable[way].push_back(static_cast<std::int32_t>(i));
-                }
-            }
-        }
         std::vector<std::int32_t> hard;
-        for (const auto& [way, members] : windable) {
-            if (members.size() * kHardRatio < lying[way]) {
-                hard.insert(hard.end(), members.begin(), members.end());
+        for (const auto& [nodes, way] : ways_between_nodes(members_)) {
+            if (way.windable.size() * kHardRatio < way.lying.size()) {
+                hard.insert(hard.end(), way.windable.begin(), way.windable.end());
             }
         }
         std::sort(hard.begin(), hard.end());
@@ -367,11 +235,19 @@ private:
         for (int round = 0; round <= kMaxReplacements; ++round) {
             tell("choose", static_cast<double>(round) / kMaxReplacements);
             for (std::size_t i = 0; i < members_.size(); ++i) {
-                const bool known_only = round == kMaxReplacements;
-                allowed[i] = static_cast<char>(verdict_[i] == Verdict::Accepted ||
-                                               (verdict_[i] == Verdict::Unknown && !known_only));
+                allowed[i] = static_cast<char>(
+                    verdict_[i] == Verdict::Accepted ||
+                    (verdict_[i] == Verdict::Unknown && round < kMaxReplacements));
             }
-            selection_ = select_courses(members_, allowed, samples_.size(), options_.select);
+            exhausted_ = round == kMaxReplacements;
+            // What was verified stays: the next round only fills the holes that rejections left.
+            std::vector<std::int32_t> kept;
+            for (const std::int32_t i : selection_.chosen) {
+                if (allowed[at(i)] != 0 && std::find(kept.begin(), kept.end(), i) == kept.end()) {
+                    kept.push_back(i);
+                }
+            }
+            selection_ = select_courses(members_, allowed, samples_.size(), options_.select, kept);
             if (entry_ >= 0 && allowed[at(entry_)] != 0 &&
                 std::find(selection_.chosen.begin(), selection_.chosen.end(), entry_) ==
                     selection_.chosen.end()) {
@@ -390,6 +266,9 @@ private:
             const bool narrower = fibres_in(order_).size() > 1 && narrow_to_main_fibre();
             if (settled && !narrower) {
                 break;
+            }
+            if (narrower) {
+                selection_.chosen.clear();  // the choice starts anew among what is left
             }
         }
         order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
@@ -417,7 +296,9 @@ private:
                 windable = windable && held;
             }
             if (!member.windable_forward && !member.windable_backward) {
-                verdict_[i] = Verdict::Rejected;
+                if (verdict_[i] != Verdict::Rejected) {
+                    reject(i, Rejection::Apart);
+                }
             }
         }
         return narrower;
@@ -463,10 +344,7 @@ private:
         for (const std::size_t piece : refused) {
             const std::size_t course = piece / 2;  // courses and turns alternate
             const std::int32_t member = order_[course].course.member;
-            verdict_[at(member)] = Verdict::Rejected;
-            members_[at(member)].windable_forward = false;
-            members_[at(member)].windable_backward = false;
-            ++plan_.effort.rejected_courses;
+            reject(at(member), Rejection::InItsPlace);
         }
         return !refused.empty();
     }
@@ -529,48 +407,23 @@ private:
     void measure() {
         plan_.coverage = measure_coverage(selection_.layers);
         plan_.coverage.reachable =
-            static_cast<double>(std::count(reached_.begin(), reached_.end(), 1)) /
+            static_cast<double>(std::count(library_.reached.begin(), library_.reached.end(), 1)) /
             static_cast<double>(samples_.size());
         describe_uncovered();
         plan_.face_layers = layers_per_face(mandrel_.surface, samples_, selection_.layers);
         plan_.face_angle_rad = angle_per_face(mandrel_.surface, plan_.pieces);
     }
 
-    [[nodiscard]] std::string reason_of(std::size_t sample) const {
-        if (reached_[sample] != 0 && within_reach_[sample] == 0) {
-            return "the courses that pass here cannot be joined to the one fibre, or the machine "
-                   "refuses "
-                   "them";
-        }
-        if (reached_[sample] != 0) {
-            return "a course for it would lay more fibre over covered wall than it gains";
-        }
-        if (closest_miss_[sample] == Refusal::None) {
-            return "no candidate was tried here";
-        }
-        return name_of(closest_miss_[sample]);
-    }
-
     void describe_uncovered() {
-        within_reach_.assign(samples_.size(), 0);
-        for (const Member& member : members_) {
-            for (const std::int32_t sample : member.footprint) {
-                if (member.windable_forward || member.windable_backward) {
-                    within_reach_[at(sample)] = 1;
-                }
-            }
-        }
         selection_.layers.resize(samples_.size(), 0);
-        std::map<std::pair<std::int32_t, std::string>, double> area;
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
-            if (selection_.layers[i] == 0) {
-                const std::int32_t region = mandrel_.surface.region[at(samples_.at[i].face)];
-                area[{region, reason_of(i)}] += samples_.area_mm2;
+        for (std::size_t i = 0; exhausted_ && i < verdict_.size(); ++i) {
+            if (verdict_[i] == Verdict::Unknown) {
+                rejection_[i] = Rejection::Unchecked;
+                ++plan_.effort.rejections[static_cast<std::size_t>(Rejection::Unchecked)];
             }
         }
-        for (const auto& [key, mm2] : area) {
-            plan_.uncovered.push_back({key.first, mm2, key.second});
-        }
+        plan_.uncovered =
+            uncovered_wall(mandrel_.surface, samples_, library_, rejection_, selection_.layers);
     }
 
     const Mandrel& mandrel_;
@@ -578,17 +431,16 @@ private:
     CoverageSamples samples_;
     FootprintFinder footprints_;
     CourseRules rules_;
-    std::vector<Member> members_;
+    Library library_;
+    std::vector<Member>& members_ = library_.members;
     std::vector<Verdict> verdict_;
-    std::vector<char> reached_;
-    std::vector<char> within_reach_;  // per sample: passed by a member that the one fibre can use
-    std::vector<Refusal> closest_miss_;  // per sample: the last check that a candidate there failed
+    std::vector<Rejection> rejection_;  // per member: why it was rejected
+    bool exhausted_ = false;            // the last choice took only what was verified before
     Selection selection_;
     std::vector<LaidCourse> laid_;
     std::vector<OrderedCourse> order_;
     std::int32_t entry_ =
         -1;  // the one way into the node where the fibre ends, if that has no way out
-    std::uint64_t draws_ = 0;
     Plan plan_;
 };
 

@@ -20,8 +20,8 @@ struct CoverOptions {
     int aimed_candidates = 12000;  ///< in each such round
     int scarce_candidates = 8000;  ///< tried near courses that go where few can be wound
     /// Asked of every course before it enters the plan, in the direction it would be wound: what
-    /// the machine says. Must be pure and thread-safe.
-    std::function<bool(const Piece&)> accept;
+    /// the machine says, None where it accepts. Must be pure and thread-safe.
+    std::function<Rejection(const Piece&)> accept;
     /// Asked of the whole plan: which of its pieces the machine cannot wind in their place. Those
     /// are replaced and the plan is made again, a few times.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;

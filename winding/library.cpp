@@ -77,6 +77,8 @@ const char* name_of(Refusal refusal) {
             return "too steep at a rim to be turned by friction on the extension";
         case Refusal::Bridging:
             return "bridges more than the tolerance";
+        case Refusal::Slips:
+            return "would slip: its measured slip exceeds the friction";
         case Refusal::NotWindable:
             return "free fibre or eye would hit the mandrel both ways";
     }
@@ -120,6 +122,10 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
     const TautString string = taut_string(path);
     if (string.worst_gap_mm > rules.tow.bridging_tolerance_mm) {
         return Refusal::Bridging;
+    }
+    const SlipOptions limit{.friction = rules.tow.friction};
+    if (measure_slip(rules.mandrel.surface, path, string, limit).worst > rules.tow.friction) {
+        return Refusal::Slips;
     }
     course.windable_forward = windable(rules, path, string);
     const SurfacePath back = reversed(path);

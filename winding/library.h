@@ -24,8 +24,8 @@ struct Tow {
 };
 
 /// Why a candidate is not admissible, in the order of the checks.
-enum class Refusal : std::uint8_t { None, NoRim, NotTurnable, Bridging, NotWindable };
-inline constexpr std::size_t kRefusals = 5;
+enum class Refusal : std::uint8_t { None, NoRim, NotTurnable, Bridging, Slips, NotWindable };
+inline constexpr std::size_t kRefusals = 6;
 
 /// Words for a report: "reaches no rim", ...
 [[nodiscard]] const char* name_of(Refusal refusal);

@@ -2,6 +2,30 @@
 
 namespace meshwind {
 
+const char* name_of(Rejection rejection) {
+    switch (rejection) {
+        case Rejection::None:
+            return "accepted";
+        case Rejection::Slip:
+            return "the slip measured on the finished course exceeds the friction";
+        case Rejection::FreeLength:
+            return "no free length of the fibre is clear all along the course";
+        case Rejection::AxisTravel:
+            return "an axis of the machine would pass its end";
+        case Rejection::FibreHit:
+            return "the free fibre would hit something";
+        case Rejection::HeadHit:
+            return "the head would come too near";
+        case Rejection::InItsPlace:
+            return "the machine refuses the course or a turn next to it";
+        case Rejection::Apart:
+            return "one fibre cannot join the course to the others";
+        case Rejection::Unchecked:
+            return "the search ended before the course was checked";
+    }
+    return "";
+}
+
 void thin_out(Piece& piece, double step_mm) {
     std::vector<std::size_t> kept{0};
     const std::size_t last = piece.path.size() - 1;

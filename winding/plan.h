@@ -29,6 +29,23 @@ struct Piece {
 /// Keeps stations at least `step_mm` apart, both ends, and both sides of a feature edge.
 void thin_out(Piece& piece, double step_mm);
 
+/// Why a course that the library admits is not laid after all, or not in one direction.
+enum class Rejection : std::uint8_t {
+    None,
+    Slip,
+    FreeLength,
+    AxisTravel,
+    FibreHit,
+    HeadHit,
+    InItsPlace,  ///< the machine refuses it, or a turn next to it, between its neighbours
+    Apart,       ///< no single fibre joins it to the others
+    Unchecked,   ///< the rounds of the search ended before it was checked
+};
+inline constexpr std::size_t kRejections = 9;
+
+/// Words for a report: "the free fibre hits something", ...
+[[nodiscard]] const char* name_of(Rejection rejection);
+
 /// How the wall is covered, measured on the coverage samples.
 struct Coverage {
     double fraction = 0.0;   ///< share of the wall under at least one layer
@@ -50,7 +67,8 @@ struct PlanEffort {
     std::int64_t candidates = 0;
     std::array<std::int64_t, kRefusals> refusals{};
     int courses_out_of_reach = 0;  ///< chosen, but not to be joined to the one fibre; left out
-    int rejected_courses = 0;      ///< chosen, then refused by the measured slip or by the machine
+    int rejected_courses = 0;      ///< refused by the measured slip or by the machine
+    std::array<std::int64_t, kRejections> rejections{};  ///< members of the library, by reason
 };
 
 struct Plan {

@@ -19,4 +19,12 @@ namespace meshwind {
     return static_cast<double>(random_bits(seed, index) >> 11U) * 0x1.0p-53;
 }
 
+/// Streams of random numbers of one seed, so that one draw never depends on another.
+enum class Stream : std::uint64_t { Sampling = 1, Seeds = 2, Angles = 3, Steerings = 4 };
+
+/// The seed of a stream.
+inline std::uint64_t seed_of(Stream stream, std::uint64_t seed) {
+    return seed * 16 + static_cast<std::uint64_t>(stream);
+}
+
 }  // namespace meshwind

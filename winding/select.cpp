@@ -24,7 +24,11 @@ public:
         selection_.layers.assign(samples, 0);
     }
 
-    Selection run() {
+    Selection run(std::span<const std::int32_t> kept) {
+        for (const std::int32_t i : kept) {
+            lay(i, 1);
+            selection_.chosen.push_back(i);
+        }
         greedy();
         drop_superfluous();
         return std::move(selection_);
@@ -117,8 +121,9 @@ private:
 }  // namespace
 
 Selection select_courses(std::span<const Member> members, std::span<const char> allowed,
-                         std::size_t samples, const SelectOptions& options) {
-    return Selector(members, allowed, samples, options).run();
+                         std::size_t samples, const SelectOptions& options,
+                         std::span<const std::int32_t> kept) {
+    return Selector(members, allowed, samples, options).run(kept);
 }
 
 }  // namespace meshwind

@@ -28,9 +28,11 @@ struct Selection {
 
 /// Lazy greedy: always the member with the best (new area - weighted overlap) per fibre; then drops
 /// what has become superfluous. \param allowed per member: false keeps it out
+/// \param kept members to begin with, all allowed and each once
 /// Equal gains go to the lower index, so the answer depends on the library alone.
 [[nodiscard]] Selection select_courses(std::span<const Member> members,
                                        std::span<const char> allowed, std::size_t samples,
-                                       const SelectOptions& options = {});
+                                       const SelectOptions& options = {},
+                                       std::span<const std::int32_t> kept = {});
 
 }  // namespace meshwind

@@ -1,5 +1,7 @@
 #include "winding/cover.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -146,10 +148,64 @@ TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
     options.tow.width_mm = 12.0;
     options.candidates = 200;
     options.rounds = 0;
-    options.accept = [](const Piece&) { return false; };
+    options.accept = [](const Piece&) { return Rejection::AxisTravel; };
     const Plan plan = plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0), options);
-    EXPECT_FALSE(plan.failure.empty());
+    const std::string reason = name_of(Rejection::AxisTravel);
+    EXPECT_NE(plan.failure.find(reason), std::string::npos) << plan.failure;
+    EXPECT_EQ(plan.effort.rejections[static_cast<std::size_t>(Rejection::AxisTravel)],
+              plan.effort.rejected_courses);
+    EXPECT_GT(plan.effort.rejected_courses, 0);
     EXPECT_TRUE(plan.pieces.empty());
+    double bare_mm2 = 0.0;
+    for (const Uncovered& u : plan.uncovered) {
+        bare_mm2 += u.reason.find(reason) == std::string::npos ? 0.0 : u.area_mm2;
+    }
+    EXPECT_GT(bare_mm2, 0.0);
+}
+
+// A cylinder that goes over into a cone at a sharp convex edge and back at a sharp concave one:
+// courses that run over the edges are geodesics there and hold.
+TEST(PlanCover, CoversAReducerWithSharpEdges) {
+    constexpr int kAround = 60;
+    constexpr std::array<std::array<double, 2>, 4> kProfile{
+        {{22.0, 0.0}, {22.0, 60.0}, {14.0, 68.0}, {14.0, 120.0}}};
+    TriangleSoup soup;
+    std::vector<std::array<double, 2>> rings;
+    for (std::size_t k = 0; k + 1 < kProfile.size(); ++k) {
+        const auto [r0, z0] = kProfile[k];
+        const auto [r1, z1] = kProfile[k + 1];
+        const int steps = static_cast<int>(std::ceil(std::hypot(r1 - r0, z1 - z0) / 2.5));
+        for (int i = 0; i < steps; ++i) {
+            const double share = static_cast<double>(i) / steps;
+            rings.push_back({r0 + share * (r1 - r0), z0 + share * (z1 - z0)});
+        }
+    }
+    rings.push_back(kProfile.back());
+    for (const auto& [radius, z] : rings) {
+        for (int j = 0; j < kAround; ++j) {
+            const double angle = 2.0 * kPi * j / kAround;
+            soup.points_mm.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+        }
+    }
+    for (std::int32_t i = 0; i + 1 < static_cast<std::int32_t>(rings.size()); ++i) {
+        for (std::int32_t j = 0; j < kAround; ++j) {
+            const std::int32_t a = i * kAround + j;
+            const std::int32_t b = i * kAround + (j + 1) % kAround;
+            soup.faces.push_back({a, b, b + kAround});
+            soup.faces.push_back({a, b + kAround, a + kAround});
+        }
+    }
+    const Mandrel mandrel = build_mandrel(soup, "reducer", {.unit_mm = 1.0});
+    ASSERT_EQ(mandrel.rims.size(), 2U);
+    const Plan plan = cover(mandrel, 3000);
+    ASSERT_EQ(plan.failure, "");
+    EXPECT_EQ(plan.fibres, 1);
+    EXPECT_GT(plan.coverage.fraction, 0.9);
+    EXPECT_TRUE(std::any_of(plan.pieces.begin(), plan.pieces.end(), [](const Piece& piece) {
+        return piece.kind == PieceKind::Course && piece.start_rim != piece.end_rim;
+    }));
+    expect_continuous(plan);
+    expect_books_to_balance(mandrel, plan);
 }
 
 }  // namespace

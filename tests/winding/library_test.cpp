@@ -124,7 +124,12 @@ void expect_members_keep_the_rules(const Scene& scene, int candidates, std::size
         EXPECT_NEAR(path.back().s_mm, member.length_mm, 1e-9);
         expect_ends_at_rims(scene, member, path);
         expect_steered_within(member.candidate, path);
-        EXPECT_LE(taut_string(path).worst_gap_mm, scene.rules.tow.bridging_tolerance_mm);
+        const TautString string = taut_string(path);
+        EXPECT_LE(string.worst_gap_mm, scene.rules.tow.bridging_tolerance_mm);
+        EXPECT_LE(measure_slip(scene.mandrel.surface, path, string,
+                               {.friction = scene.rules.tow.friction})
+                      .worst,
+                  scene.rules.tow.friction);
         EXPECT_EQ(scene.footprints.footprint(path, scratch), member.footprint);
         EXPECT_TRUE(member.windable_forward || member.windable_backward);
         if (member.windable_forward) {

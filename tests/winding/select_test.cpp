@@ -60,6 +60,17 @@ TEST(SelectCourses, KeepsToWhatIsAllowed) {
     EXPECT_TRUE(chosen({}, {}, 10).empty());
 }
 
+// From nothing the two halves are chosen; the thirds that are kept need only the last one.
+TEST(SelectCourses, GoesOnFromWhatIsKept) {
+    const std::vector<Member> members{covering(0, 5), covering(6, 11), covering(0, 3),
+                                      covering(4, 7), covering(8, 11)};
+    EXPECT_EQ(chosen(members, {1, 1, 1, 1, 1}, 12), (Indices{0, 1}));
+    const Selection selection =
+        select_courses(members, std::vector<char>(5, 1), 12, {}, Indices{2, 3});
+    EXPECT_EQ(selection.chosen, (Indices{2, 3, 4}));
+    EXPECT_EQ(selection.layers, std::vector<std::int32_t>(12, 1));
+}
+
 TEST(SelectCourses, CoversAsOftenAsAsked) {
     const std::vector<Member> members{covering(0, 9), covering(0, 4), covering(5, 9),
                                       covering(0, 9)};

@@ -1,0 +1,40 @@
+/// Growing the library: candidates over the whole wall, then where they are still needed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "winding/cover.h"
+#include "winding/samples.h"
+
+namespace meshwind {
+
+/// The members with what became of every candidate.
+struct Library {
+    std::vector<Member> members;
+    std::vector<char> reached;  ///< per sample: 1 where a member passes
+    std::vector<Refusal>
+        closest_miss;  ///< per sample: the last check that a candidate there failed
+    std::int64_t candidates = 0;
+    std::array<std::int64_t, kRefusals> refusals{};
+};
+
+/// The courses that lead from one node (see balance.h) to another, each member at most once.
+struct Way {
+    std::vector<std::int32_t> lying;     ///< indices of members, windable in this direction or not
+    std::vector<std::int32_t> windable;  ///< those that can be wound in this direction
+};
+using Ways = std::map<std::pair<std::size_t, std::size_t>, Way>;  ///< by (departure, arrival)
+
+[[nodiscard]] Ways ways_between_nodes(std::span<const Member> members);
+
+/// Tries candidates over the whole wall, then rounds through samples that no member reaches, then
+/// near members of scarce ways between nodes. The same for any number of threads.
+[[nodiscard]] Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
+                                   const CoverOptions& options);
+
+}  // namespace meshwind
