@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geodesic/surface_path.h"
+#include "geodesic/trace.h"
 
 namespace meshwind {
 
@@ -25,22 +25,27 @@ struct TautString {
 struct SlipMeasure {
     std::vector<double> slip;  ///< per station, |kg| / kn; 0 where the fibre is straight or lifted
     std::vector<double> kg_per_mm;  ///< per station, measured
+    std::vector<double> error;  ///< per station, stated error of the ratio; the friction where the
+                                ///< ratio has no meaning, infinite where nothing was measured
     double worst = 0.0;
     std::size_t worst_station = 0;
 };
 
 struct SlipOptions {
-    double window_mm = 0.0;  ///< half length of the chords; 0: three mean edges of the mesh
+    double window_mm = 0.0;  ///< longest half length of the chords; 0: by the rule below
     double friction = 0.2;   ///< where kn is too small for a ratio, the limit that must hold
+    TraceMethod method = TraceMethod::Walk;  ///< by which the path was traced: its scatter
 };
 
 /// kg from the turn between the chords of +-window about each station, seen along the smooth
 /// normal; kn from the string's height over the same three points. The path is unfolded at feature
-/// edges first, and the window is shorter where the path turns by more than 0.5 rad along it. Where
-/// kn is so small that a string with it sags less than the position noise over the window, a ratio
-/// has no meaning: there the station counts as straight if its |kg| is within the same noise, and
-/// with the ratio of |kg| to the noise curvature otherwise. Accuracy: second order in edge length
-/// (tests/geodesic/measure_test.cpp).
+/// edges first. The window is as long as it takes for the sideways scatter of the path's positions
+/// to stay below 5 % of what the friction can hold, so it grows with the radius; it is at least one
+/// mean edge and shorter where the path turns by more than 0.5 rad along it. Where kn is so small
+/// that a string with it sags less than that scatter over the window, a ratio has no meaning: there
+/// the station counts as straight if its |kg| is within the scatter, and with the ratio of |kg| to
+/// the scatter's curvature otherwise. Nearer to an end than half an edge nothing is measured.
+/// Accuracy: tests/geodesic/measure_test.cpp.
 [[nodiscard]] SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path,
                                        const TautString& string, const SlipOptions& options = {});
 

@@ -17,8 +17,8 @@ namespace meshwind {
 namespace {
 
 constexpr std::array kMethods{
-    PathMethod{"walk", [](TraceOptions& /*options*/) {}},
-    PathMethod{"patches", [](TraceOptions& options) { options.method = TraceMethod::Patches; }},
+    PathMethod{"walk", TraceMethod::Walk},
+    PathMethod{"patches", TraceMethod::Patches},
 };
 
 // Fibre on one mesh: its exact points, every 0.1 mm, still fit into memory.
@@ -94,8 +94,8 @@ public:
         for_each_case(options_, [&](const PathMethod& method, std::size_t s) {
             std::vector<TraceResult> traced(paths_.starts.size());
             const auto trace_one = [&](std::size_t i) {
-                TraceOptions trace_options{.max_length_mm = options_.length_mm};
-                method.choose(trace_options);
+                const TraceOptions trace_options{.max_length_mm = options_.length_mm,
+                                                 .method = method.method};
                 const CurveState& start = paths_.starts[i];
                 const double slip_ratio = options_.slip_ratios[s];
                 traced[i] = trace(surface, nearest_point(query, start.position_mm), start.tangent,
@@ -106,7 +106,7 @@ public:
                     trace_one(i);
                 }
             });
-            outcome.errors.push_back(errors_of(surface, traced, s));
+            outcome.errors.push_back(errors_of(surface, traced, s, method.method));
             if (options_.timing) {
                 outcome.timing.push_back(timed(traced, trace_one));
                 outcome.timing.back().method = method.name;
@@ -120,10 +120,11 @@ public:
 
 private:
     [[nodiscard]] PathErrors errors_of(const Surface& surface,
-                                       const std::vector<TraceResult>& traced,
-                                       std::size_t s) const {
+                                       const std::vector<TraceResult>& traced, std::size_t s,
+                                       TraceMethod method) const {
         const PathErrorOptions measure{.slip_ratio = options_.slip_ratios[s],
                                        .free_length_mm = options_.free_length_mm,
+                                       .method = method,
                                        .pressed_kn_per_mm = pressed_kn_per_mm(traced)};
         std::vector<PathErrors> each(traced.size());
         parallel_for(traced.size(), 1, [&](std::size_t begin, std::size_t end) {

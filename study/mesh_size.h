@@ -16,7 +16,7 @@ namespace meshwind {
 /// A way to trace, as the study names it.
 struct PathMethod {
     const char* name;
-    void (*choose)(TraceOptions& options);
+    TraceMethod method;
 };
 
 /// Every way that geodesic/trace.h offers.

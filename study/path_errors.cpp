@@ -17,9 +17,9 @@ constexpr double kPressedShare = 0.25;
 // In free lengths: an eye nearer to the spindle axis has a turn that means little.
 constexpr double kSpindleShare = 0.1;
 
-// Half length of the slip measurement in mean edges, as measure_slip takes it by itself; stations
-// nearer to an end have no chords to measure with.
-constexpr double kSlipWindowEdges = 3.0;
+// A slip ratio counts where its stated error is no larger: near an end, and where hardly anything
+// presses the fibre on, there is none.
+constexpr double kTrustedSlip = 0.05;
 
 // In mean edges: landing points nearer to each other (a corner just cut, the path's end) are no
 // three points to take a direction from.
@@ -31,13 +31,11 @@ Vector3d turned_between(const Vector3d& vector, const Vector3d& from, const Vect
 
 void add_slip(const Surface& surface, const SurfacePath& path, const PathErrorOptions& options,
               ErrorSum& sum) {
-    const double window_mm = kSlipWindowEdges * surface.mean_edge_mm;
     const TautString string = taut_string(path);
-    const SlipMeasure measured = measure_slip(surface, path, string, {.window_mm = window_mm});
+    const SlipMeasure measured = measure_slip(surface, path, string, {.method = options.method});
     for (std::size_t i = 0; i < path.size(); ++i) {
-        const bool inside =
-            path[i].s_mm >= window_mm && path[i].s_mm <= path.back().s_mm - window_mm;
-        if (inside && string.gap_mm[i] == 0.0 && path[i].kn_per_mm >= options.pressed_kn_per_mm) {
+        if (measured.error[i] <= kTrustedSlip && string.gap_mm[i] == 0.0 &&
+            path[i].kn_per_mm >= options.pressed_kn_per_mm) {
             sum.add(measured.slip[i] - std::abs(options.slip_ratio));
         }
     }

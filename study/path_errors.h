@@ -36,7 +36,8 @@ struct PathErrors {
 struct PathErrorOptions {
     double slip_ratio = 0.0;  ///< steered with
     double free_length_mm = 200.0;
-    double pressed_kn_per_mm = 0.0;  ///< slip is measured from this normal curvature on
+    TraceMethod method = TraceMethod::Walk;  ///< traced with
+    double pressed_kn_per_mm = 0.0;          ///< slip is measured from this normal curvature on
 };
 
 /// A quarter of the largest normal curvature on the paths.

@@ -146,8 +146,9 @@ private:
             piece.path = reversed(piece.path);
         }
         piece.string = taut_string(piece.path);
-        SlipMeasure slip = measure_slip(mandrel_.surface, piece.path, piece.string,
-                                        {.friction = options_.tow.friction});
+        SlipMeasure slip =
+            measure_slip(mandrel_.surface, piece.path, piece.string,
+                         {.friction = options_.tow.friction, .method = TraceMethod::Patches});
         piece.slip = std::move(slip.slip);
         piece.worst_slip = slip.worst;
         piece.start_rim = start_of(member, backward).rim;

@@ -26,10 +26,12 @@ Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
 
 // Half a candidate: from its seed ahead, or behind (`side` -1) where the same curve is steered to
 // the other side of travel.
-TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, double side) {
+TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, double side,
+                       TraceMethod method) {
     const Surface& surface = rules.mandrel.surface;
     return trace(surface, candidate.seed, side * direction_of(surface, candidate),
-                 {side * candidate.slip_ratio, 0.0}, {.max_length_mm = rules.max_half_length_mm});
+                 {side * candidate.slip_ratio, 0.0},
+                 {.max_length_mm = rules.max_half_length_mm, .method = method});
 }
 
 SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {
@@ -42,6 +44,34 @@ SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {
         path.push_back(point);
     }
     return path;
+}
+
+// A candidate's path from rim to rim and the string over it.
+struct Run {
+    SurfacePath path;
+    TautString string;
+};
+
+// Traces a member's candidate, notes where it crosses the rims, and judges what the path alone
+// tells.
+Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run& run) {
+    std::array<TraceResult, 2> half;
+    for (std::size_t e = 0; e < 2; ++e) {  // judged one by one: most candidates fail at one end
+        half[e] = trace_half(rules, course.candidate, e == 0 ? -1.0 : 1.0, method);
+        if (half[e].stop != TraceStop::Rim || half[e].rim < 0) {
+            return Refusal::NoRim;
+        }
+        const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(half[e].rim)];
+        const PathPoint& last = half[e].path.back();
+        course.end[e] = crossing_at(rim, last.position_mm, last.tangent);
+        if (!can_turn(rim, course.end[e], rules.turn)) {
+            return Refusal::NotTurnable;
+        }
+    }
+    run.path = join_halves(half[0].path, half[1].path);
+    run.string = taut_string(run.path);
+    return run.string.worst_gap_mm > rules.tow.bridging_tolerance_mm ? Refusal::Bridging
+                                                                     : Refusal::None;
 }
 
 // True when a free length can be found at every station tried, and carried from each to the next.
@@ -96,44 +126,35 @@ double direction_angle(const Vector3d& normal, const Vector3d& tangent) {
 }
 
 SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate) {
-    return join_halves(trace_half(rules, candidate, -1.0).path,
-                       trace_half(rules, candidate, 1.0).path);
+    return join_halves(trace_half(rules, candidate, -1.0, TraceMethod::Patches).path,
+                       trace_half(rules, candidate, 1.0, TraceMethod::Patches).path);
 }
 
 Refusal judge(const CourseRules& rules, const Candidate& candidate,
               FootprintFinder::Scratch& scratch, Member& member) {
     Member course;
     course.candidate = candidate;
-    std::array<TraceResult, 2> half;
-    for (std::size_t e = 0; e < 2; ++e) {  // judged one by one: most candidates fail at one end
-        half[e] = trace_half(rules, candidate, e == 0 ? -1.0 : 1.0);
-        if (half[e].stop != TraceStop::Rim || half[e].rim < 0) {
-            return Refusal::NoRim;
-        }
-        const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(half[e].rim)];
-        const PathPoint& last = half[e].path.back();
-        course.end[e] = crossing_at(rim, last.position_mm, last.tangent);
-        if (!can_turn(rim, course.end[e], rules.turn)) {
-            return Refusal::NotTurnable;
+    Run run;
+    // The walk tells most of what is not admissible, the patches then what is.
+    for (const TraceMethod method : {TraceMethod::Walk, TraceMethod::Patches}) {
+        const Refusal refusal = follow(rules, method, course, run);
+        if (refusal != Refusal::None) {
+            return refusal;
         }
     }
-    const SurfacePath path = join_halves(half[0].path, half[1].path);
-    course.length_mm = path.back().s_mm;
-    const TautString string = taut_string(path);
-    if (string.worst_gap_mm > rules.tow.bridging_tolerance_mm) {
-        return Refusal::Bridging;
-    }
-    const SlipOptions limit{.friction = rules.tow.friction};
-    if (measure_slip(rules.mandrel.surface, path, string, limit).worst > rules.tow.friction) {
+    course.length_mm = run.path.back().s_mm;
+    const SlipOptions limit{.friction = rules.tow.friction, .method = TraceMethod::Patches};
+    if (measure_slip(rules.mandrel.surface, run.path, run.string, limit).worst >
+        rules.tow.friction) {
         return Refusal::Slips;
     }
-    course.windable_forward = windable(rules, path, string);
-    const SurfacePath back = reversed(path);
+    course.windable_forward = windable(rules, run.path, run.string);
+    const SurfacePath back = reversed(run.path);
     course.windable_backward = windable(rules, back, taut_string(back));
     if (!course.windable_forward && !course.windable_backward) {
         return Refusal::NotWindable;
     }
-    course.footprint = rules.footprints.footprint(path, scratch);
+    course.footprint = rules.footprints.footprint(run.path, scratch);
     member = std::move(course);
     return Refusal::None;
 }
