@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -160,6 +161,15 @@ double Patch::curvature_per_mm() const {
             std::max(largest, std::sqrt(4.0 * c[2] * c[2] + 2.0 * c[3] * c[3] + 4.0 * c[4] * c[4]));
     }
     return largest;
+}
+
+double Patch::shortest_crease_mm() const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < creases_; ++i) {
+        shortest = std::min(shortest,
+                            (position_mm_[crease_[i].to] - position_mm_[crease_[i].from]).norm());
+    }
+    return shortest;
 }
 
 void Patch::add_crease(const Surface& surface, std::int32_t face, std::size_t edge) {

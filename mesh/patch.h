@@ -54,6 +54,9 @@ public:
     /// Largest curvature of the fits at the corners, 1/mm.
     [[nodiscard]] double curvature_per_mm() const;
 
+    /// Chord of the shortest feature edge to which the patch is bent; infinite where there is none.
+    [[nodiscard]] double shortest_crease_mm() const;
+
 private:
     // The facet seen from a corner's frame: place = origin + u along_u + v along_v.
     struct Corner {
