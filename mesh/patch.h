@@ -36,7 +36,8 @@ struct PatchPlace {
 /// three lifted points are averaged with the barycentric coordinates (1 - u - v, u, v) as weights.
 /// Both triangles of an edge see the same two corners there: patches meet without a gap, and with
 /// the same normal up to the error of the fits. On a feature edge, where the two sides have
-/// different polynomials, both follow the cubic between the crease's tangents at its two ends.
+/// different polynomials, both follow the cubic between the crease's tangents at its two ends, of
+/// sixth order on a circle; where that would close a corner between two creases, the chord.
 /// Accuracy against the smooth surface, for fits of degree four: position fifth order, normal
 /// fourth, curvature third in the edge length (tests/mesh/patch_test.cpp).
 class Patch {

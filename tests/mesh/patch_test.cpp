@@ -299,6 +299,7 @@ TEST(Patch, IsFiniteOnFilesAsTheyCome) {
         }
         std::printf("%s: %zu patches, highest %.3f of its longest edge, %d places turned over\n",
                     file, surface.face.size(), lift, turned);
+        EXPECT_LT(lift, 0.3) << file;  // measured 0.17 at most, on the threads of a tee
     }
 }
 
