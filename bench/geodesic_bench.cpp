@@ -106,6 +106,9 @@ struct Tracer {
 const std::array kTracers = {
     Tracer{"geodesic", {}, {.max_length_mm = kPath_mm}},
     Tracer{"steered", {0.1, 0.1}, {.max_length_mm = kPath_mm}},
+    Tracer{"patches",
+           {0.1, 0.1},
+           {.max_length_mm = kPath_mm, .method = meshwind::TraceMethod::Patches}},
 };
 
 struct Size {

@@ -155,7 +155,9 @@ private:
         state_.rate = in_parameters(place, direction);
         state_.rate /= place.along(state_.rate).norm();
         motion_ = motion_of(place, state_.rate);
-        max_step_mm_ = kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12);
+        // To a crease a patch is drawn over about its length, flat or not.
+        max_step_mm_ = std::min(kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12),
+                                patch_.shortest_crease_mm());
     }
 
     // Where the parabola that the path starts with leaves the triangle.
@@ -269,6 +271,8 @@ private:
     // False where there is no surface.
     bool move_within(const State& next, double length) {
         state_ = next;
+        state_.uv = state_.uv.cwiseMax(0.0);
+        state_.uv /= std::max(1.0, state_.uv.sum());
         length_mm_ += length;
         entry_ = kNoEdge;
         motion_ = motion_of(patch_.at(state_.uv), state_.rate);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -18,6 +19,9 @@ constexpr double kMinCreaseSine = 0.17;
 
 // Cosine of the largest angle between a patch and its facet (60 deg).
 constexpr double kMinFacing = 0.5;
+
+// Sine of a corner between two creases (3 deg) below which it is taken as closed.
+constexpr double kMinEarSine = 0.05;
 
 // Rates of the barycentric coordinates by u and v.
 constexpr std::array<double, 3> kBaryByU = {-1.0, 1.0, 0.0};
@@ -47,6 +51,46 @@ Lift lift_at(const HeightJet& jet, const Vector3d& at, const Vector3d& a, const 
             xb * b.x() + yb * b.y()};
 }
 
+// A corner of a feature edge seen from both sides.
+struct Side {
+    Vector3d normal, normal_across;
+    std::int32_t face_across;
+    std::size_t corner_across;
+};
+
+Side side_of(const Surface& surface, std::int32_t face, std::size_t edge, std::size_t corner) {
+    const std::int32_t other = surface.neighbour[at(face)][edge];
+    const auto& there = surface.face[at(other)];
+    const std::int32_t vertex = surface.face[at(face)][corner];
+    const auto across =
+        static_cast<std::size_t>(std::find(there.begin(), there.end(), vertex) - there.begin());
+    return {surface.normal[at(surface.corner[at(face)][corner])],
+            surface.normal[at(surface.corner[at(other)][across])], other, across};
+}
+
+bool is_crease(const Surface& surface, std::int32_t face, std::size_t edge) {
+    return surface.feature[at(face)][edge] != 0 && surface.neighbour[at(face)][edge] != kNoFace;
+}
+
+// Whether two creases run on into each other at a face's corner, as where a cap's triangle has two
+// edges on its rim: both along their tangent, they would close the corner.
+bool is_ear(const Surface& surface, std::int32_t face, std::size_t corner) {
+    const std::size_t before = (corner + 2) % 3;
+    if (!is_crease(surface, face, corner) || !is_crease(surface, face, before)) {
+        return false;
+    }
+    const auto& vertex = surface.face[at(face)];
+    const auto tangent = [&](std::size_t edge) {
+        const Side side = side_of(surface, face, edge, corner);
+        const Vector3d chord =
+            surface.position_mm[at(vertex[(edge + 1) % 3])] - surface.position_mm[at(vertex[edge])];
+        const Vector3d along = side.normal.cross(side.normal_across).normalized();
+        return along.dot(chord) < 0.0 ? Vector3d(-along) : along;
+    };
+    const Vector3d& normal = surface.normal[at(surface.corner[at(face)][corner])];
+    return tangent(before).cross(tangent(corner)).dot(normal) < kMinEarSine;
+}
+
 }  // namespace
 
 Patch::Patch(const Surface& surface, std::int32_t face) {
@@ -66,8 +110,7 @@ Patch::Patch(const Surface& surface, std::int32_t face) {
                                     : Vector3d(-corner.along_v);
     }
     for (std::size_t e = 0; e < 3; ++e) {
-        if (surface.feature[meshwind::at(face)][e] != 0 &&
-            surface.neighbour[meshwind::at(face)][e] != kNoFace) {
+        if (is_crease(surface, face, e)) {
             add_crease(surface, face, e);
         }
     }
@@ -120,26 +163,34 @@ double Patch::curvature_per_mm() const {
     return largest;
 }
 
+double Patch::shortest_crease_mm() const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < creases_; ++i) {
+        shortest = std::min(shortest,
+                            (position_mm_[crease_[i].to] - position_mm_[crease_[i].from]).norm());
+    }
+    return shortest;
+}
+
 void Patch::add_crease(const Surface& surface, std::int32_t face, std::size_t edge) {
     const std::size_t from = edge;
     const std::size_t to = (edge + 1) % 3;
-    const std::int32_t other = surface.neighbour[meshwind::at(face)][edge];
     const Vector3d chord = position_mm_[to] - position_mm_[from];
     const auto tangent_at = [&](std::size_t corner) {
-        const std::int32_t vertex = surface.face[meshwind::at(face)][corner];
-        const auto& there = surface.face[meshwind::at(other)];
-        const auto k =
-            static_cast<std::size_t>(std::find(there.begin(), there.end(), vertex) - there.begin());
-        const Vector3d& a =
-            surface.normal[meshwind::at(surface.corner[meshwind::at(face)][corner])];
-        const Vector3d& b = surface.normal[meshwind::at(surface.corner[meshwind::at(other)][k])];
-        Vector3d tangent = a.cross(b);
-        if (tangent.norm() < kMinCreaseSine) {
-            const Vector3d normal = (a + b).normalized();
+        const Side here = side_of(surface, face, edge, corner);
+        Vector3d tangent = here.normal.cross(here.normal_across);
+        if (tangent.norm() < kMinCreaseSine || is_ear(surface, face, corner) ||
+            is_ear(surface, here.face_across, here.corner_across)) {
+            const Vector3d normal = (here.normal + here.normal_across).normalized();
             tangent = chord - normal * normal.dot(chord);
+            if (tangent.norm() < kMinCreaseSine * chord.norm()) {
+                tangent = chord;
+            }
         }
-        tangent *= chord.norm() / tangent.norm();
-        return tangent.dot(chord) < 0.0 ? Vector3d(-tangent) : tangent;
+        // As long as makes the cubic a circle's to sixth order.
+        const double cosine = tangent.dot(chord) / (tangent.norm() * chord.norm());
+        tangent *= 2.0 / (1.0 + std::abs(cosine)) * chord.norm() / tangent.norm();
+        return cosine < 0.0 ? Vector3d(-tangent) : tangent;
     };
     crease_[creases_++] = {from, to, tangent_at(from), tangent_at(to)};
 }

@@ -36,7 +36,8 @@ struct PatchPlace {
 /// three lifted points are averaged with the barycentric coordinates (1 - u - v, u, v) as weights.
 /// Both triangles of an edge see the same two corners there: patches meet without a gap, and with
 /// the same normal up to the error of the fits. On a feature edge, where the two sides have
-/// different polynomials, both follow the cubic between the crease's tangents at its two ends.
+/// different polynomials, both follow the cubic between the crease's tangents at its two ends, of
+/// sixth order on a circle; where that would close a corner between two creases, the chord.
 /// Accuracy against the smooth surface, for fits of degree four: position fifth order, normal
 /// fourth, curvature third in the edge length (tests/mesh/patch_test.cpp).
 class Patch {
@@ -53,6 +54,9 @@ public:
 
     /// Largest curvature of the fits at the corners, 1/mm.
     [[nodiscard]] double curvature_per_mm() const;
+
+    /// Chord of the shortest feature edge to which the patch is bent; infinite where there is none.
+    [[nodiscard]] double shortest_crease_mm() const;
 
 private:
     // The facet seen from a corner's frame: place = origin + u along_u + v along_v.

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "../mesh/exact_torus.h"
 #include "../mesh/frozen.h"
@@ -76,6 +77,35 @@ inline Start random_start(const Surface& surface, std::mt19937_64& random) {
     const Eigen::Vector3d x = n.unitOrthogonal();
     start.direction = std::cos(angle) * x + std::sin(angle) * n.cross(x);
     return start;
+}
+
+/// The surface point whose patch point is `p_mm`, by Newton's method on each facet near it.
+/// \pre the patches pass through `p_mm` within their own error
+inline SurfacePoint patch_point(const Surface& surface, const Eigen::Vector3d& p_mm) {
+    SurfacePoint best;
+    double least_mm = 1e300;
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const auto face = static_cast<std::int32_t>(f);
+        if ((position_mm(surface, {face}) - p_mm).norm() > 2.0 * surface.mean_edge_mm) {
+            continue;
+        }
+        const Patch patch(surface, face);
+        Eigen::Vector2d uv = Eigen::Vector2d::Constant(1.0 / 3.0);
+        for (int i = 0; i < 8; ++i) {
+            const PatchPlace place = patch.at(uv);
+            Eigen::Matrix3d basis;
+            basis << place.along_u, place.along_v, place.normal();
+            uv += basis.inverse().topRows<2>() * (p_mm - place.position_mm);
+        }
+        const Eigen::Vector3d bary(1.0 - uv.sum(), uv.x(), uv.y());
+        const double off_mm = (patch.at(uv).position_mm - p_mm).norm();
+        if (bary.minCoeff() >= 0.0 && off_mm < least_mm) {
+            least_mm = off_mm;
+            best = {face, bary};
+        }
+    }
+    EXPECT_LT(least_mm, 1e-3 * surface.mean_edge_mm);
+    return best;
 }
 
 /// What holds for every trace, whatever the surface: finite, ordered, unit, tangential, in its
