@@ -155,7 +155,8 @@ private:
         state_.rate = in_parameters(place, direction);
         state_.rate /= place.along(state_.rate).norm();
         motion_ = motion_of(place, state_.rate);
-        max_step_mm_ = kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12);
+        max_step_mm_ = std::min(options_.max_step_mm,
+                                kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12));
     }
 
     // Where the parabola that the path starts with leaves the triangle.
