@@ -90,17 +90,27 @@ TEST(MeshSizeStudy, SameForAnyNumberOfThreads) {
     }
 }
 
-// A cylinder as if nothing but its mesh were known: errors shrink towards the given mesh.
-TEST(MeshSizeStudy, FileIsComparedWithItself) {
+// A cylinder as if nothing but its mesh were known: errors shrink down to the given mesh, and are
+// those against the closed form.
+TEST(MeshSizeStudy, FileIsComparedWithItsRefinement) {
     const TriangleSoup soup =
-        make_mandrel("cylinder", {{"radius", 60.0}}, {.edge_mm = 3.0, .irregular = true});
-    const MeshSizeStudy study = study_of(
-        file_study(build_mandrel(soup, "pipe.stl", {.unit_mm = 1.0})), {20.0, 10.0, 3.0}, 20);
+        make_mandrel("cylinder", {{"radius", 60.0}}, {.edge_mm = 5.0, .irregular = true});
+    Mandrel mandrel = build_mandrel(soup, "pipe.stl", {.unit_mm = 1.0});
+    const double own_mm = mandrel.surface.mean_edge_mm;
+    const MeshSizeStudy study =
+        study_of(file_study(std::move(mandrel)), {20.0, 10.0, own_mm, 0.5 * own_mm}, 20);
     ASSERT_EQ(study.remarks.size(), 1U);
     EXPECT_NE(study.remarks[0].find("pipe.stl"), std::string::npos);
     const MeshSizeLine& line = line_of(study, Quantity::PathEnd, 0.0);
-    ASSERT_EQ(line.points.size(), 2U);
+    ASSERT_EQ(line.points.size(), 3U);
     EXPECT_GT(line.points[0].rms, 1.5 * line.points[1].rms);
+    EXPECT_GT(line.points[1].rms, 1.5 * line.points[2].rms);
+    EXPECT_EQ(line.points[2].triangles, soup.faces.size());
+    const MeshSizeStudy exact = study_of(cylinder_study(60.0), {5.0}, 20);
+    // Other starts and lengths up to the rims: a factor of two is what 20 paths leave.
+    const double closed_form = line_of(exact, Quantity::PathEnd, 0.0).points[0].rms;
+    EXPECT_LT(line.points[2].rms, 2.0 * closed_form);
+    EXPECT_GT(line.points[2].rms, 0.5 * closed_form);
 }
 
 TEST(MeshSizeStudy, TimesOnlyWhenAsked) {
