@@ -22,7 +22,7 @@ using Index = std::int32_t;
 // Where a rim turns by more than this at a vertex it has a corner there, as creases do.
 constexpr double kRimCornerRad = rad_from_deg(34.0);
 
-constexpr std::int8_t kInside = -1;
+constexpr std::uint8_t kInside = 3;
 constexpr Index kWhole = -1;
 constexpr std::size_t kPlaceChunk = 1024;
 
@@ -33,8 +33,8 @@ std::size_t at(Index i) {
 // A triangle within a face of the given surface.
 struct Piece {
     std::array<Index, 3> vertex;
-    std::array<Vector2d, 3> uv;       // in the given face's parameters
-    std::array<std::int8_t, 3> edge;  // of the given face, on which this one's lies, or kInside
+    std::array<Vector2d, 3> uv;        // in the given face's parameters
+    std::array<std::uint8_t, 3> edge;  // of the given face, on which this one's lies, or kInside
     Index parent;
 };
 
@@ -242,7 +242,7 @@ public:
             auto& feature = mesh.feature.emplace_back();
             auto& rim = mesh.rim.emplace_back();
             for (std::size_t e = 0; e < 3; ++e) {
-                const auto edge = static_cast<std::size_t>(piece.edge[e]);
+                const std::size_t edge = piece.edge[e];
                 const bool inside = piece.edge[e] == kInside;
                 feature[e] = inside ? std::uint8_t{0} : surface_.feature[at(piece.parent)][edge];
                 rim[e] = inside ? -1 : surface_.rim[at(piece.parent)][edge];
@@ -261,7 +261,7 @@ private:
         }
         struct Middle {
             Index piece;
-            std::int8_t edge;
+            std::size_t edge;
         };
         std::vector<Middle> middles;
         std::vector<std::array<Index, 3>> middle(pieces_.size(), {kWhole, kWhole, kWhole});
@@ -272,11 +272,11 @@ private:
             if ((position_[at(use.low)] - position_[at(use.high)]).norm() <= edge_mm_) {
                 continue;
             }
+            const auto e = static_cast<std::size_t>(static_cast<std::uint8_t>(use.edge));
             if (u == 0 || uses[u - 1].low != use.low || uses[u - 1].high != use.high) {
-                middles.push_back({use.face, use.edge});
+                middles.push_back({use.face, e});
             }
-            middle[at(use.face)][static_cast<std::size_t>(use.edge)] =
-                static_cast<Index>(known + middles.size() - 1);
+            middle[at(use.face)][e] = static_cast<Index>(known + middles.size() - 1);
         }
         if (middles.empty()) {
             return {};
@@ -285,7 +285,7 @@ private:
         parallel_for(middles.size(), kPlaceChunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Piece& piece = pieces_[at(middles[i].piece)];
-                const auto e = static_cast<std::size_t>(middles[i].edge);
+                const std::size_t e = middles[i].edge;
                 position_[known + i] =
                     shape_(piece.parent, 0.5 * (piece.uv[e] + piece.uv[(e + 1) % 3]));
             }
