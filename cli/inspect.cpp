@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "core/text_number.h"
@@ -77,9 +78,29 @@ void print_regions(std::ostream& out, const Mandrel& m) {
     }
 }
 
+// Two digits are all that an estimate has.
+std::string two_digits(double value) {
+    constexpr double kLeast = 1e-9;
+    if (!(value > kLeast)) {
+        return "0";
+    }
+    return fixed(value, std::max(0, 1 - static_cast<int>(std::floor(std::log10(value)))));
+}
+
+void print_accuracy(std::ostream& out, const PathAccuracy& accuracy) {
+    out << "accuracy      ";
+    if (accuracy.paths == 0) {
+        out << "no estimate: no path is some edges long\n";
+        return;
+    }
+    out << "paths drift by about " << two_digits(accuracy.walk_mm_per_m) << " mm per metre (walk), "
+        << two_digits(accuracy.patches_mm_per_m) << " (patches), estimated on " << accuracy.paths
+        << " geodesics of up to " << fixed(accuracy.length_mm, 0) << " mm\n";
+}
+
 }  // namespace
 
-void print_mandrel(std::ostream& out, const Mandrel& mandrel) {
+void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy) {
     print_size(out, mandrel);
     print_repairs(out, mandrel.repairs);
     print_regions(out, mandrel);
@@ -91,8 +112,10 @@ void print_mandrel(std::ostream& out, const Mandrel& mandrel) {
     }
     const FitReport& fit = mandrel.surface.fit;
     out << "surface       " << mandrel.surface.face.size() << " triangles, mean edge "
-        << fixed(mandrel.surface.mean_edge_mm, 3) << " mm; smooth fit at " << fit.cubic
-        << " corners cubic, " << fit.quadratic << " quadratic, " << fit.averaged << " averaged\n";
+        << fixed(mandrel.surface.mean_edge_mm, 3) << " mm; smooth fit at " << fit.quartic
+        << " corners quartic, " << fit.cubic << " cubic, " << fit.quadratic << " quadratic, "
+        << fit.reduced << " reduced, " << fit.averaged << " averaged\n";
+    print_accuracy(out, accuracy);
     for (const std::string& remark : mandrel.remarks) {
         out << "remark        " << remark << "\n";
     }

@@ -3,12 +3,13 @@
 
 #include <ostream>
 
+#include "geodesic/path_accuracy.h"
 #include "mesh/mandrel.h"
 
 namespace meshwind {
 
-/// Units, repairs, regions, rims, spindle axis, smooth fit and remarks; lengths in mm, positions in
-/// the mandrel frame. For JSON see mandrel_report.
-void print_mandrel(std::ostream& out, const Mandrel& mandrel);
+/// Units, repairs, regions, rims, spindle axis, smooth fit, accuracy of paths and remarks; lengths
+/// in mm, positions in the mandrel frame. For JSON see mandrel_report.
+void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy);
 
 }  // namespace meshwind

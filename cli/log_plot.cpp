@@ -13,7 +13,7 @@ namespace {
 
 // Pixels of the drawing.
 constexpr double kPanelWidth = 172.0;
-constexpr double kPanelHeight = 132.0;
+constexpr double kPanelHeight = 150.0;
 constexpr double kColumnGap = 46.0;
 constexpr double kRowGap = 34.0;
 constexpr double kLeft = 122.0;
@@ -27,8 +27,8 @@ constexpr double kCharacter = 5.6;  // mean width of a letter of 11 px
 // Free room left and right of the outermost points, as a factor of x.
 constexpr double kRoom = 1.25;
 
-constexpr int kOrders = 3;
-constexpr double kMostDecades = 6.0;
+constexpr int kOrders = 4;
+constexpr double kMostDecades = 8.0;
 
 // Colours that can be told apart by most eyes, on white and on black: those of Okabe and Ito.
 constexpr const char* kStyle =
@@ -203,7 +203,8 @@ private:
             const double y = y_px(r, c, std::pow(10.0, decade));
             stroke("grid", left, y, left + kPanelWidth, y);
             words(left - 4.0, y + 3.0, "small", "end",
-                  fixed(std::pow(10.0, decade), std::max(0, -decade)));
+                  decade < -3 ? "1e" + std::to_string(decade)
+                              : fixed(std::pow(10.0, decade), std::max(0, -decade)));
         }
         for (int decade = -3; decade <= 4; ++decade) {
             for (const int digit : {1, 2, 5}) {

@@ -23,8 +23,8 @@ struct PlotKey {
     std::string words;
 };
 
-/// A table of panels. One x axis for all; one y axis for each column, of six decades at most: what
-/// lies lower leaves its panel.
+/// A table of panels. One x axis for all; one y axis for each column, of eight decades at most:
+/// what lies lower leaves its panel.
 struct LogPlot {
     std::string title;
     std::string x_label;
@@ -34,7 +34,7 @@ struct LogPlot {
     std::vector<std::vector<PlotKey>> keys;     ///< one line of the legend each
 };
 
-/// Dotted lines in each panel show orders 1, 2 and 3 from its largest error down. Readable on light
+/// Dotted lines in each panel show orders 1 to 4 from its largest error down. Readable on light
 /// and dark pages. The same plot gives the same bytes. \pre panels.size() == rows x columns
 [[nodiscard]] std::string log_plot_svg(const LogPlot& plot);
 

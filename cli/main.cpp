@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include <unistd.h>
@@ -15,6 +16,7 @@
 #include "cli/job.h"
 #include "cli/make_command.h"
 #include "cli/project_files.h"
+#include "cli/refine_command.h"
 #include "cli/report.h"
 #include "cli/report_mandrel.h"
 #include "cli/report_study.h"
@@ -23,6 +25,7 @@
 #include "cli/wind.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/text_number.h"
 #include "machines/kinematics.h"
 #include "machines/machine_json.h"
 #include "postproc/dialect.h"
@@ -151,14 +154,46 @@ int run_wind(const WindOptions& options, const Common& common) {
     return result.passed() ? kDone : kCheckFailed;
 }
 
-int run_inspect(const std::string& file, const Common& common) {
-    const Mandrel mandrel = load_mandrel(find_input(file), {.unit_mm = unit_mm(common.units)});
+struct InspectOptions {
+    std::string mandrel;
+    std::optional<double> refine_mm;
+    std::string out;
+};
+
+void add_inspect(CLI::App& app, InspectOptions& options) {
+    app.add_option("mandrel", options.mandrel, "mesh of the part")->required();
+    auto* refine = app.add_option("--refine", options.refine_mm,
+                                  "write the winding surface with edges of at most so many mm, new "
+                                  "vertices on its curved patches; frame and units of the file");
+    app.add_option("-o,--out", options.out, "mesh file to write: .stl, .obj, .ply or .off")
+        ->needs(refine);
+}
+
+int run_inspect(const InspectOptions& options, const Common& common) {
+    if (options.refine_mm && options.out.empty()) {
+        throw InputError("cli.output", "inspect --refine",
+                         "name the mesh file to write with -o FILE");
+    }
+    const Mandrel mandrel =
+        load_mandrel(find_input(options.mandrel), {.unit_mm = unit_mm(common.units)});
+    const std::size_t refined_faces =
+        options.refine_mm ? write_refined(mandrel, *options.refine_mm, options.out) : 0;
+    const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface);
     if (common.json) {
-        std::cout
-            << nlohmann::json{{"meshwind", kVersion}, {"mandrel", mandrel_report(mandrel)}}.dump(1)
-            << '\n';
+        nlohmann::json report{{"meshwind", kVersion}, {"mandrel", mandrel_report(mandrel)}};
+        report["mandrel"]["accuracy"] = accuracy_report(accuracy);
+        if (options.refine_mm) {
+            report["refined"] = {{"file", options.out},
+                                 {"longest_edge_mm", *options.refine_mm},
+                                 {"triangles", refined_faces}};
+        }
+        std::cout << report.dump(1) << '\n';
     } else {
-        print_mandrel(std::cout, mandrel);
+        print_mandrel(std::cout, mandrel, accuracy);
+        if (options.refine_mm) {
+            std::cout << "refined       " << options.out << ": " << refined_faces
+                      << " triangles, edges of at most " << fixed(*options.refine_mm, 3) << " mm\n";
+        }
     }
     return kDone;
 }
@@ -350,9 +385,9 @@ int run(int argc, char** argv) {
     WindOptions named_wind_options;
     CLI::App* wind_command = app.add_subcommand("wind", "the main job");
     add_wind_options(*wind_command, named_wind_options, true);
-    std::string inspect_file;
+    InspectOptions inspect_options;
     CLI::App* inspect = app.add_subcommand("inspect", "what is read from a mandrel file");
-    inspect->add_option("mandrel", inspect_file, "mesh of the part")->required();
+    add_inspect(*inspect, inspect_options);
     MakeRequest make_request;
     std::map<std::string, double> make_values;
     CLI::App* make = app.add_subcommand("make", "a parametric mandrel");
@@ -392,7 +427,7 @@ int run(int argc, char** argv) {
         return run_wind(named_wind_options, common);
     }
     if (inspect->parsed()) {
-        return run_inspect(inspect_file, common);
+        return run_inspect(inspect_options, common);
     }
     if (make->parsed()) {
         make_request.kind = make->get_subcommands().front()->get_name();

@@ -66,8 +66,22 @@ json mandrel_report(const Mandrel& mandrel) {
             {"regions", regions},
             {"repairs", repairs_of(mandrel.repairs)},
             {"smooth_fit",
-             {{"cubic", fit.cubic}, {"quadratic", fit.quadratic}, {"averaged", fit.averaged}}},
+             {{"quartic", fit.quartic},
+              {"cubic", fit.cubic},
+              {"quadratic", fit.quadratic},
+              {"reduced", fit.reduced},
+              {"averaged", fit.averaged}}},
             {"remarks", mandrel.remarks}};
+}
+
+json accuracy_report(const PathAccuracy& accuracy) {
+    if (accuracy.paths == 0) {
+        return nullptr;
+    }
+    return {{"paths", accuracy.paths},
+            {"length_mm", accuracy.length_mm},
+            {"walk_mm_per_m", accuracy.walk_mm_per_m},
+            {"patches_mm_per_m", accuracy.patches_mm_per_m}};
 }
 
 }  // namespace meshwind

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geodesic/path_accuracy.h"
 #include "mesh/mandrel.h"
 
 namespace meshwind {
@@ -10,5 +11,8 @@ namespace meshwind {
 /// file, unit_mm, unit_rule, triangles, file_to_mandrel (4x4, rows), axis, rims, area_mm2 (of what
 /// is wound), regions, repairs, smooth_fit, remarks. Rims and lengths in the mandrel frame, mm.
 [[nodiscard]] nlohmann::json mandrel_report(const Mandrel& mandrel);
+
+/// The object "accuracy": paths, length_mm, walk_mm_per_m, patches_mm_per_m; null without paths.
+[[nodiscard]] nlohmann::json accuracy_report(const PathAccuracy& accuracy);
 
 }  // namespace meshwind

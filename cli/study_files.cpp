@@ -32,7 +32,8 @@ bool of_machine(Quantity quantity) {
 }
 
 // Paths: a colour for each method, dashes where it is steered. Machine: another colour for each
-// tangent rule of geodesics, dashes for methods after the first.
+// tangent rule of geodesics, dashes for methods after the first; of these the rules whose order
+// the method changes.
 constexpr int kMethodColour = static_cast<int>(kTangentRules.size());
 
 struct Styles {
@@ -45,7 +46,10 @@ struct Styles {
                                 methods.begin());
     }
     [[nodiscard]] bool shown(const MeshSizeLine& line) const {
-        return !of_machine(line.quantity) || line.slip_ratio == options.slip_ratios.front();
+        return !of_machine(line.quantity) ||
+               (line.slip_ratio == options.slip_ratios.front() &&
+                (method(line.method) == 0 || line.rule == TangentRule::Parabola ||
+                 line.rule == TangentRule::Traced));
     }
     [[nodiscard]] PlotStyle of(const MeshSizeLine& line) const {
         if (of_machine(line.quantity)) {
@@ -89,6 +93,12 @@ std::vector<std::vector<PlotKey>> keys_of(const MeshSizeOptions& options) {
                                 "traced"};
     for (std::size_t r = 0; r < kTangentRules.size(); ++r) {
         keys[1].push_back({{static_cast<int>(r), false}, kWords[r]});
+    }
+    for (const TangentRule rule : {TangentRule::Parabola, TangentRule::Traced}) {
+        const auto r = static_cast<std::size_t>(rule);
+        keys[1].push_back({{static_cast<int>(rule), true},
+                           std::string(rule == TangentRule::Traced ? kWords[r] : "parabola") +
+                               " by " + path_methods().back().name});
     }
     return keys;
 }
@@ -151,7 +161,7 @@ std::string study_svg(const StudyOutcome& outcome) {
     LogPlot plot;
     plot.title = "Error (rms) against edge length" +
                  std::string(outcome.options.irregular ? ", irregular meshes" : "");
-    plot.x_label = "mean edge length, mm; dotted: orders 1, 2, 3";
+    plot.x_label = "mean edge length, mm; dotted: orders 1 to 4";
     for (const Column& column : kColumns) {
         plot.columns.emplace_back(column.head);
     }

@@ -156,8 +156,8 @@ private:
         state_.rate /= place.along(state_.rate).norm();
         motion_ = motion_of(place, state_.rate);
         // To a crease a patch is drawn over about its length, flat or not.
-        max_step_mm_ = std::min(kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12),
-                                patch_.shortest_crease_mm());
+        max_step_mm_ = std::min({options_.max_step_mm, patch_.shortest_crease_mm(),
+                                 kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12)});
     }
 
     // Where the parabola that the path starts with leaves the triangle.

@@ -1,6 +1,8 @@
 /// Fibre paths over the triangles: the tangent is carried in the smooth normal field and steered.
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 
 #include "geodesic/surface_path.h"
@@ -31,6 +33,9 @@ struct TraceOptions {
     double max_length_mm = 1e5;  ///< > 0; the path is cut exactly here
     int max_faces = 1'000'000;   ///< > 0; reached gives TraceStop::FaceLimit: a trace always ends
     TraceMethod method = TraceMethod::Walk;
+    /// > 0; by Patches no step is longer. Without it steps go from edge to edge, or where the
+    /// surface turns by 0.2 rad.
+    double max_step_mm = std::numeric_limits<double>::infinity();
 };
 
 struct TraceResult {

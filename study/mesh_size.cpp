@@ -98,8 +98,9 @@ public:
                                                  .method = method.method};
                 const CurveState& start = paths_.starts[i];
                 const double slip_ratio = options_.slip_ratios[s];
-                traced[i] = trace(surface, nearest_point(query, start.position_mm), start.tangent,
-                                  {slip_ratio, slip_ratio}, trace_options);
+                traced[i] = trace(surface,
+                                  start_at(surface, query, start.position_mm, trace_options.method),
+                                  start.tangent, {slip_ratio, slip_ratio}, trace_options);
             };
             parallel_for(traced.size(), 1, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {

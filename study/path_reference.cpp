@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
+#include "mesh/patch.h"
+
 namespace meshwind {
 namespace {
 
@@ -37,6 +39,9 @@ std::vector<double> even_stations(double length_mm, double station_mm) {
     }
     return s_mm;
 }
+
+// Steps to the start of a path on patches: the miss falls at least tenfold with each.
+constexpr int kStartSteps = 6;
 
 class CylinderReference : public PathReference {
 public:
@@ -202,15 +207,20 @@ public:
 
     SurfaceFoot foot(const Vector3d& near_mm) const override {
         const SurfacePoint point = nearest_point(query_, near_mm);
-        return {position_mm(surface_, point), smooth_normal(surface_, point)};
+        if (options_.method == TraceMethod::Walk) {
+            return {position_mm(surface_, point), smooth_normal(surface_, point)};
+        }
+        const PatchPlace place = on_patch(surface_, point.face, point.bary);
+        return {place.position_mm, place.normal()};
     }
 
     ReferencePath follow(const CurveState& start, double slip_ratio,
                          double length_mm) const override {
         TraceOptions options = options_;
         options.max_length_mm = length_mm;
-        const TraceResult traced = trace(surface_, nearest_point(query_, start.position_mm),
-                                         start.tangent, {slip_ratio, slip_ratio}, options);
+        const TraceResult traced =
+            trace(surface_, start_at(surface_, query_, start.position_mm, options_.method),
+                  start.tangent, {slip_ratio, slip_ratio}, options);
         ReferencePath path;
         for (const PathPoint& p : traced.path) {
             if (path.s_mm.empty() || p.s_mm > path.s_mm.back()) {
@@ -280,6 +290,24 @@ RayQuery query_of(const Surface& surface) {
 SurfacePoint nearest_point(const RayQuery& query, const Vector3d& near_mm) {
     const ClosestPoint found = query.closest(near_mm, kSearchMm);
     return {found.face, found.bary};
+}
+
+SurfacePoint start_at(const Surface& surface, const RayQuery& query, const Vector3d& point_mm,
+                      TraceMethod method) {
+    SurfacePoint start = nearest_point(query, point_mm);
+    if (method == TraceMethod::Walk) {
+        return start;
+    }
+    // Each step leaves of the miss what facet and surface are inclined by.
+    Vector3d aim_mm = point_mm;
+    for (int i = 0; i < kStartSteps; ++i) {
+        const PatchPlace place = on_patch(surface, start.face, start.bary);
+        const Vector3d miss = place.position_mm - point_mm;
+        const Vector3d normal = place.normal();
+        aim_mm -= miss - normal * normal.dot(miss);
+        start = nearest_point(query, aim_mm);
+    }
+    return start;
 }
 
 }  // namespace meshwind

@@ -73,4 +73,10 @@ public:
 [[nodiscard]] RayQuery query_of(const Surface& surface);
 [[nodiscard]] SurfacePoint nearest_point(const RayQuery& query, const Eigen::Vector3d& near_mm);
 
+/// Where a trace must start to begin at a point of the ideal surface: the facet's point nearest to
+/// it by TraceMethod::Walk, the one whose patch lies there by TraceMethod::Patches (to 1e-9 of an
+/// edge; the nearest one is off by the third order in the edge length).
+[[nodiscard]] SurfacePoint start_at(const Surface& surface, const RayQuery& query,
+                                    const Eigen::Vector3d& point_mm, TraceMethod method);
+
 }  // namespace meshwind

@@ -12,6 +12,7 @@
 #include "mesh/coarsen.h"
 #include "mesh/edge_table.h"
 #include "mesh/feature_edges.h"
+#include "mesh/refine.h"
 #include "mesh/rims.h"
 #include "winding/random.h"
 
@@ -26,9 +27,9 @@ constexpr double kCylinderLengthMm = 400.0;
 // spread as evenly as the points themselves.
 constexpr double kSampleShare = 0.2;
 
-// Coarser meshes of a file have edges at least this much longer than its own: nearer than that the
-// error of the reference is as large as what is measured.
-constexpr double kLeastCoarsening = 1.4;
+// Edge lengths within a tenth of the file's own mean stand for its mesh as given.
+constexpr double kLeastShare = 0.9;
+constexpr double kLeastCoarsening = 1.1;
 
 StudyMandrel made_study(const std::string& kind, const MakeValues& values, double sample_edge_mm) {
     StudyMandrel study;
@@ -88,25 +89,26 @@ StudyMandrel tee_study() {
     return study;
 }
 
-StudyMandrel file_study(Mandrel mandrel, const TraceOptions& options) {
+StudyMandrel file_study(Mandrel mandrel) {
     StudyMandrel study;
     study.mandrel = std::make_unique<Mandrel>(std::move(mandrel));
     const Surface& given = study.mandrel->surface;
+    study.refined = std::make_unique<Surface>(refined(given, 0.5 * given.mean_edge_mm).frozen());
     study.name = study.mandrel->file;
-    study.reference_words = "the mesh as given, edges of " + fixed(given.mean_edge_mm, 2) + " mm";
+    study.reference_words =
+        "patches on the mesh refined to edges of " + fixed(study.refined->mean_edge_mm, 2) + " mm";
     study.samples = {given.position_mm, given.face};
-    // The finest mesh known of this surface. A refinement onto curved patches would take the place
-    // of `given` here and allow edges down to the file's own.
-    study.reference = mesh_reference(given, options);
-    study.mesh = [&given, name = study.name](const StudyMeshOptions& mesh_options) {
-        const double least_mm = kLeastCoarsening * given.mean_edge_mm;
-        if (!(mesh_options.edge_mm >= least_mm)) {
+    study.reference = mesh_reference(*study.refined, {.method = TraceMethod::Patches});
+    study.mesh = [&given, name = study.name](const StudyMeshOptions& options) -> TriangleSoup {
+        if (!(options.edge_mm >= kLeastShare * given.mean_edge_mm)) {
             throw InputError("study.edge", name,
                              "its own edges are " + fixed(given.mean_edge_mm, 2) +
-                                 " mm; a study of it takes edges of at least " +
-                                 fixed(least_mm, 2) + " mm");
+                                 " mm; a study of it takes no shorter ones");
         }
-        return coarsened({given.position_mm, given.face}, mesh_options.edge_mm);
+        TriangleSoup soup{given.position_mm, given.face};
+        return options.edge_mm < kLeastCoarsening * given.mean_edge_mm
+                   ? soup
+                   : coarsened(soup, options.edge_mm);
     };
     return study;
 }

@@ -25,7 +25,8 @@ struct StudyMandrel {
     /// \throws InputError make.* or study.edge when the surface cannot be shown with such edges
     std::function<TriangleSoup(const StudyMeshOptions&)> mesh;
     TriangleSoup samples;              ///< triangles on or near the surface: where paths may start
-    std::unique_ptr<Mandrel> mandrel;  ///< of a file; what `reference` and `mesh` use
+    std::unique_ptr<Mandrel> mandrel;  ///< of a file; what `mesh` uses
+    std::unique_ptr<Surface> refined;  ///< of a file; what `reference` uses
 };
 
 /// Cylinder around z, 400 mm long, against the closed form. \throws InputError make.not_positive
@@ -36,9 +37,9 @@ struct StudyMandrel {
 [[nodiscard]] StudyMandrel ellipsoid_study();
 [[nodiscard]] StudyMandrel tee_study();
 
-/// A part of which only its mesh is known: coarser meshes of it against the mesh itself.
-/// \param options how the reference paths are traced
-[[nodiscard]] StudyMandrel file_study(Mandrel mandrel, const TraceOptions& options = {});
+/// A part of which only its mesh is known: the mesh and coarser ones of it, against paths by
+/// TraceMethod::Patches on the mesh refined once. \throws InputError refine.too_many
+[[nodiscard]] StudyMandrel file_study(Mandrel mandrel);
 
 /// The winding surface of triangles, creases and rims as the import finds them.
 [[nodiscard]] Surface frozen_surface(const TriangleSoup& soup);

@@ -50,6 +50,49 @@ class Commands(program.ProgramTest):
         self.assertEqual(sorted(round(r["radius"], 3) for r in part["rims"]), [40.0, 50.0, 50.0])
         self.assertIn("tee.stl", self.done("inspect", mandrel).stdout)
 
+    def test_inspect_estimates_accuracy(self):
+        """Half the edges: a quarter of the drift by walk, a sixteenth by patches; half of that fall
+        is asked for. Not a word of it changes with the number of threads."""
+        reports = []
+        for edge in ("10", "5"):
+            mandrel = self.make("torus", "--edge", edge)
+            text = self.done("inspect", mandrel, "--json", "--threads", "1").stdout
+            self.assertEqual(self.done("inspect", mandrel, "--json", "--threads", "2").stdout, text)
+            part = json.loads(text)["mandrel"]
+            self.assertEqual(set(part["smooth_fit"]),
+                             {"quartic", "cubic", "quadratic", "reduced", "averaged"})
+            self.assertEqual(part["smooth_fit"]["quartic"], sum(part["smooth_fit"].values()))
+            reports.append(part["accuracy"])
+        coarse, fine = reports
+        self.assertEqual(coarse["paths"], 32)
+        self.assertGreater(coarse["walk_mm_per_m"], 2 * fine["walk_mm_per_m"])
+        self.assertGreater(coarse["patches_mm_per_m"], 8 * fine["patches_mm_per_m"])
+        self.assertGreater(fine["walk_mm_per_m"], fine["patches_mm_per_m"])
+        text = self.done("inspect", self.folder / "torus.stl").stdout
+        self.assertRegex(text, r"(?m)^accuracy +paths drift by about 0\.\d+ mm per metre \(walk\)")
+
+    def test_inspect_refines_in_the_frame_and_units_of_the_file(self):
+        """A pipe of 0.05 m radius along x, in metres: the refined one has its points there too."""
+        self.make("cylinder", "--radius", "50", "--length", "200", "--edge", "12")
+        self.done("inspect", "cylinder.stl", "--refine", "9", "-o", "same.obj")
+        lines = (self.folder / "same.obj").read_text().splitlines()
+        points = [tuple(map(float, line.split()[1:4])) for line in lines if line.startswith("v ")]
+        self.write("metres.obj", "\n".join(
+            "v %.9g %.9g %.9g" % (p[2] / 1000, p[0] / 1000, p[1] / 1000)
+            for p in points) + "\n" + "\n".join(x for x in lines if x.startswith("f ")) + "\n")
+        refined = json.loads(self.done("inspect", "metres.obj", "--units", "m", "--refine", "3",
+                                       "-o", "fine.obj", "--json").stdout)["refined"]
+        lines = (self.folder / "fine.obj").read_text().splitlines()
+        faces = [line for line in lines if line.startswith("f ")]
+        points = [tuple(map(float, line.split()[1:4])) for line in lines if line.startswith("v ")]
+        self.assertEqual(refined, {"file": "fine.obj", "longest_edge_mm": 3.0,
+                                   "triangles": len(faces)})
+        self.assertEqual({round(p[0], 6) for p in points} & {-0.1, 0.1}, {-0.1, 0.1})
+        for x, y, z in points:
+            # Flat edges of 12 mm would be up to 12^2 / (8 * 50) = 0.36 mm inside.
+            self.assertAlmostEqual(math.hypot(y, z), 0.05, delta=2e-5)
+            self.assertLessEqual(abs(x), 0.1 + 1e-8)
+
     def trace(self, mandrel, *arguments):
         out = self.folder / "path.csv"
         self.done("trace", mandrel, *arguments, "-o", out)
