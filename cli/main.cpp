@@ -222,7 +222,7 @@ void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>
 }
 
 struct TraceOptionsText {
-    std::string mandrel, start, direction, to, frame = "mandrel";
+    std::string mandrel, start, direction, to, frame = "mandrel", method = "patches";
     double angle_deg = 0.0;
     TraceRequest request;
 };
@@ -244,6 +244,10 @@ CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
         ->capture_default_str();
     auto* length = app.add_option("--length", text.request.length_mm, "longest path, mm");
     length->capture_default_str()->excludes(to);
+    app.add_option("--method", text.method,
+                   "patches: solved on curved patches, accurate; walk: over the facets, fast")
+        ->check(CLI::IsMember({"patches", "walk"}))
+        ->capture_default_str();
     app.add_option("--frame", text.frame, "frame of the output")
         ->check(CLI::IsMember({"mandrel", "file"}))
         ->capture_default_str();
@@ -256,6 +260,7 @@ int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& comm
     request.mandrel = find_input(text.mandrel);
     request.unit_mm = unit_mm(common.units);
     request.start = vector_of("--start", text.start);
+    request.method = text.method == "walk" ? TraceMethod::Walk : TraceMethod::Patches;
     request.file_frame = text.frame == "file";
     if (has_angle) {
         request.angle_deg = text.angle_deg;

@@ -13,6 +13,7 @@
 #include "geodesic/measure.h"
 #include "geodesic/trace.h"
 #include "mesh/mandrel.h"
+#include "mesh/patch.h"
 #include "mesh/ray_query.h"
 
 namespace meshwind {
@@ -22,6 +23,10 @@ using Eigen::Vector3d;
 
 // File units; from farther away no nearest point can be told from its neighbours.
 constexpr double kFarthestStart = 1e9;
+
+// Sine of the angle to the normal up to which a direction has no share in the surface: on a coarse
+// mesh the normal itself is known no better.
+constexpr double kAlongNormalSine = 1e-3;
 
 constexpr int kLengthDecimals = 6;  // 1 nm: what a study of accuracy needs
 constexpr int kDirectionDecimals = 9;
@@ -49,7 +54,7 @@ Vector3d direction_at(const TraceRequest& request, const Mandrel& mandrel, const
     }
     const double length = direction.norm();
     const Vector3d flat = direction - normal * normal.dot(direction);
-    if (!(flat.norm() > kParallelSine * length)) {
+    if (!(flat.norm() > kAlongNormalSine * length)) {
         throw InputError("trace.direction", request.mandrel.string(),
                          "the direction is zero or along the surface normal at the start; give one "
                          "that lies in the surface");
@@ -125,11 +130,12 @@ struct Traced {
 };
 
 Traced trace_from(const TraceRequest& request, const Mandrel& mandrel, const SurfacePoint& start) {
-    const Vector3d direction =
-        direction_at(request, mandrel, smooth_normal(mandrel.surface, start));
-    TraceResult result =
-        trace(mandrel.surface, start, direction, {request.slip_ratio, request.slip_ratio},
-              {.max_length_mm = request.length_mm});
+    const Vector3d normal = request.method == TraceMethod::Walk
+                                ? smooth_normal(mandrel.surface, start)
+                                : on_patch(mandrel.surface, start.face, start.bary).normal();
+    TraceResult result = trace(mandrel.surface, start, direction_at(request, mandrel, normal),
+                               {request.slip_ratio, request.slip_ratio},
+                               {.max_length_mm = request.length_mm, .method = request.method});
     return {std::move(result.path),
             name_of(result.stop) +
                 (result.rim >= 0 ? " " + std::to_string(result.rim) : std::string())};
@@ -160,7 +166,7 @@ std::string reason_of(const ConnectResult& result) {
 
 Traced trace_between(const TraceRequest& request, const Mandrel& mandrel, const SurfacePoint& start,
                      const Snapped& to) {
-    const ConnectOptions options;
+    const ConnectOptions options{.trace = {.method = request.method}};
     ConnectResult result = connect(mandrel.surface, start, to.at, request.slip_ratio, options);
     if (result.path.empty() || result.miss_mm > options.tolerance_mm) {
         throw InputError("trace.not_connected", "--to", reason_of(result));
@@ -184,7 +190,8 @@ std::string run_trace(const TraceRequest& request) {
         request.to ? trace_between(request, mandrel, start.at, snap(mandrel, *request.to))
                    : trace_from(request, mandrel, start.at);
     const TautString string = taut_string(path);
-    const SlipMeasure slip = measure_slip(mandrel.surface, path, string, {});
+    const SlipMeasure slip =
+        measure_slip(mandrel.surface, path, string, {.method = request.method});
     write_file(request.out, table(path, string, slip,
                                   request.file_frame ? file_from_mandrel_mm(mandrel)
                                                      : Eigen::Isometry3d::Identity()));

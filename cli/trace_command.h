@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "geodesic/trace.h"
+
 namespace meshwind {
 
 struct TraceRequest {
@@ -20,6 +22,7 @@ struct TraceRequest {
     std::optional<Eigen::Vector3d> to;  ///< the path's end, file frame and file units; snapped
     double slip_ratio = 0.0;            ///< kg / kn
     double length_mm = 10000.0;         ///< > 0; not for a path to a given end
+    TraceMethod method = TraceMethod::Patches;
     bool file_frame = false;  ///< output in the file's axes, in mm; else the mandrel frame
     std::filesystem::path out;
 };

@@ -54,7 +54,7 @@ struct Surface {
     /// Per corner index: dn, symmetric, with `normal` in its kernel; t . S t = kn in 1/mm, > 0
     /// convex.
     std::vector<Eigen::Matrix3d> shape_operator_per_mm;
-    std::vector<HeightJet> jet;  ///< per corner index: the fitted surface about the corner
+    std::vector<HeightJet> jet;           ///< per corner index: the fitted surface about the corner
     std::vector<WalkFace> walk_face;      ///< per face: the above once more
     std::vector<WalkCorner> walk_corner;  ///< per corner index: the above once more
     double mean_edge_mm = 0.0;

@@ -68,9 +68,11 @@ void expect_ends_at_rims(const Scene& scene, const Member& member, const Surface
         const PathPoint& last = e == 0 ? path.front() : path.back();
         const Eigen::Vector3d outward = e == 0 ? Eigen::Vector3d(-last.tangent) : last.tangent;
         const Eigen::Vector3d d = last.position_mm - rim.centre_mm;
-        EXPECT_NEAR(d.dot(rim.axis), 0.0, 1e-6);
-        // A chord of a 6 mm edge lies 0.2 mm inside its circle of 22 mm.
-        EXPECT_NEAR(d.norm(), rim.radius_mm, 0.25);
+        // On the patch over the rim's edge: lifted from the chord by up to 0.2 mm along normals
+        // that lean against the rim's plane by a few mrad at most; the chord itself lies that far
+        // inside.
+        EXPECT_NEAR(d.dot(rim.axis), 0.0, 5e-3);
+        EXPECT_NEAR(d.norm(), rim.radius_mm, 0.02);
         const RimCrossing again = crossing_at(rim, last.position_mm, outward);
         EXPECT_NEAR(std::remainder(again.azimuth_rad - end.azimuth_rad, 2.0 * kPi), 0.0, 1e-9);
         EXPECT_NEAR(again.angle_rad, end.angle_rad, 1e-9);
@@ -126,10 +128,11 @@ void expect_members_keep_the_rules(const Scene& scene, int candidates, std::size
         expect_steered_within(member.candidate, path);
         const TautString string = taut_string(path);
         EXPECT_LE(string.worst_gap_mm, scene.rules.tow.bridging_tolerance_mm);
-        EXPECT_LE(measure_slip(scene.mandrel.surface, path, string,
-                               {.friction = scene.rules.tow.friction})
-                      .worst,
-                  scene.rules.tow.friction);
+        EXPECT_LE(
+            measure_slip(scene.mandrel.surface, path, string,
+                         {.friction = scene.rules.tow.friction, .method = TraceMethod::Patches})
+                .worst,
+            scene.rules.tow.friction);
         EXPECT_EQ(scene.footprints.footprint(path, scratch), member.footprint);
         EXPECT_TRUE(member.windable_forward || member.windable_backward);
         if (member.windable_forward) {
@@ -154,8 +157,9 @@ TEST(BuildLibrary, MeasuredSlipOnACylinderIsWithinTheFriction) {
     const Scene& scene = cylinder_scene();
     for (const Member& member : build_library(scene.rules, scene.candidates(300, 12)).members) {
         const SurfacePath path = trace_both_ways(scene.rules, member.candidate);
-        const SlipMeasure slip = measure_slip(scene.mandrel.surface, path, taut_string(path),
-                                              {.friction = scene.rules.tow.friction});
+        const SlipMeasure slip =
+            measure_slip(scene.mandrel.surface, path, taut_string(path),
+                         {.friction = scene.rules.tow.friction, .method = TraceMethod::Patches});
         EXPECT_LE(slip.worst, scene.rules.tow.friction);
     }
 }
