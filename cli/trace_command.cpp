@@ -7,7 +7,6 @@
 #include "cli/output_files.h"
 #include "core/error.h"
 #include "core/text_number.h"
-#include "core/tolerances.h"
 #include "core/units.h"
 #include "geodesic/connect.h"
 #include "geodesic/measure.h"

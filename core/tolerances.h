@@ -7,8 +7,4 @@ namespace meshwind {
 /// rounding of a walk step (about 1e-15), far below any length that matters (1e-10 of an edge).
 inline constexpr double kBaryEps = 1e-10;
 
-/// Sine below which two unit directions count as parallel (no unit): at 1e-12 the cross product
-/// still holds four digits.
-inline constexpr double kParallelSine = 1e-12;
-
 }  // namespace meshwind
