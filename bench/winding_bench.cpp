@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/units.h"
+#include "mesh/extension.h"
 #include "mesh/mandrel.h"
 #include "mesh/ray_query.h"
 #include "winding/library.h"

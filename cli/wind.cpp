@@ -18,6 +18,7 @@
 #include "core/units.h"
 #include "machines/kinematics.h"
 #include "machines/machine_json.h"
+#include "mesh/extension.h"
 #include "mesh/import.h"
 #include "postproc/dialect.h"
 #include "postproc/motion_csv.h"

@@ -272,27 +272,4 @@ Mandrel build_mandrel(const TriangleSoup& file_units, const std::string& name,
     return build(TriangleSoup(file_units), 0.0, name, options);
 }
 
-TriangleSoup extension_of(const Rim& rim, double length_mm, int segments) {
-    const Eigen::Vector3d u = rim.axis.unitOrthogonal();
-    const Eigen::Vector3d v = rim.axis.cross(u);
-    TriangleSoup soup;
-    for (int i = 0; i < segments; ++i) {
-        const double angle = 2.0 * kPi * i / segments;
-        const Eigen::Vector3d near =
-            rim.centre_mm + rim.radius_mm * (std::cos(angle) * u + std::sin(angle) * v);
-        soup.points_mm.push_back(near);
-        soup.points_mm.push_back(near + length_mm * rim.axis);
-    }
-    const std::int32_t middle = 2 * segments;
-    soup.points_mm.push_back(rim.centre_mm + length_mm * rim.axis);
-    for (std::int32_t i = 0; i < segments; ++i) {
-        const std::int32_t a = 2 * i;
-        const std::int32_t b = 2 * ((i + 1) % segments);
-        soup.faces.push_back({a, b, a + 1});
-        soup.faces.push_back({b, b + 1, a + 1});
-        soup.faces.push_back({a + 1, b + 1, middle});
-    }
-    return soup;
-}
-
 }  // namespace meshwind

@@ -96,8 +96,4 @@ struct Mandrel {
 [[nodiscard]] Mandrel build_mandrel(const TriangleSoup& file_units, const std::string& name,
                                     const MandrelOptions& options = {});
 
-/// Cylinder of the rim's radius from the rim outward, closed at its far end: the mandrel's
-/// extension. \param length_mm > 0 \param segments >= 3 around
-[[nodiscard]] TriangleSoup extension_of(const Rim& rim, double length_mm, int segments = 96);
-
 }  // namespace meshwind

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/units.h"
+#include "mesh/extension.h"
 #include "mesh/make_kinds.h"
 #include "mesh/mandrel.h"
 #include "mesh/ray_query.h"

@@ -1,0 +1,105 @@
+#include "postproc/deviation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Stations of the plan closer together than this have no direction between them: the joint of two
+// pieces, the two sides of a feature edge.
+constexpr double kSamePlace_mm = 0.01;
+
+// How far ahead of the present planned station a laid one is looked for. A laid fibre that is
+// further away has left the plan.
+constexpr double kAhead_mm = 50.0;
+
+// The planned fibre at a laid station.
+struct Matched {
+    Vector3d position_mm, normal, tangent;
+};
+
+// The cubic between two stations at the place beside `x`.
+Matched between(const PlannedStation& a, const PlannedStation& b, const Vector3d& x) {
+    const Vector3d chord = b.position_mm - a.position_mm;
+    const double length = chord.norm();
+    const double share = std::clamp((x - a.position_mm).dot(chord) / (length * length), 0.0, 1.0);
+    const double r = 1.0 - share;
+    const Vector3d in = length * a.tangent - chord;
+    const Vector3d out = chord - length * b.tangent;
+    const Vector3d bulge = r * in + share * out;
+    const Vector3d slope =
+        chord + (r - share) * bulge + share * r * (out - in);
+    Vector3d normal = r * a.normal + share * b.normal;
+    normal -= slope.normalized() * slope.normalized().dot(normal);
+    return {a.position_mm + share * chord + share * r * bulge, normal.normalized(),
+            slope.normalized()};
+}
+
+}  // namespace
+
+PlannedFibre planned_fibre(std::span<const Piece> pieces) {
+    PlannedFibre fibre;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const SurfacePath& path = pieces[p].path;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            fibre.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(i),
+                             path[i].position_mm, path[i].normal, path[i].tangent});
+        }
+    }
+    return fibre;
+}
+
+Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
+                  const LaydownTolerance& tolerance) {
+    Deviation deviation;
+    std::size_t j = 0;  // laid stations are between planned j and the next apart from it
+    const auto next_of = [&](std::size_t i) {
+        std::size_t next = i + 1;
+        while (next < planned.size() &&
+               (planned[next].position_mm - planned[i].position_mm).norm() < kSamePlace_mm) {
+            ++next;
+        }
+        return next;
+    };
+    for (std::size_t i = 0; i < laid.path.size(); ++i) {
+        const PathPoint& station = laid.path[i];
+        std::size_t next = next_of(j);
+        while (next < planned.size() &&
+               (station.position_mm - planned[next].position_mm).dot(planned[next].tangent) > 0.0 &&
+               (station.position_mm - planned[next].position_mm).norm() < kAhead_mm) {
+            j = next;
+            next = next_of(j);
+        }
+        deviation.planned.push_back(j);
+        if (laid.at[i].lifted || next >= planned.size()) {
+            continue;
+        }
+        // Of several stations at one place the last leads on.
+        const Matched match = between(planned[next - 1], planned[next], station.position_mm);
+        const Vector3d across = match.normal.cross(match.tangent);
+        const double sideways = std::abs((station.position_mm - match.position_mm).dot(across));
+        const double angle =
+            std::abs(std::atan2(station.tangent.dot(across), station.tangent.dot(match.tangent)));
+        if (sideways > deviation.max_mm) {
+            deviation.max_mm = sideways;
+            deviation.max_at = i;
+        }
+        if (angle > deviation.max_angle_rad) {
+            deviation.max_angle_rad = angle;
+            deviation.max_angle_at = i;
+        }
+        if (!deviation.first_wrong &&
+            (sideways > tolerance.deviation_mm || angle > tolerance.angle_rad)) {
+            deviation.first_wrong = i;
+        }
+    }
+    deviation.end_gap_mm = (laid.path.back().position_mm - planned.back().position_mm).norm();
+    return deviation;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,424 @@
+#include "postproc/laydown.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "core/error.h"
+#include "core/text_number.h"
+#include "geodesic/field_walk.h"
+#include "machines/kinematics.h"
+#include "mesh/nearest.h"
+#include "mesh/ray_query.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// The eye over the tangent plane by no more than this does not lift the fibre: rounding of
+// positions of some metres.
+constexpr double kLift_mm = 1e-6;
+
+// Steps of the laid path are no longer than this share of the free length: the direction to the eye
+// changes on that scale.
+constexpr double kStepShare = 0.05;
+
+// Curvature of the wall (radius 10 m) below which it counts as hollow; along 40 mm such a hollow is
+// 0.02 mm deep.
+constexpr double kHollow_per_mm = 1e-4;
+
+// Looking ahead over a hollow: step in mean edges, and the least angle by which the wall must stand
+// over the fibre (1 um at 10 mm).
+constexpr double kAheadEdges = 0.5;
+constexpr double kAheadShare = 0.9;  // of the free length
+constexpr double kTouch_rad = 1e-7;
+// Bridges within one sample; more means a wall of spikes.
+constexpr int kMaxBridges = 50;
+
+// A free fibre shorter than this has no direction.
+constexpr double kLeastFree_mm = 1e-3;
+
+// Stations closer than this to the one before are not recorded.
+constexpr double kStation_mm = 1e-6;
+constexpr double kSameNormal = 1.0 - 1e-9;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+// The eye between two samples: the cubic through four exact positions.
+class EyeCurve {
+public:
+    explicit EyeCurve(const std::array<Vector3d, 4>& e)
+        : start_(e[0]),
+          end_(e[3]),
+          linear_(0.5 * (-11.0 * e[0] + 18.0 * e[1] - 9.0 * e[2] + 2.0 * e[3])),
+          square_(4.5 * (2.0 * e[0] - 5.0 * e[1] + 4.0 * e[2] - e[3])),
+          cube_(4.5 * (-e[0] + 3.0 * e[1] - 3.0 * e[2] + e[3])) {}
+
+    [[nodiscard]] const Vector3d& end() const { return end_; }
+    [[nodiscard]] Vector3d position(double share) const {
+        return start_ + share * (linear_ + share * (square_ + share * cube_));
+    }
+
+    // Where the eye is in the tangent plane of a place that it ends under.
+    [[nodiscard]] Vector3d in_plane(const Vector3d& place, const Vector3d& normal) const {
+        const double c0 = normal.dot(start_ - place);
+        const double c1 = normal.dot(linear_);
+        const double c2 = normal.dot(square_);
+        const double c3 = normal.dot(cube_);
+        const double last = c0 + c1 + c2 + c3;
+        if (c0 <= 0.0 || last >= 0.0) {
+            return c0 <= 0.0 ? start_ : end_;
+        }
+        double low = 0.0;
+        double high = 1.0;
+        double share = c0 / (c0 - last);
+        for (int i = 0; i < kRootSteps; ++i) {
+            const double value = c0 + share * (c1 + share * (c2 + share * c3));
+            (value > 0.0 ? low : high) = share;
+            const double slope = c1 + share * (2.0 * c2 + share * 3.0 * c3);
+            const double next = share - value / slope;
+            const double kept = next > low && next < high ? next : 0.5 * (low + high);
+            if (std::abs(kept - share) < kRootShare) {
+                break;
+            }
+            share = kept;
+        }
+        return position(share);
+    }
+
+private:
+    static constexpr int kRootSteps = 60;  // as many halvings reach the last digit
+    static constexpr double kRootShare = 1e-13;
+
+    Vector3d start_, end_, linear_, square_, cube_;
+};
+
+// Per face: whether a hollow of the wall, along any direction, is within reach.
+std::vector<char> hollow_faces(const Surface& surface, double reach_mm) {
+    std::vector<Vector3d> hollow;
+    const auto centre = [&](const std::array<std::int32_t, 3>& v) {
+        return Vector3d((surface.position_mm[at(v[0])] + surface.position_mm[at(v[1])] +
+                         surface.position_mm[at(v[2])]) /
+                        3.0);
+    };
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        bool found = false;
+        for (std::size_t i = 0; i < 3 && !found; ++i) {
+            const Eigen::Matrix3d& s = surface.shape_operator_per_mm[at(surface.corner[f][i])];
+            // Of the two principal curvatures the smaller: mean and Gaussian curvature give it.
+            const double mean = 0.5 * s.trace();
+            const double square = 0.5 * (s * s).trace();
+            const double least = mean - std::sqrt(std::max(0.0, square - mean * mean));
+            const std::int32_t other = surface.neighbour[f][i];
+            const bool valley = surface.feature[f][i] != 0 && other != kNoFace &&
+                                surface.normal[at(surface.corner[f][i])].dot(
+                                    centre(surface.face[at(other)]) -
+                                    surface.position_mm[at(surface.face[f][i])]) > 0.0;
+            found = least < -kHollow_per_mm || valley;
+        }
+        if (found) {
+            hollow.push_back(centre(surface.face[f]));
+        }
+    }
+    std::vector<char> near(surface.face.size(), 0);
+    if (hollow.empty()) {
+        return near;
+    }
+    const NearestPoints points(hollow);
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const Vector3d c = centre(surface.face[f]);
+        const auto nearest = at(points.nearest(c));
+        near[f] = (hollow[nearest] - c).norm() < reach_mm ? 1 : 0;
+    }
+    return near;
+}
+
+SurfacePoint on_surface(const Surface& surface, const Vector3d& place) {
+    const std::array<TriangleSoup, 1> soup{{{surface.position_mm, surface.face}}};
+    const RayQuery query(soup);
+    const double reach = std::max(1.0, 2.0 * surface.mean_edge_mm);
+    const ClosestPoint closest = query.closest(place, reach);
+    if (closest.part < 0) {
+        throw InputError("verify.tie_on", "",
+                         "the tie-on point (" + fixed(place.x(), 3) + ", " + fixed(place.y(), 3) +
+                             ", " + fixed(place.z(), 3) + ") is more than " + fixed(reach, 1) +
+                             " mm off the mandrel; is it the mandrel of this program?");
+    }
+    return {closest.face, closest.bary};
+}
+
+class Layer {
+public:
+    Layer(const Surface& surface, const Machine& machine, const BlockList& list,
+          const Vector3d& tie_on_mm, const LaydownOptions& options)
+        : surface_(surface),
+          machine_(machine),
+          list_(list),
+          options_(options),
+          hollow_(hollow_faces(surface, options.bridge_reach_mm)),
+          walker_(surface, on_surface(surface, tie_on_mm)),
+          scout_(walker_) {
+        // From the facet's point to the one over which the tie-on is.
+        const Vector3d towards = tie_on_mm - walker_.position_mm();
+        walker_.walk(
+            [&](const Vector3d& x, const Vector3d& n) {
+                const Vector3d rest = tie_on_mm - x;
+                const Vector3d flat = rest - n * n.dot(rest);
+                return Aim{flat, flat.norm() > kStation_mm ? -flat.norm() : 0.0, 1.0, 0.0};
+            },
+            towards.norm() + surface.mean_edge_mm, surface.mean_edge_mm);
+    }
+
+    LaidPath lay() {
+        laid_.joints.axis_count = list_.axes.size();
+        std::vector<double> from = joints_at(list_, 0);
+        eye_mm_ = eye_at(from);
+        record(walker_.station(eye_mm_ - walker_.position_mm()), 0.0, false);
+        record_sample(from);
+        for (block_ = 1; block_ < list_.blocks.size(); ++block_) {
+            const std::vector<double> to = joints_at(list_, block_);
+            if (!move(from, to)) {
+                laid_.failed_block = block_;
+                break;
+            }
+            from = to;
+        }
+        return std::move(laid_);
+    }
+
+private:
+    [[nodiscard]] Vector3d eye_at(const std::vector<double>& joints) const {
+        return mandrel_from_eye(machine_, joints).translation();
+    }
+
+    [[nodiscard]] int samples_of(const std::vector<double>& from,
+                                 const std::vector<double>& to) const {
+        double turned = 0.0;
+        double linear_squared = 0.0;
+        double spindle = 0.0;
+        for (std::size_t j = 0; j < from.size(); ++j) {
+            const double change = std::abs(to[j] - from[j]);
+            if (machine_.axis(j).type == AxisType::Linear) {
+                linear_squared += change * change;
+            } else {
+                turned += change;
+                spindle += j < machine_.mandrel_chain.size() ? change : 0.0;
+            }
+        }
+        const double way = std::sqrt(linear_squared) + spindle * eye_mm_.head<2>().norm();
+        return 1 + static_cast<int>(
+                       std::max(way / options_.sample_mm, turned / options_.sample_rad));
+    }
+
+    // One block; false where the fibre cannot be followed.
+    bool move(const std::vector<double>& from, const std::vector<double>& to) {
+        const int samples = samples_of(from, to);
+        std::vector<double> joints(from.size());
+        const auto joints_of = [&](double share) {
+            for (std::size_t j = 0; j < joints.size(); ++j) {
+                joints[j] = from[j] + share * (to[j] - from[j]);
+            }
+            return joints;
+        };
+        for (int k = 0; k < samples; ++k) {
+            std::array<Vector3d, 4> nodes{eye_mm_};
+            for (std::size_t i = 1; i < 4; ++i) {
+                nodes[i] = eye_at(joints_of((k + static_cast<double>(i) / 3.0) / samples));
+            }
+            eye_mm_ = nodes[3];
+            if (!follow(EyeCurve(nodes))) {
+                return false;
+            }
+            const double share = static_cast<double>(k + 1) / samples;
+            time_s_ += list_.blocks[block_].duration_s / samples;
+            record_sample(joints_of(share));
+        }
+        return true;
+    }
+
+    [[nodiscard]] double slack(const PathPoint& station, const Vector3d& eye) const {
+        return station.normal.dot(eye - station.position_mm);
+    }
+
+    // Takes up what the eye has lifted off: back to the last station that still holds it.
+    void peel(const Vector3d& eye) {
+        if (walker_.normal().dot(eye - walker_.position_mm()) <= kLift_mm) {
+            return;
+        }
+        const double reached = laid_.path.back().s_mm;
+        while (laid_.path.size() > 1 &&
+               (laid_.at.back().lifted || slack(laid_.path.back(), eye) > 0.0)) {
+            laid_.path.pop_back();
+            laid_.at.pop_back();
+        }
+        walker_.move_to(laid_.path.back().at);
+        const double peeled = reached - laid_.path.back().s_mm;
+        if (peeled > laid_.peeled_mm) {
+            laid_.peeled_mm = peeled;
+            laid_.peeled_block = block_;
+        }
+    }
+
+    // The landing point follows the eye to the end of its curve.
+    bool follow(const EyeCurve& curve) {
+        const Vector3d& eye = curve.end();
+        peel(eye);
+        const AimField field = [&curve, &eye](const Vector3d& x, const Vector3d& n) {
+            return Aim{curve.in_plane(x, n) - x, n.dot(eye - x), 0.0, (eye - x).norm()};
+        };
+        for (int bridges = 0; bridges < kMaxBridges; ++bridges) {
+            const double free = (eye - walker_.position_mm()).norm();
+            if (free < kLeastFree_mm) {
+                return fail("the eye touches the mandrel");
+            }
+            const double begun = laid_.path.back().s_mm;
+            const FieldWalk walk = walker_.walk(
+                field, free, std::max(kStepShare * free, kLeastFree_mm),
+                [&](const PathPoint& station) {
+                    record(station, begun + station.s_mm, false);
+                });
+            if (walk.length_mm > kStation_mm) {
+                record(walker_.station(eye - walker_.position_mm()), begun + walk.length_mm, false);
+            }
+            switch (walk.stop) {
+                case FieldStop::Rim:
+                    return fail("the fibre runs over the end of the extension of rim " +
+                                std::to_string(walk.rim));
+                case FieldStop::Folded:
+                    return fail("the mesh is too coarse here: a curved patch turns over");
+                case FieldStop::Length:
+                    return fail("the eye dips into the mandrel");
+                case FieldStop::Arrived:
+                    if (hollow_[at(walker_.face())] == 0 || !bridge(eye)) {
+                        return true;
+                    }
+                    break;
+                case FieldStop::Stalled:
+                    if (!bridge(eye)) {
+                        return true;
+                    }
+                    break;
+            }
+        }
+        return fail("the fibre bridges again and again at one place");
+    }
+
+    // Follows the straight fibre over the wall; where the wall stands in its way the landing point
+    // goes to the place that stands highest, seen from here. False where nothing does.
+    bool bridge(const Vector3d& eye) {
+        const Vector3d from = walker_.position_mm();
+        const double free = (eye - from).norm();
+        const Vector3d along = (eye - from) / free;
+        const double step = kAheadEdges * surface_.mean_edge_mm;
+        const double reach = std::min(options_.bridge_reach_mm, kAheadShare * free);
+        scout_ = walker_;
+        double highest = kTouch_rad;
+        double contact_mm = 0.0;
+        for (double ahead = step; ahead < reach; ahead += step) {
+            if (!scout_to(from + ahead * along, along)) {
+                break;
+            }
+            const double over = -scout_.normal().dot(from + ahead * along - scout_.position_mm());
+            if (over >= (highest - kTouch_rad) * ahead && over > kTouch_rad * ahead) {
+                highest = std::max(highest, over / ahead);
+                contact_mm = ahead;
+            }
+        }
+        if (contact_mm == 0.0) {
+            return false;
+        }
+        scout_ = walker_;
+        const double begun = laid_.path.back().s_mm;
+        double length = 0.0;
+        for (double ahead = std::min(step, contact_mm);; ahead = std::min(ahead + step, contact_mm)) {
+            const double before = length;
+            const Vector3d target = from + ahead * along;
+            const FieldWalk walk = scout_.walk(
+                shadow(target, along, step), 2.0 * step, step,
+                [&](const PathPoint& station) {
+                    record(station, begun + before + station.s_mm, true);
+                });
+            length += walk.length_mm;
+            if (ahead >= contact_mm) {
+                break;
+            }
+            record(scout_.station(along), begun + length, true);
+        }
+        walker_ = scout_;
+        record(walker_.station(eye - from), begun + length, false);
+        return true;
+    }
+
+    // Over the place `target` of the straight fibre.
+    bool scout_to(const Vector3d& target, const Vector3d& along) {
+        const double step = kAheadEdges * surface_.mean_edge_mm;
+        return scout_.walk(shadow(target, along, step), 2.0 * step, step).stop == FieldStop::Arrived;
+    }
+
+    // Leads along under the straight fibre, which runs through `target` along `along`.
+    static AimField shadow(const Vector3d& target, const Vector3d& along, double step) {
+        return [&target, &along, step](const Vector3d& x, const Vector3d&) {
+            const Vector3d rest = target - x;
+            const double left = along.dot(rest);
+            return Aim{rest + (step - left) * along, -left, 1.0, 0.0};
+        };
+    }
+
+    bool fail(const std::string& words) {
+        laid_.failure = words;
+        return false;
+    }
+
+    void record(const PathPoint& station, double s_mm, bool lifted) {
+        if (!laid_.path.empty() && s_mm - laid_.path.back().s_mm < kStation_mm &&
+            station.normal.dot(laid_.path.back().normal) > kSameNormal) {
+            return;
+        }
+        laid_.path.push_back(station);
+        laid_.path.back().s_mm = s_mm;
+        laid_.at.push_back({block_, lifted});
+    }
+
+    void record_sample(const std::vector<double>& joints) {
+        EyePoint sample;
+        sample.piece = list_.blocks[block_].piece;
+        sample.point = -1;
+        sample.s_mm = laid_.path.back().s_mm;
+        sample.landing_mm = walker_.position_mm();
+        sample.eye_mm = eye_mm_;
+        const Vector3d free = eye_mm_ - sample.landing_mm;
+        sample.free_length_mm = free.norm();
+        sample.tangent = free / sample.free_length_mm;
+        sample.binormal = walker_.normal().cross(sample.tangent).normalized();
+        laid_.samples.push_back(sample);
+        laid_.joints.joints.insert(laid_.joints.joints.end(), joints.begin(), joints.end());
+        laid_.time_s.push_back(time_s_);
+        laid_.block.push_back(block_);
+    }
+
+    const Surface& surface_;
+    const Machine& machine_;
+    const BlockList& list_;
+    LaydownOptions options_;
+    std::vector<char> hollow_;
+    FieldWalker walker_;
+    FieldWalker scout_;
+    Vector3d eye_mm_ = Vector3d::Zero();
+    std::size_t block_ = 0;
+    double time_s_ = 0.0;
+    LaidPath laid_;
+};
+
+}  // namespace
+
+LaidPath lay_down(const Surface& surface, const Machine& machine, const BlockList& list,
+                  const Vector3d& tie_on_mm, const LaydownOptions& options) {
+    return Layer(surface, machine, list, tie_on_mm, options).lay();
+}
+
+}  // namespace meshwind

@@ -1,0 +1,63 @@
+/// Winds a program: where the fibre comes to lie when the axes move as the blocks say.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geodesic/surface_path.h"
+#include "machines/machine.h"
+#include "mesh/surface.h"
+#include "postproc/block.h"
+#include "postproc/eye_path.h"
+#include "postproc/joint_path.h"
+
+namespace meshwind {
+
+struct LaydownOptions {
+    /// The eye moves no further and the rotary axes turn no further between two samples.
+    double sample_mm = 10.0;
+    double sample_rad = 0.1;
+    /// Over hollows the fibre is looked for so far ahead of the landing point; what it meets
+    /// further on counts as a collision of the free fibre.
+    double bridge_reach_mm = 40.0;
+};
+
+/// When a station was laid.
+struct LaidAt {
+    std::size_t block = 0;
+    bool lifted = false;  ///< on the wall under a bridge; the fibre is in the air there
+};
+
+/// What a program lays. Mandrel frame.
+struct LaidPath {
+    SurfacePath path;           ///< stations on the patches, s_mm from the tie-on, kg left at zero
+    std::vector<LaidAt> at;     ///< per station
+    EyePath samples;            ///< free fibre and eye along the motion; `point` is -1
+    JointPath joints;           ///< the axes at the samples
+    std::vector<double> time_s;       ///< at the samples, from the start of the program
+    std::vector<std::size_t> block;   ///< of each sample
+    double peeled_mm = 0.0;           ///< longest stretch that was laid and lifted off again
+    std::size_t peeled_block = 0;
+    std::string failure;              ///< empty, or in words why the fibre cannot be followed on
+    std::size_t failed_block = 0;
+};
+
+/// Lays the fibre that is tied on at `tie_on_mm` while the axes go from block to block, each axis
+/// linearly. The fibre runs straight from its landing point P to the eye E; it does not slip. As E
+/// sinks under the tangent plane at P, the landing point moves on towards E until n . (E - P) = 0;
+/// as E rises over it the fibre peels off. Between samples E is a cubic through four exact
+/// positions, and the place X decides how far E has come: n(X) . (E(theta) - X) = 0, so the laid
+/// path is the integral curve of the directions E(theta(X)) - X, solved on the curved patches with
+/// fourth order. Over a hollow the straight fibre is followed over the wall: where it meets the
+/// wall again the landing point goes there and leaves a bridge behind.
+/// \param surface the wall with its extensions (mesh/extension.h)
+/// \param tie_on_mm within an edge of the surface
+/// Accuracy: tests/postproc/laydown_test.cpp.
+[[nodiscard]] LaidPath lay_down(const Surface& surface, const Machine& machine,
+                                const BlockList& list, const Eigen::Vector3d& tie_on_mm,
+                                const LaydownOptions& options = {});
+
+}  // namespace meshwind
