@@ -221,8 +221,7 @@ bool FieldWalker::cross(const Heading& heading, std::size_t opposite, double s_m
                         const Visit& visit, FieldWalk& walk) {
     const std::size_t from = (opposite + 1) % 3;
     const std::size_t to = (opposite + 2) % 3;
-    const double share =
-        std::clamp(bary(uv_, to, 1.0), kVertexClearance, 1.0 - kVertexClearance);
+    const double share = std::clamp(bary(uv_, to, 1.0), kVertexClearance, 1.0 - kVertexClearance);
     PathPoint leaving = station(heading.aim.direction);
     leaving.s_mm = s_mm;
     const std::int32_t next = surface_->neighbour[at(face_)][from];

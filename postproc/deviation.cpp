@@ -32,8 +32,7 @@ Matched between(const PlannedStation& a, const PlannedStation& b, const Vector3d
     const Vector3d in = length * a.tangent - chord;
     const Vector3d out = chord - length * b.tangent;
     const Vector3d bulge = r * in + share * out;
-    const Vector3d slope =
-        chord + (r - share) * bulge + share * r * (out - in);
+    const Vector3d slope = chord + (r - share) * bulge + share * r * (out - in);
     Vector3d normal = r * a.normal + share * b.normal;
     normal -= slope.normalized() * slope.normalized().dot(normal);
     return {a.position_mm + share * chord + share * r * bulge, normal.normalized(),

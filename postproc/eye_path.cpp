@@ -5,12 +5,36 @@
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
-#include "winding/library.h"
 
 namespace meshwind {
 namespace {
 
 constexpr std::size_t kPointChunk = 256;
+
+// Under a bridge the fibre runs straight from the place that it leaves to the one that it meets:
+// there the eye goes on along this line.
+void straighten_bridges(const Piece& piece, std::span<EyePoint> points) {
+    const std::vector<double>& gap = piece.string.gap_mm;
+    for (std::size_t first = 1; first + 1 < points.size(); ++first) {
+        if (gap[first] <= 0.0) {
+            continue;
+        }
+        std::size_t end = first;
+        while (end + 1 < points.size() && gap[end] > 0.0) {
+            ++end;
+        }
+        const EyePoint& from = points[first - 1];
+        const EyePoint& to = points[end];
+        const Eigen::Vector3d chord = to.landing_mm - from.landing_mm;
+        for (std::size_t i = first; i < end; ++i) {
+            const double share = (points[i].s_mm - from.s_mm) / (to.s_mm - from.s_mm);
+            points[i].landing_mm = from.landing_mm + share * chord;
+            points[i].tangent = chord.normalized();
+            points[i].binormal = piece.path[i].normal.cross(chord).normalized();
+        }
+        first = end;
+    }
+}
 
 EyePath landing_points(std::span<const Piece> pieces) {
     EyePath path;
@@ -19,17 +43,16 @@ EyePath landing_points(std::span<const Piece> pieces) {
         const Piece& piece = pieces[p];
         for (std::size_t i = 0; i < piece.path.size(); ++i) {
             const PathPoint& station = piece.path[i];
-            const StringPoint fibre =
-                string_point(station, piece.string.gap_mm[i], piece.string.slope[i]);
             EyePoint point;
             point.piece = static_cast<std::int32_t>(p);
             point.point = static_cast<std::int32_t>(i);
             point.s_mm = laid_mm + station.s_mm;
-            point.landing_mm = fibre.position_mm;
-            point.tangent = fibre.tangent;
+            point.landing_mm = station.position_mm;
+            point.tangent = station.tangent;
             point.binormal = station.normal.cross(station.tangent);
             path.push_back(point);
         }
+        straighten_bridges(piece, std::span(path).last(piece.path.size()));
         laid_mm += piece.path.back().s_mm;
     }
     return path;

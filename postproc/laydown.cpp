@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
 #include "core/error.h"
 #include "core/text_number.h"
+#include "geodesic/bridge.h"
 #include "geodesic/field_walk.h"
 #include "machines/kinematics.h"
 #include "mesh/nearest.h"
@@ -30,11 +32,8 @@ constexpr double kStepShare = 0.05;
 // 0.02 mm deep.
 constexpr double kHollow_per_mm = 1e-4;
 
-// Looking ahead over a hollow: step in mean edges, and the least angle by which the wall must stand
-// over the fibre (1 um at 10 mm).
-constexpr double kAheadEdges = 0.5;
-constexpr double kAheadShare = 0.9;  // of the free length
-constexpr double kTouch_rad = 1e-7;
+// Looking ahead over a hollow goes no further than this share of the free length.
+constexpr double kAheadShare = 0.9;
 // Bridges within one sample; more means a wall of spikes.
 constexpr int kMaxBridges = 50;
 
@@ -161,8 +160,7 @@ public:
           list_(list),
           options_(options),
           hollow_(hollow_faces(surface, options.bridge_reach_mm)),
-          walker_(surface, on_surface(surface, tie_on_mm)),
-          scout_(walker_) {
+          walker_(surface, on_surface(surface, tie_on_mm)) {
         // From the facet's point to the one over which the tie-on is.
         const Vector3d towards = tie_on_mm - walker_.position_mm();
         walker_.walk(
@@ -211,8 +209,8 @@ private:
             }
         }
         const double way = std::sqrt(linear_squared) + spindle * eye_mm_.head<2>().norm();
-        return 1 + static_cast<int>(
-                       std::max(way / options_.sample_mm, turned / options_.sample_rad));
+        return 1 +
+               static_cast<int>(std::max(way / options_.sample_mm, turned / options_.sample_rad));
     }
 
     // One block; false where the fibre cannot be followed.
@@ -279,9 +277,7 @@ private:
             const double begun = laid_.path.back().s_mm;
             const FieldWalk walk = walker_.walk(
                 field, free, std::max(kStepShare * free, kLeastFree_mm),
-                [&](const PathPoint& station) {
-                    record(station, begun + station.s_mm, false);
-                });
+                [&](const PathPoint& station) { record(station, begun + station.s_mm, false); });
             if (walk.length_mm > kStation_mm) {
                 record(walker_.station(eye - walker_.position_mm()), begun + walk.length_mm, false);
             }
@@ -294,12 +290,12 @@ private:
                 case FieldStop::Length:
                     return fail("the eye dips into the mandrel");
                 case FieldStop::Arrived:
-                    if (hollow_[at(walker_.face())] == 0 || !bridge(eye)) {
+                    if (hollow_[at(walker_.face())] == 0 || !cross_hollow(eye)) {
                         return true;
                     }
                     break;
                 case FieldStop::Stalled:
-                    if (!bridge(eye)) {
+                    if (!cross_hollow(eye)) {
                         return true;
                     }
                     break;
@@ -308,65 +304,24 @@ private:
         return fail("the fibre bridges again and again at one place");
     }
 
-    // Follows the straight fibre over the wall; where the wall stands in its way the landing point
-    // goes to the place that stands highest, seen from here. False where nothing does.
-    bool bridge(const Vector3d& eye) {
-        const Vector3d from = walker_.position_mm();
-        const double free = (eye - from).norm();
-        const Vector3d along = (eye - from) / free;
-        const double step = kAheadEdges * surface_.mean_edge_mm;
-        const double reach = std::min(options_.bridge_reach_mm, kAheadShare * free);
-        scout_ = walker_;
-        double highest = kTouch_rad;
-        double contact_mm = 0.0;
-        for (double ahead = step; ahead < reach; ahead += step) {
-            if (!scout_to(from + ahead * along, along)) {
-                break;
-            }
-            const double over = -scout_.normal().dot(from + ahead * along - scout_.position_mm());
-            if (over >= (highest - kTouch_rad) * ahead && over > kTouch_rad * ahead) {
-                highest = std::max(highest, over / ahead);
-                contact_mm = ahead;
-            }
-        }
-        if (contact_mm == 0.0) {
+    // Over a hollow, to where the straight fibre meets the wall again; false where it does not.
+    bool cross_hollow(const Vector3d& eye) {
+        const Vector3d free = eye - walker_.position_mm();
+        const double length = free.norm();
+        const std::optional<Bridge> bridge =
+            bridge_ahead(surface_, walker_, free / length,
+                         std::min(options_.bridge_reach_mm, kAheadShare * length));
+        if (!bridge) {
             return false;
         }
-        scout_ = walker_;
         const double begun = laid_.path.back().s_mm;
-        double length = 0.0;
-        for (double ahead = std::min(step, contact_mm);; ahead = std::min(ahead + step, contact_mm)) {
-            const double before = length;
-            const Vector3d target = from + ahead * along;
-            const FieldWalk walk = scout_.walk(
-                shadow(target, along, step), 2.0 * step, step,
-                [&](const PathPoint& station) {
-                    record(station, begun + before + station.s_mm, true);
-                });
-            length += walk.length_mm;
-            if (ahead >= contact_mm) {
-                break;
-            }
-            record(scout_.station(along), begun + length, true);
+        for (std::size_t i = 0; i < bridge->under.size(); ++i) {
+            const bool lifted = i + 1 < bridge->under.size();
+            record(bridge->under[i], begun + bridge->under[i].s_mm, lifted);
+            laid_.at.back().gap_mm = lifted ? bridge->gap_mm[i] : 0.0;
         }
-        walker_ = scout_;
-        record(walker_.station(eye - from), begun + length, false);
+        walker_ = bridge->far;
         return true;
-    }
-
-    // Over the place `target` of the straight fibre.
-    bool scout_to(const Vector3d& target, const Vector3d& along) {
-        const double step = kAheadEdges * surface_.mean_edge_mm;
-        return scout_.walk(shadow(target, along, step), 2.0 * step, step).stop == FieldStop::Arrived;
-    }
-
-    // Leads along under the straight fibre, which runs through `target` along `along`.
-    static AimField shadow(const Vector3d& target, const Vector3d& along, double step) {
-        return [&target, &along, step](const Vector3d& x, const Vector3d&) {
-            const Vector3d rest = target - x;
-            const double left = along.dot(rest);
-            return Aim{rest + (step - left) * along, -left, 1.0, 0.0};
-        };
     }
 
     bool fail(const std::string& words) {
@@ -381,7 +336,7 @@ private:
         }
         laid_.path.push_back(station);
         laid_.path.back().s_mm = s_mm;
-        laid_.at.push_back({block_, lifted});
+        laid_.at.push_back({block_, lifted, 0.0});
     }
 
     void record_sample(const std::vector<double>& joints) {
@@ -407,7 +362,6 @@ private:
     LaydownOptions options_;
     std::vector<char> hollow_;
     FieldWalker walker_;
-    FieldWalker scout_;
     Vector3d eye_mm_ = Vector3d::Zero();
     std::size_t block_ = 0;
     double time_s_ = 0.0;

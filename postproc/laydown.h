@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "geodesic/bridge.h"
 #include "geodesic/surface_path.h"
 #include "machines/machine.h"
 #include "mesh/surface.h"
@@ -22,26 +23,27 @@ struct LaydownOptions {
     double sample_rad = 0.1;
     /// Over hollows the fibre is looked for so far ahead of the landing point; what it meets
     /// further on counts as a collision of the free fibre.
-    double bridge_reach_mm = 40.0;
+    double bridge_reach_mm = kBridgeReach_mm;
 };
 
 /// When a station was laid.
 struct LaidAt {
     std::size_t block = 0;
     bool lifted = false;  ///< on the wall under a bridge; the fibre is in the air there
+    double gap_mm = 0.0;  ///< height of the fibre over the wall, where lifted
 };
 
 /// What a program lays. Mandrel frame.
 struct LaidPath {
-    SurfacePath path;           ///< stations on the patches, s_mm from the tie-on, kg left at zero
-    std::vector<LaidAt> at;     ///< per station
-    EyePath samples;            ///< free fibre and eye along the motion; `point` is -1
-    JointPath joints;           ///< the axes at the samples
-    std::vector<double> time_s;       ///< at the samples, from the start of the program
-    std::vector<std::size_t> block;   ///< of each sample
-    double peeled_mm = 0.0;           ///< longest stretch that was laid and lifted off again
+    SurfacePath path;            ///< stations on the patches, s_mm from the tie-on, kg left at zero
+    std::vector<LaidAt> at;      ///< per station
+    EyePath samples;             ///< free fibre and eye along the motion; `point` is -1
+    JointPath joints;            ///< the axes at the samples
+    std::vector<double> time_s;  ///< at the samples, from the start of the program
+    std::vector<std::size_t> block;  ///< of each sample
+    double peeled_mm = 0.0;          ///< longest stretch that was laid and lifted off again
     std::size_t peeled_block = 0;
-    std::string failure;              ///< empty, or in words why the fibre cannot be followed on
+    std::string failure;  ///< empty, or in words why the fibre cannot be followed on
     std::size_t failed_block = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
+#include "geodesic/bridge.h"
 
 namespace meshwind {
 namespace {
@@ -15,6 +16,13 @@ using Eigen::Vector3d;
 // Distance of the stations at which the free fibre is tried: shorter than any head that could slip
 // by.
 constexpr double kWindableStep_mm = 5.0;
+
+// Share of the bridging tolerance that a course may use: the string over a path is a little off the
+// straight fibre (geodesic/measure.h).
+constexpr double kBridgeShare = 0.96;
+
+// Stations that a seed is moved beyond a bridge.
+constexpr std::size_t kStationsBeyond = 3;
 
 constexpr std::size_t kCandidateChunk = 64;
 
@@ -29,9 +37,12 @@ Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
 TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, double side,
                        TraceMethod method) {
     const Surface& surface = rules.mandrel.surface;
-    return trace(surface, candidate.seed, side * direction_of(surface, candidate),
-                 {side * candidate.slip_ratio, 0.0},
-                 {.max_length_mm = rules.max_half_length_mm, .method = method});
+    const Vector3d direction = side * direction_of(surface, candidate);
+    const Steering steering{side * candidate.slip_ratio, 0.0};
+    const TraceOptions options{.max_length_mm = rules.max_half_length_mm, .method = method};
+    return method == TraceMethod::Walk
+               ? trace(surface, candidate.seed, direction, steering, options)
+               : trace_taut(surface, candidate.seed, direction, steering, options);
 }
 
 SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {
@@ -50,6 +61,7 @@ SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {
 struct Run {
     SurfacePath path;
     TautString string;
+    std::size_t seed = 0;  // station of the candidate's seed
 };
 
 // Traces a member's candidate, notes where it crosses the rims, and judges what the path alone
@@ -68,10 +80,30 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
             return Refusal::NotTurnable;
         }
     }
+    run.seed = half[0].path.size() - 1;
     run.path = join_halves(half[0].path, half[1].path);
     run.string = taut_string(run.path);
-    return run.string.worst_gap_mm > rules.tow.bridging_tolerance_mm ? Refusal::Bridging
-                                                                     : Refusal::None;
+    return run.string.worst_gap_mm > kBridgeShare * rules.tow.bridging_tolerance_mm
+               ? Refusal::Bridging
+               : Refusal::None;
+}
+
+// The same course from a seed on the wall, where its own lies under a bridge: a taut fibre is
+// traced from where it touches. Some stations beyond the bridge, whose ends are not known better.
+Candidate on_the_wall(const Run& run, const Candidate& candidate) {
+    const std::vector<double>& gap = run.string.gap_mm;
+    if (gap[run.seed] <= 0.0) {
+        return candidate;
+    }
+    std::size_t station = run.seed;
+    while (station + 1 < gap.size() && gap[station] > 0.0) {
+        ++station;
+    }
+    for (std::size_t i = 0; i < kStationsBeyond && station + 1 < gap.size(); ++i) {
+        station += gap[station + 1] <= 0.0 ? 1 : 0;
+    }
+    const PathPoint& place = run.path[station];
+    return {place.at, direction_angle(place.normal, place.tangent), candidate.slip_ratio};
 }
 
 // True when a free length can be found at every station tried, and carried from each to the next.
@@ -141,6 +173,7 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
         if (refusal != Refusal::None) {
             return refusal;
         }
+        course.candidate = on_the_wall(run, course.candidate);
     }
     course.length_mm = run.path.back().s_mm;
     const SlipOptions limit{.friction = rules.tow.friction, .method = TraceMethod::Patches};

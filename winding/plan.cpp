@@ -33,8 +33,12 @@ void thin_out(Piece& piece, double step_mm) {
         const double s = piece.path[i].s_mm;
         const bool crease =
             s <= piece.path[i - 1].s_mm || (i < last && piece.path[i + 1].s_mm <= s);
+        const bool lifted = piece.string.gap_mm[i] > 0.0;
+        const bool contact = lifted != (piece.string.gap_mm[i - 1] > 0.0) ||
+                             (i < last && lifted != (piece.string.gap_mm[i + 1] > 0.0));
         const bool room = piece.path[last].s_mm - s >= step_mm;
-        if (i == last || crease || (room && s - piece.path[kept.back()].s_mm >= step_mm)) {
+        if (i == last || crease || contact ||
+            (room && s - piece.path[kept.back()].s_mm >= step_mm)) {
             kept.push_back(i);
         }
     }

@@ -26,7 +26,8 @@ struct Piece {
     bool starts_fibre = false;  ///< tied on before this piece
 };
 
-/// Keeps stations at least `step_mm` apart, both ends, and both sides of a feature edge.
+/// Keeps stations at least `step_mm` apart, both ends, both sides of a feature edge, and where the
+/// fibre leaves the wall or meets it again the stations on either side of that place.
 void thin_out(Piece& piece, double step_mm);
 
 /// Why a course that the library admits is not laid after all, or not in one direction.

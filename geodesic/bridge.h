@@ -1,0 +1,40 @@
+/// Where a straight fibre over a hollow meets the wall again, and paths that are taut over hollows.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geodesic/field_walk.h"
+#include "geodesic/trace.h"
+
+namespace meshwind {
+
+/// Over hollows a fibre is looked for so far ahead of where it leaves the wall; at the bridging
+/// tolerances in use it is back long before.
+inline constexpr double kBridgeReach_mm = 40.0;
+
+/// A straight stretch of fibre over the wall.
+struct Bridge {
+    SurfacePath under;           ///< n >= 1: the wall below, s_mm from where the fibre leaves it;
+                                 ///< the last station is where the fibre meets it again
+    std::vector<double> gap_mm;  ///< n, height of the fibre over the stations; the last is 0
+    FieldWalker far;             ///< at the last station
+};
+
+/// Follows the straight fibre that leaves the wall at `from` along the unit vector `along`, over
+/// the wall below it, and takes the place that stands highest, seen from `from`: there the fibre
+/// touches. Nothing where the wall stays below the fibre over `reach_mm`.
+[[nodiscard]] std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& from,
+                                                 const Eigen::Vector3d& along, double reach_mm);
+
+/// trace() by TraceMethod::Patches of the path that a taut fibre takes: where its tangent meets the
+/// wall further on it leaves the wall, runs straight, and goes on from there in the direction in
+/// which it arrives. Stations under such bridges lie on the wall, their tangents are those of the
+/// straight fibre over it. Bridges of less than kLeastBridge_mm are left as the path over the wall.
+[[nodiscard]] TraceResult trace_taut(const Surface& surface, const SurfacePoint& start,
+                                     const Eigen::Vector3d& direction, const Steering& steering,
+                                     const TraceOptions& options);
+
+inline constexpr double kLeastBridge_mm = 0.002;
+
+}  // namespace meshwind
