@@ -47,7 +47,8 @@ PlannedFibre planned_fibre(std::span<const Piece> pieces) {
         const SurfacePath& path = pieces[p].path;
         for (std::size_t i = 0; i < path.size(); ++i) {
             fibre.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(i),
-                             path[i].position_mm, path[i].normal, path[i].tangent});
+                             path[i].position_mm, path[i].normal, path[i].tangent,
+                             pieces[p].string.gap_mm[i] > 0.0});
         }
     }
     return fibre;
@@ -75,7 +76,8 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
             next = next_of(j);
         }
         deviation.planned.push_back(j);
-        if (laid.at[i].lifted || next >= planned.size()) {
+        if (laid.at[i].lifted || next >= planned.size() || planned[j].lifted ||
+            planned[next].lifted) {
             continue;
         }
         // Of several stations at one place the last leads on.

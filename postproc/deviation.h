@@ -21,6 +21,7 @@ struct PlannedStation {
     Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();
+    bool lifted = false;  ///< under a bridge
 };
 
 using PlannedFibre = std::vector<PlannedStation>;
@@ -45,7 +46,8 @@ struct Deviation {
 };
 
 /// Goes along both fibres at once: each laid station is held against the cubic between the planned
-/// stations around it. Under a bridge nothing is compared.
+/// stations around it. Over a bridge, from the station before it to the one after, nothing is
+/// compared: there the fibre is in the air.
 /// \pre planned is not empty
 [[nodiscard]] Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
                                 const LaydownTolerance& tolerance);

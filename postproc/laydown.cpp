@@ -248,14 +248,17 @@ private:
         if (walker_.normal().dot(eye - walker_.position_mm()) <= kLift_mm) {
             return;
         }
-        const double reached = laid_.path.back().s_mm;
+        double peeled = 0.0;
         while (laid_.path.size() > 1 &&
                (laid_.at.back().lifted || slack(laid_.path.back(), eye) > 0.0)) {
+            const std::size_t last = laid_.path.size() - 1;
+            if (!laid_.at[last].lifted && !laid_.at[last - 1].lifted) {
+                peeled += laid_.path[last].s_mm - laid_.path[last - 1].s_mm;
+            }
             laid_.path.pop_back();
             laid_.at.pop_back();
         }
         walker_.move_to(laid_.path.back().at);
-        const double peeled = reached - laid_.path.back().s_mm;
         if (peeled > laid_.peeled_mm) {
             laid_.peeled_mm = peeled;
             laid_.peeled_block = block_;

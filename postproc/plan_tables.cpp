@@ -1,0 +1,181 @@
+#include "postproc/plan_tables.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "core/text_number.h"
+#include "machines/kinematics.h"
+
+namespace meshwind {
+namespace {
+
+// Bridges under this height are rounding of the table's fourth decimal.
+constexpr double kLifted_mm = 5e-5;
+
+// A table of comma-separated cells with a line of names.
+class Table {
+public:
+    Table(std::string_view text, const std::string& file) : rest_(text), file_(file) {
+        next();
+        names_ = cells_;
+    }
+
+    // Goes to the next line; false at the end.
+    bool next() {
+        if (rest_.empty()) {
+            return false;
+        }
+        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+        std::string_view line = rest_.substr(0, end);
+        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+        if (!line.empty() && line.back() == '\r') {
+            line.remove_suffix(1);
+        }
+        ++line_;
+        cells_.clear();
+        for (;;) {
+            const std::size_t comma = line.find(',');
+            cells_.push_back(line.substr(0, comma));
+            if (comma == std::string_view::npos) {
+                break;
+            }
+            line.remove_prefix(comma + 1);
+        }
+        if (!names_.empty() && cells_.size() != names_.size()) {
+            fail("plan.number", "has " + std::to_string(cells_.size()) + " cells, its first line " +
+                                    std::to_string(names_.size()) + "; write the table again");
+        }
+        return true;
+    }
+
+    [[nodiscard]] std::size_t column(std::string_view name) const {
+        const auto found = std::find(names_.begin(), names_.end(), name);
+        if (found == names_.end()) {
+            fail("plan.column", "has no column '" + std::string(name) +
+                                    "'; name the folder that the main job wrote");
+        }
+        return static_cast<std::size_t>(found - names_.begin());
+    }
+
+    [[nodiscard]] double number(std::size_t column) const {
+        const std::string_view cell = cells_[column];
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+        if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
+            fail("plan.number", "'" + std::string(cell) + "' in column " +
+                                    std::string(names_[column]) + " is not a number");
+        }
+        return value;
+    }
+
+    [[nodiscard]] Eigen::Vector3d vector(const std::array<std::size_t, 3>& columns) const {
+        return {number(columns[0]), number(columns[1]), number(columns[2])};
+    }
+
+    [[noreturn]] void fail(const char* code, const std::string& words) const {
+        throw InputError(code, file_ + ":" + std::to_string(line_), words);
+    }
+
+private:
+    std::string_view rest_;
+    std::string file_;
+    int line_ = 0;
+    std::vector<std::string_view> names_;
+    std::vector<std::string_view> cells_;
+};
+
+// Words when two values differ by more than `slack`.
+std::optional<std::string> differing(const std::string& name, double is, double planned,
+                                     double slack, const char* unit, int decimals) {
+    if (std::abs(is - planned) <= slack) {
+        return std::nullopt;
+    }
+    return name + " is " + fixed(is, decimals) + unit + ", planned " + fixed(planned, decimals) +
+           unit;
+}
+
+std::optional<std::string> block_difference(const Machine& machine, const BlockList& list,
+                                            std::size_t block, const PlannedMotion& planned,
+                                            double duration_s) {
+    for (std::size_t a = 0; a < list.axes.size(); ++a) {
+        const double step =
+            static_cast<double>(list.axes[a].resolution_nano) / static_cast<double>(kNanoPerUnit);
+        const bool rotary = list.axes[a].type == AxisType::Rotary;
+        if (auto words = differing(std::string(1, list.axes[a].letter), list.value(block, a),
+                                   planned.value[a], 0.5 * step, rotary ? " deg" : " mm",
+                                   decimals_of(list.axes[a].resolution_nano))) {
+            return words;
+        }
+    }
+    const Eigen::Vector3d eye = mandrel_from_eye(machine, joints_at(list, block)).translation();
+    if ((eye - planned.eye_mm).norm() > kSameEye_mm) {
+        return "the eye is " + fixed((eye - planned.eye_mm).norm(), 4) +
+               " mm from where it was planned; is it the machine of the plan?";
+    }
+    return differing("its duration", list.blocks[block].duration_s, duration_s,
+                     kSameTime_s + kSameTimeShare * duration_s, " s", 6);
+}
+
+}  // namespace
+
+PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
+    Table table(text, file);
+    const std::size_t course = table.column("course");
+    const std::size_t point = table.column("point");
+    const std::size_t bridge = table.column("bridge_mm");
+    const std::array position = {table.column("x_mm"), table.column("y_mm"), table.column("z_mm")};
+    const std::array normal = {table.column("nx"), table.column("ny"), table.column("nz")};
+    const std::array tangent = {table.column("tx"), table.column("ty"), table.column("tz")};
+    PlannedFibre fibre;
+    while (table.next()) {
+        fibre.push_back({static_cast<std::int32_t>(table.number(course)),
+                         static_cast<std::int32_t>(table.number(point)), table.vector(position),
+                         table.vector(normal), table.vector(tangent),
+                         table.number(bridge) > kLifted_mm});
+    }
+    if (fibre.size() < 2) {
+        table.fail("plan.empty", "has no landing points; name the folder that the main job wrote");
+    }
+    return fibre;
+}
+
+std::vector<PlannedMotion> read_motion_csv(std::string_view text, const std::string& file,
+                                           const Machine& machine) {
+    Table table(text, file);
+    const std::size_t time = table.column("time_s");
+    const std::array eye = {table.column("ex_mm"), table.column("ey_mm"), table.column("ez_mm")};
+    std::vector<std::size_t> letter;
+    for (std::size_t a = 0; a < machine.axis_count(); ++a) {
+        letter.push_back(table.column(std::string(1, machine.axis(a).letter)));
+    }
+    std::vector<PlannedMotion> motion;
+    while (table.next()) {
+        PlannedMotion row{table.number(time), {}, table.vector(eye)};
+        for (const std::size_t column : letter) {
+            row.value.push_back(table.number(column));
+        }
+        motion.push_back(std::move(row));
+    }
+    return motion;
+}
+
+MotionDifference first_difference(const Machine& machine, const BlockList& list,
+                                  const std::vector<PlannedMotion>& planned) {
+    const std::size_t both = std::min(list.blocks.size(), planned.size());
+    for (std::size_t b = 0; b < both; ++b) {
+        const double duration_s = b == 0 ? 0.0 : planned[b].time_s - planned[b - 1].time_s;
+        if (auto words = block_difference(machine, list, b, planned[b], duration_s)) {
+            return {b, *words};
+        }
+    }
+    if (list.blocks.size() != planned.size()) {
+        return {both, "the program has " + std::to_string(list.blocks.size()) +
+                          " blocks, planned " + std::to_string(planned.size())};
+    }
+    return {};
+}
+
+}  // namespace meshwind

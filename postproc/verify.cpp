@@ -1,0 +1,349 @@
+#include "postproc/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/text_number.h"
+#include "core/units.h"
+#include "geodesic/measure.h"
+#include "postproc/time_law.h"
+
+namespace meshwind {
+namespace {
+
+// The last landing point may lie so far from the planned one along the fibre: where it is straight
+// the landing point is known no better.
+constexpr double kEndGap_mm = 2.0;
+
+// Rounding of positions and of the six digits of F against a limit that is just kept.
+constexpr double kLimitSlack = 1e-3;
+
+// What the eye may be off the planned free length between the ends of blocks (choose_blocks.h).
+constexpr double kFreeLengthSlack_mm = 2.0;
+
+class Verifier {
+public:
+    explicit Verifier(const VerifyTask& task) : task_(task), rules_(task.rules) {}
+
+    Verification run() {
+        found_.laid = lay_down(task_.surface, task_.machine, task_.program, task_.tie_on_mm,
+                               rules_.simulation);
+        found_.fibre_length_mm = found_.laid.path.back().s_mm;
+        found_.duration_s = task_.program.duration_s();
+        check_laydown();
+        check_slip();
+        check_bridging();
+        check_collision();
+        check_free_length();
+        check_limits();
+        check_payout();
+        return std::move(found_);
+    }
+
+private:
+    [[nodiscard]] std::string block_words(std::size_t block) const {
+        const std::int32_t line = task_.program.blocks[block].line;
+        return "block " + std::to_string(block) +
+               (line > 0 ? " (line " + std::to_string(line) + ")" : std::string());
+    }
+
+    [[nodiscard]] static std::string place_words(const Eigen::Vector3d& p) {
+        return " at (" + fixed(p.x(), 1) + ", " + fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ")";
+    }
+
+    [[nodiscard]] std::string station_words(std::size_t station) const {
+        return block_words(found_.laid.at[station].block) +
+               place_words(found_.laid.path[station].position_mm);
+    }
+
+    void fail(Check& check, std::size_t block, const std::string& words) {
+        check.ok = false;
+        check.words = words;
+        if (!found_.first_wrong_block || block < *found_.first_wrong_block) {
+            found_.first_wrong_block = block;
+        }
+    }
+
+    void check_laydown() {
+        const LaidPath& laid = found_.laid;
+        Check check{"laydown", true, {}, {}};
+        if (task_.plan != nullptr) {
+            found_.deviation = compare(laid, *task_.plan, rules_.laydown);
+            const Deviation& off = *found_.deviation;
+            check.numbers = {{"max_deviation_mm", off.max_mm},
+                             {"max_angle_deg", deg_from_rad(off.max_angle_rad)},
+                             {"limit_mm", rules_.laydown.deviation_mm},
+                             {"limit_deg", deg_from_rad(rules_.laydown.angle_rad)},
+                             {"end_gap_mm", off.end_gap_mm}};
+            const std::size_t last = task_.program.blocks.size() - 1;
+            if (off.first_wrong) {
+                fail(check, laid.at[*off.first_wrong].block,
+                     "the laid fibre leaves the plan in " + station_words(*off.first_wrong) +
+                         ", by up to " + fixed(off.max_mm, 3) + " mm and " +
+                         fixed(deg_from_rad(off.max_angle_rad), 3) + " deg");
+            } else if (laid.failure.empty() && off.end_gap_mm > kEndGap_mm) {
+                fail(check, last,
+                     "the program ends " + fixed(off.end_gap_mm, 1) +
+                         " mm from the end of the plan");
+            }
+        }
+        if (!laid.failure.empty()) {
+            fail(check, laid.failed_block, laid.failure + " in " + block_words(laid.failed_block));
+        }
+        found_.checks.push_back(check);
+    }
+
+    // Length of path from each station to the nearest one under a bridge.
+    [[nodiscard]] std::vector<double> distance_to_bridges() const {
+        const LaidPath& laid = found_.laid;
+        std::vector<double> distance(laid.path.size(), std::numeric_limits<double>::infinity());
+        double last = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < laid.path.size(); ++i) {
+            last = laid.at[i].lifted ? laid.path[i].s_mm : last;
+            distance[i] = laid.path[i].s_mm - last;
+        }
+        last = std::numeric_limits<double>::infinity();
+        for (std::size_t i = laid.path.size(); i-- > 0;) {
+            last = laid.at[i].lifted ? laid.path[i].s_mm : last;
+            distance[i] = std::min(distance[i], last - laid.path[i].s_mm);
+        }
+        return distance;
+    }
+
+    void check_slip() {
+        const LaidPath& laid = found_.laid;
+        const SlipOptions options{.window_mm = rules_.tow_width_mm,
+                                  .friction = rules_.friction,
+                                  .method = TraceMethod::Patches};
+        found_.slip = measure_slip(task_.surface, laid.path, taut_string(laid.path), options).slip;
+        const std::vector<double> to_bridge = distance_to_bridges();
+        std::size_t worst = 0;
+        std::optional<std::size_t> first;
+        for (std::size_t i = 0; i < found_.slip.size(); ++i) {
+            if (to_bridge[i] <= rules_.tow_width_mm) {
+                found_.slip[i] = 0.0;
+            }
+            worst = found_.slip[i] > found_.slip[worst] ? i : worst;
+            if (!first && found_.slip[i] > rules_.friction) {
+                first = i;
+            }
+        }
+        Check check{"slip", true, {}, {}};
+        check.numbers = {{"limit", rules_.friction}, {"worst", found_.slip[worst]}};
+        if (first) {
+            fail(check, laid.at[*first].block,
+                 "the laid fibre slips: ratio " + fixed(found_.slip[worst], 4) +
+                     " exceeds the friction " + fixed(rules_.friction, 4) + ", first in " +
+                     station_words(*first));
+        }
+        found_.checks.push_back(check);
+    }
+
+    void check_bridging() {
+        const LaidPath& laid = found_.laid;
+        double worst = 0.0;
+        std::optional<std::size_t> first;
+        for (std::size_t i = 0; i < laid.at.size(); ++i) {
+            worst = std::max(worst, laid.at[i].gap_mm);
+            if (!first && laid.at[i].gap_mm > rules_.bridging_tolerance_mm) {
+                first = i;
+            }
+        }
+        Check check{"bridging", true, {}, {}};
+        check.numbers = {{"limit_mm", rules_.bridging_tolerance_mm}, {"worst_mm", worst}};
+        if (first) {
+            fail(check, laid.at[*first].block,
+                 "the laid fibre bridges by " + fixed(worst, 3) + " mm, more than " +
+                     fixed(rules_.bridging_tolerance_mm, 3) + " mm, first in " +
+                     station_words(*first));
+        }
+        found_.checks.push_back(check);
+    }
+
+    void check_collision() {
+        const LaidPath& laid = found_.laid;
+        const CollisionReport report =
+            check_collisions(task_.machine, task_.envelope, task_.obstacles, laid.samples,
+                             laid.joints, rules_.collision);
+        Check check{"collision", true, {}, {}};
+        check.numbers = {{"fibre_hits", static_cast<double>(report.fibre_hits.size())},
+                         {"head_hits", static_cast<double>(report.head_hits.size())},
+                         {"min_clearance_mm", report.min_clearance_mm}};
+        const auto say = [&](const std::vector<std::size_t>& hits, const std::string& words) {
+            if (!hits.empty() && check.ok) {
+                const std::size_t sample = hits.front();
+                fail(check, laid.block[sample],
+                     words + " in " + block_words(laid.block[sample]) +
+                         place_words(laid.samples[sample].landing_mm));
+            }
+        };
+        say(report.fibre_hits, "the free fibre meets the mandrel");
+        say(report.head_hits, "the head comes within " + fixed(rules_.collision.clearance_mm, 1) +
+                                  " mm of the mandrel");
+        found_.checks.push_back(check);
+    }
+
+    void check_free_length() {
+        const LaidPath& laid = found_.laid;
+        const FreeFibreRule& rule = rules_.collision.free_fibre;
+        Check check{"free_length", true, {}, {}};
+        found_.shortest_free_mm = std::numeric_limits<double>::infinity();
+        std::optional<std::size_t> first;
+        for (std::size_t i = 0; i < laid.samples.size(); ++i) {
+            const double length = laid.samples[i].free_length_mm;
+            found_.shortest_free_mm = std::min(found_.shortest_free_mm, length);
+            found_.longest_free_mm = std::max(found_.longest_free_mm, length);
+            const bool within = length >= rule.min_mm - kFreeLengthSlack_mm &&
+                                length <= rule.max_mm + rules_.simulation.bridge_reach_mm;
+            if (!first && !within) {
+                first = i;
+            }
+        }
+        check.numbers = {{"min_mm", found_.shortest_free_mm},
+                         {"max_mm", found_.longest_free_mm},
+                         {"limit_min_mm", rule.min_mm},
+                         {"limit_max_mm", rule.max_mm}};
+        if (first) {
+            fail(check, laid.block[*first],
+                 "the free length is " + fixed(laid.samples[*first].free_length_mm, 1) + " mm in " +
+                     block_words(laid.block[*first]) + ", outside the " + fixed(rule.min_mm, 1) +
+                     " to " + fixed(rule.max_mm, 1) + " mm of the machine");
+        }
+        found_.checks.push_back(check);
+    }
+
+    // Value of an axis with its unit.
+    [[nodiscard]] std::string shown(std::size_t joint, double value) const {
+        const bool rotary = task_.machine.axis(joint).type == AxisType::Rotary;
+        return rotary ? fixed(deg_from_rad(value), 2) + " deg" : fixed(value, 2) + " mm";
+    }
+
+    void check_limits() {
+        const BlockList& list = task_.program;
+        Check check{"limits", true, {}, {}};
+        JointPath joints;
+        joints.axis_count = list.axes.size();
+        std::vector<double> step_s;
+        for (std::size_t b = 0; b < list.blocks.size(); ++b) {
+            const std::vector<double> row = joints_at(list, b);
+            joints.joints.insert(joints.joints.end(), row.begin(), row.end());
+            step_s.push_back(list.blocks[b].duration_s);
+        }
+        find_travel_violations(task_.machine, joints);
+        const AxisLoad velocity = worst_velocity(task_.machine, joints, step_s);
+        const AxisLoad acceleration = worst_acceleration(task_.machine, joints, step_s);
+        check.numbers = {{"violations", static_cast<double>(joints.violations.size())},
+                         {"velocity_ratio", velocity.ratio},
+                         {"acceleration_ratio", acceleration.ratio}};
+        if (!joints.violations.empty()) {
+            const LimitViolation& first = *std::min_element(
+                joints.violations.begin(), joints.violations.end(),
+                [](const LimitViolation& a, const LimitViolation& b) { return a.first < b.first; });
+            const std::size_t joint = task_.machine.joint_of(first.axis).value_or(0);
+            fail(check, first.first,
+                 std::string("axis ") + first.axis + " goes to " + shown(joint, first.value) +
+                     ", past its end at " + shown(joint, first.limit) + ", from " +
+                     block_words(first.first) + " on");
+        }
+        say_load(check, velocity, "velocity");
+        say_load(check, acceleration, "acceleration");
+        found_.checks.push_back(check);
+    }
+
+    void say_load(Check& check, const AxisLoad& load, const std::string& what) {
+        if (load.ratio > 1.0 + kLimitSlack && check.ok) {
+            fail(check, load.step,
+                 std::string("axis ") + task_.machine.axis(load.joint).letter + " needs " +
+                     fixed(load.ratio, 3) + " times its " + what + " in " + block_words(load.step));
+        }
+    }
+
+    void check_payout() {
+        const LaidPath& laid = found_.laid;
+        const FibreLimits& fibre = task_.machine.fibre;
+        Check check{"payout", true, {}, {}};
+        double fastest = 0.0;
+        double back = 0.0;
+        double paid_most = -std::numeric_limits<double>::infinity();
+        std::optional<std::size_t> too_fast;
+        std::optional<std::size_t> slack;
+        double before = 0.0;
+        for (std::size_t i = 0; i < laid.samples.size(); ++i) {
+            const double paid = laid.samples[i].s_mm + laid.samples[i].free_length_mm;
+            const double dt = i > 0 ? laid.time_s[i] - laid.time_s[i - 1] : 0.0;
+            if (dt > 0.0) {
+                fastest = std::max(fastest, std::abs(paid - before) / dt);
+                if (!too_fast &&
+                    std::abs(paid - before) / dt > fibre.max_speed_mm_s * (1.0 + kLimitSlack)) {
+                    too_fast = i;
+                }
+            }
+            paid_most = std::max(paid_most, paid);
+            back = std::max(back, paid_most - paid);
+            if (!slack && paid_most - paid > fibre.take_up_mm) {
+                slack = i;
+            }
+            before = paid;
+        }
+        check.numbers = {{"limit_mm", fibre.take_up_mm},
+                         {"worst_mm", back},
+                         {"max_speed_mm_s", fastest},
+                         {"limit_mm_s", fibre.max_speed_mm_s}};
+        if (slack) {
+            fail(check, laid.block[*slack],
+                 "the fibre goes slack: " + fixed(back, 1) +
+                     " mm would have to be taken back, more than the " +
+                     fixed(fibre.take_up_mm, 1) + " mm of the tensioner, first in " +
+                     block_words(laid.block[*slack]));
+        } else if (too_fast) {
+            fail(check, laid.block[*too_fast],
+                 "the fibre runs at " + fixed(fastest, 0) + " mm/s, faster than the machine's " +
+                     fixed(fibre.max_speed_mm_s, 0) + " mm/s, first in " +
+                     block_words(laid.block[*too_fast]));
+        }
+        found_.checks.push_back(check);
+    }
+
+    const VerifyTask& task_;
+    const VerifyRules& rules_;
+    Verification found_;
+};
+
+void append_cells(std::string& text, const Eigen::Vector3d& v, int decimals) {
+    for (const double x : v) {
+        text += ',';
+        append_fixed(text, x, decimals);
+    }
+}
+
+}  // namespace
+
+Verification verify(const VerifyTask& task) {
+    return Verifier(task).run();
+}
+
+std::string laid_csv(const Verification& verification, const BlockList& program) {
+    const LaidPath& laid = verification.laid;
+    std::string text =
+        "block,line,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,slip,bridge_mm\n";
+    for (std::size_t i = 0; i < laid.path.size(); ++i) {
+        const PathPoint& station = laid.path[i];
+        text += std::to_string(laid.at[i].block);
+        text += ',' + std::to_string(program.blocks[laid.at[i].block].line) + ',';
+        append_fixed(text, station.s_mm, 4);
+        append_cells(text, station.position_mm, 4);
+        append_cells(text, station.normal, 7);
+        append_cells(text, station.tangent, 7);
+        text += ',';
+        append_fixed(text, station.kn_per_mm, 8);
+        text += ',';
+        append_fixed(text, verification.slip[i], 5);
+        text += ',';
+        append_fixed(text, laid.at[i].gap_mm, 4);
+        text += '\n';
+    }
+    return text;
+}
+
+}  // namespace meshwind

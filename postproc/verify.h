@@ -1,0 +1,81 @@
+/// Winds a program again from its text, the machine and the mandrel, and judges what comes of it.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "machines/machine.h"
+#include "mesh/ray_query.h"
+#include "mesh/surface.h"
+#include "postproc/block.h"
+#include "postproc/collision.h"
+#include "postproc/deviation.h"
+#include "postproc/laydown.h"
+
+namespace meshwind {
+
+/// One check of a report. The words are empty where it passed.
+struct Check {
+    std::string name;  ///< key in report.json
+    bool ok = true;
+    std::string words;  ///< where it failed: one line with the place, the number and the limit
+    std::map<std::string, double> numbers;  ///< further keys of the check, e.g. "worst", "limit"
+};
+
+/// What the laid fibre and the motion must keep.
+struct VerifyRules {
+    CollisionRule collision;  ///< with the free fibre's shortest and longest length
+    double friction = 0.2;
+    double bridging_tolerance_mm = 0.5;
+    double tow_width_mm = 6.0;
+    LaydownTolerance laydown;
+    LaydownOptions simulation;
+};
+
+/// A program that was read back, and the world in which it runs.
+struct VerifyTask {
+    const BlockList& program;  ///< as a dialect's reader gave it
+    Eigen::Vector3d tie_on_mm;
+    const Machine& machine;
+    const HeadEnvelope& envelope;
+    const Surface& surface;     ///< the wall with its extensions
+    const RayQuery& obstacles;  ///< everything that can be hit
+    const VerifyRules& rules;
+    const PlannedFibre* plan = nullptr;  ///< for the last comparison; none: nothing is compared
+};
+
+struct Verification {
+    LaidPath laid;
+    std::vector<double> slip;  ///< per laid station, |kg| / kn
+    std::optional<Deviation> deviation;
+    double fibre_length_mm = 0.0;
+    double duration_s = 0.0;
+    double shortest_free_mm = 0.0;
+    double longest_free_mm = 0.0;
+    std::vector<Check> checks;  ///< laydown, slip, bridging, collision, free_length, limits, payout
+    std::optional<std::size_t> first_wrong_block;  ///< the first at which a check fails
+};
+
+/// Lays the fibre (laydown.h) and checks on it:
+///  - laydown: the simulation reaches the end; against the plan, where there is one, sideways
+///    deviation and angle are within tolerance and the last landing point is the planned one;
+///  - slip: |kg / kn| of the laid path <= friction, over chords as long as the tow is wide, which
+///    does not turn on less; the ends of bridges, where the fibre may turn, apart;
+///  - bridging: height of the straight fibre over the wall;
+///  - collision: free fibre and head, swept between the samples;
+///  - free_length: within what the machine can wind with;
+///  - limits: travel, velocity and acceleration of the axes (time_law.h);
+///  - payout: speed of the fibre through the eye, and length to be taken back, which is slack.
+/// The words of a failed check name the block and its line.
+[[nodiscard]] Verification verify(const VerifyTask& task);
+
+/// The landing points that the program lays, as a table with the columns
+/// `block,line,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,slip,bridge_mm`.
+[[nodiscard]] std::string laid_csv(const Verification& verification, const BlockList& program);
+
+}  // namespace meshwind
