@@ -224,9 +224,8 @@ private:
         const double length = (eye_mm - at.landing_mm).norm();
         worst.length_mm = std::max({worst.length_mm, length - machine_.fibre.max_free_length_mm,
                                     machine_.fibre.min_free_length_mm - length});
-        const double twist =
-            angle_between_lines(pose.linear() * machine_.eye.roller, at.binormal) -
-            std::max(twist_rad_[nearest.step], twist_rad_[to]);
+        const double twist = angle_between_lines(pose.linear() * machine_.eye.roller, at.binormal) -
+                             std::max(twist_rad_[nearest.step], twist_rad_[to]);
         worst.twist_rad = std::max(worst.twist_rad, twist);
     }
 
@@ -271,13 +270,17 @@ FoundBlock longest_block(const BlockCheck& check, std::size_t first, std::size_t
     return good;
 }
 
-// Points that must be block ends: both ends of every piece.
-std::vector<std::size_t> piece_ends(const EyePath& path) {
+bool is_tied_on(const BlockTask& task, std::size_t point) {
+    return std::binary_search(task.tied_on.begin(), task.tied_on.end(), point);
+}
+
+// Points that must be block ends: the first one, the last one of every piece, and tie-ons.
+std::vector<std::size_t> fixed_ends(const BlockTask& task) {
+    const EyePath& path = task.path;
     std::vector<std::size_t> ends;
     for (std::size_t i = 0; i < path.size(); ++i) {
-        const bool starts = i == 0 || path[i].piece != path[i - 1].piece;
         const bool stops = i + 1 == path.size() || path[i].piece != path[i + 1].piece;
-        if (starts || stops) {
+        if (i == 0 || stops || is_tied_on(task, i)) {
             ends.push_back(i);
         }
     }
@@ -316,7 +319,7 @@ EyePoint point_between(const EyePoint& from, const EyePoint& to, double share) {
 BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
                           const BlockTolerance& tolerance) {
     BlockChoice choice;
-    const std::vector<std::size_t> fixed = piece_ends(task.path);
+    const std::vector<std::size_t> fixed = fixed_ends(task);
     if (fixed.empty()) {
         return choice;
     }
@@ -329,8 +332,7 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
         while (choice.ends.back() < fixed[i]) {
             const std::size_t first = choice.ends.back();
             const FoundBlock block = longest_block(check, first, fixed[i], length, offset_mm);
-            const bool tied_on =
-                std::binary_search(task.tied_on.begin(), task.tied_on.end(), block.last);
+            const bool tied_on = is_tied_on(task, block.last);
             add_block(choice, block, !tied_on, check.within(block.worst, offset_mm));
             offset_mm = tied_on ? 0.0 : block.worst.offset_mm;
             length = block.last - first;
@@ -342,6 +344,7 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
 EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolicy policy,
                     const BlockTolerance& tolerance) {
     EyePath fine = path;
+    std::vector<char> open(path.size(), 1);  // per step: not yet known to be fine enough
     for (int round = 0; round < kRefineRounds; ++round) {
         const JointPath joints = solve_joints(machine, fine, policy);
         const BlockTask task{.path = fine, .joints = joints};
@@ -350,22 +353,24 @@ EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolic
         parallel_for(fine.size(), kChunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const bool inside = i + 1 < fine.size() && fine[i].piece == fine[i + 1].piece;
-                parts[i] = inside ? check.parts(i) : 1;
+                parts[i] = inside && open[i] != 0 ? check.parts(i) : 1;
             }
         });
         EyePath finer;
+        std::vector<char> still_open;
         for (std::size_t i = 0; i < fine.size(); ++i) {
             finer.push_back(fine[i]);
             for (int k = 1; k < parts[i]; ++k) {
-                finer.push_back(point_between(fine[i], fine[i + 1],
-                                              static_cast<double>(k) / parts[i]));
+                finer.push_back(
+                    point_between(fine[i], fine[i + 1], static_cast<double>(k) / parts[i]));
             }
+            still_open.resize(finer.size(), parts[i] > 1 ? 1 : 0);
         }
-        const bool done = finer.size() == fine.size();
-        fine = std::move(finer);
-        if (done) {
+        if (finer.size() == fine.size()) {
             break;
         }
+        fine = std::move(finer);
+        open = std::move(still_open);
     }
     return fine;
 }

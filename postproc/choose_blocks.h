@@ -38,16 +38,17 @@ struct BlockTolerance {
 /// A dense path with what the choice has to heed.
 struct BlockTask {
     const EyePath& path;
-    const JointPath& joints;             ///< of equal length
-    std::span<const double> room_mm{};   ///< per point: the eye's bound where it is below `eye_mm`;
-                                         ///< empty where it never is
-    std::span<const std::size_t> tied_on{};  ///< ascending points to which the machine moves without
-                                             ///< fibre: those steps are blocks, and keep nothing
+    const JointPath& joints;            ///< of equal length
+    std::span<const double> room_mm{};  ///< per point: the eye's bound where it is below `eye_mm`;
+                                        ///< empty where it never is
+    std::span<const std::size_t>
+        tied_on{};  ///< ascending points to which the machine moves without
+                    ///< fibre: those steps are blocks, and keep nothing
 };
 
 struct BlockChoice {
-    /// Points that are block ends, ascending: the first and the last one, both ends of every piece,
-    /// and what the tolerance needs between.
+    /// Points that are block ends, ascending: the first, the last of every piece, tie-ons, and what
+    /// the tolerance needs between. So no block runs over the end of a piece.
     std::vector<std::size_t> ends;
     /// One per end: length for the fibre's speed of the block that ends there. Were the fibre laid,
     /// and drawn through the eye, all along the block as fast as where it is fastest, it would be
@@ -69,10 +70,11 @@ struct BlockChoice {
 [[nodiscard]] BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
                                         const BlockTolerance& tolerance);
 
-/// The path with further points (fibre_curve.h) where a single step, moved linearly by the joints of
-/// the policy, would pull sideways by more than `sideways_mm` or not keep the rest of the tolerance.
-/// Points between two stations bear the number of the first. Steps in which the eye moves less than
-/// kFinestStep_mm are left as they are: a wrist that flips does not get better by cutting.
+/// The path with further points (fibre_curve.h) where a single step, moved linearly by the joints
+/// of the policy, would pull sideways by more than `sideways_mm` or not keep the rest of the
+/// tolerance. Points between two stations bear the number of the first. Steps in which the eye
+/// moves less than kFinestStep_mm are left as they are: a wrist that flips does not get better by
+/// cutting.
 [[nodiscard]] EyePath refine_path(const Machine& machine, const EyePath& path,
                                   RedundancyPolicy policy, const BlockTolerance& tolerance);
 
