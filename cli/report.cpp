@@ -101,6 +101,15 @@ json axes_report(const WindResult& result) {
     return axes;
 }
 
+json choice_report(const BlockChoice& choice) {
+    return {{"worst_sideways_mm", rounded(choice.worst_sideways_mm)},
+            {"worst_angle_deg", rounded(deg_from_rad(choice.worst_angle_rad))},
+            {"worst_pull_mm", rounded(choice.worst_pull_mm)},
+            {"worst_eye_mm", rounded(choice.worst_eye_mm)},
+            {"worst_twist_deg", rounded(deg_from_rad(choice.worst_twist_rad))},
+            {"steps_beyond", choice.beyond}};
+}
+
 json program_report(const WindResult& result) {
     json binding = json::array();
     for (const BindingLimit& limit : result.binding) {
@@ -108,7 +117,9 @@ json program_report(const WindResult& result) {
     }
     return {{"file", result.program_written ? json(result.program_file) : json(nullptr)},
             {"dialect", result.machine.controller.dialect},
+            {"path_points", result.path_points},
             {"blocks", result.blocks.blocks.size()},
+            {"choice", choice_report(result.choice)},
             {"duration_s", rounded(result.duration_s)},
             {"free_length_mm",
              {{"min", rounded(result.eyes.shortest_mm)}, {"max", rounded(result.eyes.longest_mm)}}},

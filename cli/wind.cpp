@@ -20,6 +20,7 @@
 #include "machines/machine_json.h"
 #include "mesh/extension.h"
 #include "mesh/import.h"
+#include "postproc/choose_blocks.h"
 #include "postproc/dialect.h"
 #include "postproc/motion_csv.h"
 #include "postproc/path_csv.h"
@@ -35,9 +36,21 @@ namespace fs = std::filesystem;
 // landing point itself may stand in the way; a wall within that distance would bridge first.
 constexpr double kRayStartEdges = 2.0;
 
-// Added to the clearance where free lengths are chosen: between two blocks the axes cut the corner
-// of the eye's curve by up to this much, and the clearance must hold there as well.
+// Added to the clearance where free lengths are chosen: between the ends of a block the axes cut
+// the corner of the eye's curve by up to this much, and the clearance must hold there as well.
 constexpr double kBetweenBlocks_mm = 0.5;
+
+// Where the head has more room than that the corner may be cut by up to this much.
+constexpr double kMostBetweenBlocks_mm = 2.0;
+
+// And where a plan leaves less than nothing, blocks are not cut to crumbs for it: it is refused.
+constexpr double kLeastBetweenBlocks_mm = 0.1;
+
+// Laid fibre against the plan. For the choice of blocks a fifth is left for what the choice does
+// not see: rounding to the axes' resolution (0.005 mm at 300 mm from the spindle) and the first
+// order.
+constexpr double kLaydownAngle_deg = 0.3;
+constexpr double kChoiceShare = 0.8;
 
 // Clearances are tabulated this far around the mandrel: further out nothing of a head is in the
 // way.
@@ -209,31 +222,57 @@ private:
         obstacles_ = std::make_unique<RayQuery>(parts, kTableReach_mm);
     }
 
+    // What the machine does for some pieces, point by point.
+    struct Motion {
+        EyePathResult eyes;  // at the stations
+        EyePath path;        // with points between stations where the axes need them
+        JointPath joints;    // along that path
+    };
+
+    [[nodiscard]] Motion motion_for(std::span<const Piece> pieces) const {
+        constexpr RedundancyPolicy kPolicy = RedundancyPolicy::CentralAngle;
+        Motion motion;
+        motion.eyes = equal_free_length(pieces, *obstacles_, rule_.free_fibre);
+        motion.path = refine_path(result_.machine, motion.eyes.path, kPolicy, block_tolerance());
+        motion.joints = solve_joints(result_.machine, motion.path, kPolicy);
+        return motion;
+    }
+
+    [[nodiscard]] BlockTolerance block_tolerance() const {
+        BlockTolerance tolerance;
+        tolerance.sideways_mm = kChoiceShare * result_.job.tolerance.laydown_mm;
+        tolerance.angle_rad = kChoiceShare * rad_from_deg(kLaydownAngle_deg);
+        tolerance.eye_mm = kMostBetweenBlocks_mm;
+        return tolerance;
+    }
+
+    [[nodiscard]] CollisionReport collisions_of(const Motion& motion) const {
+        return check_collisions(result_.machine, envelope_, *obstacles_, motion.path, motion.joints,
+                                rule_);
+    }
+
     // Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason:
     // no free length, beyond an axis' travel, or hitting something.
     [[nodiscard]] std::map<std::size_t, Rejection> refused_pieces(
         std::span<const Piece> pieces) const {
-        const EyePathResult eyes = equal_free_length(pieces, *obstacles_, rule_.free_fibre);
+        const Motion motion = motion_for(pieces);
         std::map<std::size_t, Rejection> refused;
-        const auto refuse = [&](std::size_t point, Rejection reason) {
-            refused.emplace(static_cast<std::size_t>(eyes.path[point].piece), reason);
+        const auto refuse = [&](const EyePoint& point, Rejection reason) {
+            refused.emplace(static_cast<std::size_t>(point.piece), reason);
         };
-        for (const std::size_t point : eyes.blocked) {
-            refuse(point, Rejection::FreeLength);
+        for (const std::size_t point : motion.eyes.blocked) {
+            refuse(motion.eyes.path[point], Rejection::FreeLength);
         }
-        const JointPath joints =
-            solve_joints(result_.machine, eyes.path, RedundancyPolicy::CentralAngle);
-        for (const LimitViolation& violation : joints.violations) {
-            refuse(violation.point, Rejection::AxisTravel);
+        for (const LimitViolation& violation : motion.joints.violations) {
+            refuse(motion.path[violation.point], Rejection::AxisTravel);
         }
         if (refused.empty()) {
-            const CollisionReport report =
-                check_collisions(result_.machine, envelope_, *obstacles_, eyes.path, joints, rule_);
+            const CollisionReport report = collisions_of(motion);
             for (const std::size_t point : report.fibre_hits) {
-                refuse(point, Rejection::FibreHit);
+                refuse(motion.path[point], Rejection::FibreHit);
             }
             for (const std::size_t point : report.head_hits) {
-                refuse(point, Rejection::HeadHit);
+                refuse(motion.path[point], Rejection::HeadHit);
             }
         }
         return refused;
@@ -267,23 +306,31 @@ private:
 
     void post_process() {
         tell("post", 0.0);
-        const Plan& plan = result_.plan;
-        result_.eyes = equal_free_length(plan.pieces, *obstacles_, rule_.free_fibre);
-        joints_ = solve_joints(result_.machine, result_.eyes.path, RedundancyPolicy::CentralAngle);
+        motion_ = motion_for(result_.plan.pieces);
+        result_.eyes = motion_.eyes;
+        result_.path_points = motion_.path.size();
+        tell("collisions", 0.5);
+        collisions_ = collisions_of(motion_);
+        std::vector<double> room_mm = collisions_.clearance_mm;
+        for (double& room : room_mm) {
+            room = std::clamp(room - rule_.clearance_mm, kLeastBetweenBlocks_mm,
+                              kMostBetweenBlocks_mm);
+        }
+        result_.choice = choose_blocks(
+            result_.machine, {.path = motion_.path, .joints = motion_.joints, .room_mm = room_mm},
+            block_tolerance());
+        const std::span<const std::size_t> ends = result_.choice.ends;
+        const EyePath path = points_at(motion_.path, ends);
+        const JointPath joints = points_at(motion_.joints, ends);
         const TimeLawOptions time{.fibre_speed_mm_s =
                                       result_.job.speed.fibre_m_min * 1000.0 / 60.0};
-        const TimedPath timed = time_path(result_.machine, result_.eyes.path, joints_, time);
+        const TimedPath timed = time_path(result_.machine, result_.choice.fibre_mm, joints, time);
         result_.duration_s = timed.duration_s;
         result_.binding = timed.binding;
-        result_.blocks =
-            dialect_->prepare(make_blocks(result_.machine, result_.eyes.path, joints_, timed));
-        tell("collisions", 0.5);
-        collisions_ = check_collisions(result_.machine, envelope_, *obstacles_, result_.eyes.path,
-                                       joints_, rule_);
+        result_.blocks = dialect_->prepare(make_blocks(result_.machine, path, joints, timed));
     }
 
-    [[nodiscard]] std::string place_of(std::size_t point) const {
-        const EyePoint& eye = result_.eyes.path[point];
+    [[nodiscard]] static std::string place_of(const EyePoint& eye) {
         const Eigen::Vector3d& p = eye.landing_mm;
         return "piece " + std::to_string(eye.piece) + ", point " + std::to_string(eye.point) +
                " at (" + fixed(p.x(), 1) + ", " + fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ")";
@@ -374,24 +421,25 @@ private:
             check.ok = false;
             check.words = "no free fibre length between " + fixed(rule_.free_fibre.min_mm, 0) +
                           " and " + fixed(rule_.free_fibre.max_mm, 0) + " mm is clear at " +
-                          place_of(result_.eyes.blocked.front());
+                          place_of(result_.eyes.path[result_.eyes.blocked.front()]);
         } else if (!collisions_.fibre_hits.empty()) {
             check.ok = false;
-            check.words =
-                "the free fibre meets the mandrel at " + place_of(collisions_.fibre_hits.front());
+            check.words = "the free fibre meets the mandrel at " +
+                          place_of(motion_.path[collisions_.fibre_hits.front()]);
         } else if (!collisions_.head_hits.empty()) {
             check.ok = false;
             check.words = "the head comes within " + fixed(rule_.clearance_mm, 1) +
-                          " mm of the mandrel at " + place_of(collisions_.head_hits.front());
+                          " mm of the mandrel at " +
+                          place_of(motion_.path[collisions_.head_hits.front()]);
         }
         result_.checks.push_back(check);
     }
 
     void check_limits() {
-        Check check{"limits", joints_.violations.empty(), {}, {}};
-        check.numbers["violations"] = static_cast<double>(joints_.violations.size());
+        Check check{"limits", motion_.joints.violations.empty(), {}, {}};
+        check.numbers["violations"] = static_cast<double>(motion_.joints.violations.size());
         if (!check.ok) {
-            const LimitViolation& worst = joints_.violations.front();
+            const LimitViolation& worst = motion_.joints.violations.front();
             const auto joint = result_.machine.joint_of(worst.axis).value_or(0);
             const bool rotary = result_.machine.axis(joint).type == AxisType::Rotary;
             const auto shown = [&](double value) {
@@ -399,7 +447,7 @@ private:
             };
             check.words = std::string("axis ") + worst.axis + " would go to " + shown(worst.value) +
                           ", past its end at " + shown(worst.limit) + ", at " +
-                          place_of(worst.point);
+                          place_of(motion_.path[worst.point]);
         }
         result_.checks.push_back(check);
     }
@@ -496,7 +544,7 @@ private:
     std::unique_ptr<OutputFolder> folder_;
     HeadEnvelope envelope_;
     CollisionRule rule_;
-    JointPath joints_;
+    Motion motion_;
     CollisionReport collisions_;
 };
 

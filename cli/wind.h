@@ -12,6 +12,7 @@
 #include "machines/machine.h"
 #include "mesh/mandrel.h"
 #include "postproc/block.h"
+#include "postproc/choose_blocks.h"
 #include "postproc/collision.h"
 #include "postproc/eye_path.h"
 #include "winding/plan.h"
@@ -44,6 +45,8 @@ struct WindResult {
     Job job;
     Plan plan;
     EyePathResult eyes;
+    std::size_t path_points = 0;  ///< points that blocks were chosen from
+    BlockChoice choice;
     BlockList blocks;
     std::string program;       ///< text; empty when nothing can be written
     std::string program_file;  ///< name, e.g. "program.ngc"

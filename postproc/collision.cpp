@@ -256,6 +256,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
             report.min_clearance_point = i;
         }
     }
+    report.clearance_mm = std::move(clearance);
     return report;
 }
 

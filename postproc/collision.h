@@ -38,9 +38,9 @@ struct CollisionRule {
 struct CollisionReport {
     std::vector<std::size_t> fibre_hits;  ///< steps in which the free fibre meets the mandrel
     std::vector<std::size_t>
-        head_hits;  ///< steps in which the head comes nearer than the clearance
-    double min_clearance_mm =
-        0.0;  ///< least distance of the head at the eye points, up to kClearanceCap_mm
+        head_hits;                     ///< steps in which the head comes nearer than the clearance
+    std::vector<double> clearance_mm;  ///< of the head at each eye point, up to kClearanceCap_mm
+    double min_clearance_mm = 0.0;     ///< least of them
     std::size_t min_clearance_point = 0;
 };
 

@@ -13,6 +13,10 @@ namespace {
 // Relative slack of the acceleration test, so that a step that was just lengthened counts as kept.
 constexpr double kRatioSlack = 1e-6;
 
+// Of a long and a short step the ramp takes half of the short one, and as long as all of it in the
+// long one.
+constexpr double kShorterShare = 1.5;
+
 // Index of what sets a step's duration: 0 none, 1 fibre, then two per axis.
 constexpr std::size_t kNoLimit = 0;
 constexpr std::size_t kFibre = 1;
@@ -39,12 +43,9 @@ public:
           step_s_(joints.size(), 0.0),
           limit_(joints.size(), kNoLimit) {}
 
-    void keep_velocities(const EyePath& path, double fibre_mm_s) {
+    void keep_velocities(std::span<const double> fibre_mm, double fibre_mm_s) {
         for (std::size_t i = 1; i < joints_.size(); ++i) {
-            const double laid = std::abs(path[i].s_mm - path[i - 1].s_mm);
-            const double paid = std::abs(path[i].s_mm - path[i - 1].s_mm + path[i].free_length_mm -
-                                         path[i - 1].free_length_mm);
-            lengthen(i, std::max(laid, paid) / fibre_mm_s, kFibre);
+            lengthen(i, fibre_mm[i] / fibre_mm_s, kFibre);
             for (std::size_t a = 0; a < joints_.axis_count; ++a) {
                 lengthen(i, std::abs(move(i, a)) / machine_.axis(a).velocity, velocity_of(a));
             }
@@ -70,25 +71,46 @@ public:
     [[nodiscard]] double worst_ratio() const {
         double worst = 0.0;
         std::size_t before = 0;
-        for (std::size_t i = 1; i <= joints_.size(); ++i) {
-            const std::size_t step = i < joints_.size() ? i : 0;
-            if (step != 0 && step_s_[step] <= 0.0) {
+        for (std::size_t i = 1; i < joints_.size(); ++i) {
+            if (step_s_[i] <= 0.0) {
                 continue;
             }
             for (std::size_t a = 0; a < joints_.axis_count; ++a) {
-                const double allowed =
-                    0.5 * machine_.axis(a).acceleration * (step_s_[step] + step_s_[before]);
-                const double change = std::abs(speed(step, a) - speed(before, a));
-                worst = allowed > 0.0 ? std::max(worst, change / allowed) : worst;
+                worst = std::max({worst, ramp_ratio(i, before, a), ramp_ratio(before, i, a)});
             }
-            before = step;
+            before = i;
+        }
+        for (std::size_t a = 0; a < joints_.axis_count && before != 0; ++a) {
+            worst = std::max(worst, ramp_ratio(before, 0, a));
         }
         return worst;
+    }
+
+    // Time that the first moving step loses in its start, and the last in its stop.
+    [[nodiscard]] double rest_ramps_s() const {
+        std::size_t first = 0;
+        std::size_t last = 0;
+        for (std::size_t i = 1; i < joints_.size(); ++i) {
+            if (step_s_[i] > 0.0) {
+                first = first == 0 ? i : first;
+                last = i;
+            }
+        }
+        double start = 0.0;
+        double stop = 0.0;
+        for (std::size_t a = 0; a < joints_.axis_count && first != 0; ++a) {
+            const double twice = 2.0 * machine_.axis(a).acceleration;
+            start = std::max(start, std::abs(speed(first, a)) / twice);
+            stop = std::max(stop, std::abs(speed(last, a)) / twice);
+        }
+        return start + stop;
     }
 
     TimedPath result() && {
         TimedPath timed;
         std::vector<double> time_s(2 + 2 * joints_.axis_count, 0.0);
+        timed.ramp_s = rest_ramps_s();
+        timed.duration_s = timed.ramp_s;
         for (std::size_t i = 0; i < step_s_.size(); ++i) {
             timed.duration_s += step_s_[i];
             time_s[limit_[i]] += step_s_[i];
@@ -123,26 +145,49 @@ private:
         }
     }
 
-    // Lengthens `step` until no axis gains more speed than it may, coming from `neighbour`.
+    // Ramp that `step` has with its neighbour over the time that it has for it; a neighbour 0 is
+    // rest. In a reversal the step looks after its own side alone.
+    [[nodiscard]] double ramp_ratio(std::size_t step, std::size_t neighbour,
+                                    std::size_t joint) const {
+        if (step == 0) {
+            return 0.0;
+        }
+        const double acceleration = machine_.axis(joint).acceleration;
+        const double mine = speed(step, joint);
+        const double other = speed(neighbour, joint);
+        const bool alone = neighbour == 0 || mine * other < 0.0;
+        return alone ? 2.0 * std::abs(mine) / (acceleration * step_s_[step])
+                     : std::abs(mine - other) /
+                           (acceleration * ramp_room_s(step_s_[step], step_s_[neighbour]));
+    }
+
+    static double ramp_room_s(double one_s, double other_s) {
+        return std::min({0.5 * (one_s + other_s), kShorterShare * one_s, kShorterShare * other_s});
+    }
+
+    // Lengthens `step` until every axis that is faster in it than in the neighbour has time for its
+    // ramp. A step that is slower but too short to ramp in is left to the sweep the other way,
+    // which slows down the faster neighbour.
     bool adapt(std::size_t step, std::size_t neighbour) {
         if (step_s_[step] <= 0.0) {
             return false;
         }
         bool changed = false;
         for (std::size_t a = 0; a < joints_.axis_count; ++a) {
-            const double mine = move(step, a);
+            const double mine = speed(step, a);
             const double other = speed(neighbour, a);
-            const double half = 0.5 * machine_.axis(a).acceleration;
-            const double neighbour_s = neighbour == 0 ? 0.0 : step_s_[neighbour];
-            const double own_s = step_s_[step];
-            const bool faster = std::abs(mine) >= std::abs(other) * own_s;
-            const double change = std::abs(mine / own_s - other);
-            if (!faster || change <= half * (own_s + neighbour_s) * (1.0 + kRatioSlack)) {
+            if (std::abs(mine) < std::abs(other) && mine * other >= 0.0) {
                 continue;
             }
-            const double duration =
-                shortest(std::abs(mine), mine > 0.0 ? other : -other, neighbour_s, half);
-            if (duration > own_s) {
+            if (ramp_ratio(step, neighbour, a) <= 1.0 + kRatioSlack) {
+                continue;
+            }
+            const double acceleration = machine_.axis(a).acceleration;
+            const bool alone = neighbour == 0 || mine * other < 0.0;
+            const double duration = alone ? std::sqrt(2.0 * std::abs(move(step, a)) / acceleration)
+                                          : shortest(std::abs(move(step, a)), std::abs(other),
+                                                     step_s_[neighbour], acceleration);
+            if (duration > step_s_[step]) {
                 lengthen(step, duration, acceleration_of(a));
                 changed = true;
             }
@@ -150,16 +195,15 @@ private:
         return changed;
     }
 
-    // Duration T of a step of length `move` whose neighbour has speed v along it and duration T_n:
-    // move/T - v = half (T + T_n), that is half T^2 + (half T_n + v) T - move = 0. In a reversal
-    // (v < 0) each side brakes within its own half, else the first one to be looked at would have
-    // to wait for a neighbour that is still to be slowed down.
-    static double shortest(double move, double v, double neighbour_s, double half) {
-        if (v < 0.0) {
-            return std::sqrt(move / half);
-        }
-        const double p = half * neighbour_s + v;
-        return 2.0 * move / (p + std::sqrt(p * p + 4.0 * half * move));
+    // Duration T of a step of length `move` beside a slower neighbour of speed v and duration T_n:
+    // move/T - v = acceleration * ramp room, which is the least of three straight lines in T.
+    static double shortest(double move, double v, double neighbour_s, double acceleration) {
+        const auto solve = [&](double slope, double room_s) {
+            const double p = acceleration * room_s + v;
+            return 2.0 * move / (p + std::sqrt(p * p + 4.0 * acceleration * slope * move));
+        };
+        return std::max({solve(0.5, 0.5 * neighbour_s), solve(kShorterShare, 0.0),
+                         solve(0.0, kShorterShare * neighbour_s)});
     }
 
     const Machine& machine_;
@@ -170,9 +214,9 @@ private:
 
 }  // namespace
 
-TimedPath time_path(const Machine& machine, const EyePath& path, const JointPath& joints,
-                    const TimeLawOptions& options) {
-    assert(path.size() == joints.size());
+TimedPath time_path(const Machine& machine, std::span<const double> fibre_mm,
+                    const JointPath& joints, const TimeLawOptions& options) {
+    assert(fibre_mm.size() == joints.size());
     if (!(options.fibre_speed_mm_s > 0.0)) {
         std::string value;
         append_shortest(value, options.fibre_speed_mm_s);
@@ -180,13 +224,24 @@ TimedPath time_path(const Machine& machine, const EyePath& path, const JointPath
                          "fibre speed is " + value + " mm/s; it must be above 0");
     }
     TimeLaw law(machine, joints);
-    law.keep_velocities(path, std::min(options.fibre_speed_mm_s, machine.fibre.max_speed_mm_s));
+    law.keep_velocities(fibre_mm, std::min(options.fibre_speed_mm_s, machine.fibre.max_speed_mm_s));
     for (int i = 0; i < options.acceleration_sweeps; ++i) {
         if (!law.sweep()) {
             break;
         }
     }
     return std::move(law).result();
+}
+
+TimedPath time_path(const Machine& machine, const EyePath& path, const JointPath& joints,
+                    const TimeLawOptions& options) {
+    std::vector<double> fibre_mm(path.size(), 0.0);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double laid = path[i].s_mm - path[i - 1].s_mm;
+        const double longer = path[i].free_length_mm - path[i - 1].free_length_mm;
+        fibre_mm[i] = std::max(std::abs(laid), std::abs(laid + longer));
+    }
+    return time_path(machine, fibre_mm, joints, options);
 }
 
 double largest_take_back_mm(const EyePath& path) {

@@ -1,6 +1,7 @@
 /// How long each step of a joint path takes under the limits of the axes and of the fibre.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,20 +27,34 @@ struct BindingLimit {
 /// A joint path with time. Step i leads from point i - 1 to point i; step 0 takes no time.
 struct TimedPath {
     std::vector<double> step_s;         ///< n durations, the first 0; 0 as well where nothing moves
-    double duration_s = 0.0;            ///< their sum
+    double ramp_s = 0.0;                ///< what starting from rest and stopping add
+    double duration_s = 0.0;            ///< the sum of all these
     std::vector<BindingLimit> binding;  ///< longest first; only limits that bind somewhere
-    /// Largest change of an axis' velocity between neighbouring steps over what its acceleration
-    /// allows in the time between their middles; <= 1 when the sweeps sufficed.
+    /// Largest ramp of an axis between neighbouring steps over the time that it has; <= 1 when the
+    /// sweeps sufficed.
     double worst_acceleration_ratio = 0.0;
 };
 
 /// Shortest durations with
 ///  - |dq| <= velocity * T for every axis,
-///  - fibre laid and fibre through the eye, max(|ds|, |ds + dL|) <= fibre speed * T,
-///  - |dq2/T2 - dq1/T1| <= acceleration * (T1 + T2)/2 between neighbours, from rest to rest,
+///  - fibre_mm <= fibre speed * T,
+///  - room for the ramps. Within a step all axes run evenly; about the point between two steps of
+///    velocities v1 and v2 a controller ramps from one to the other in |v2 - v1| / acceleration,
+///    which takes no longer in sum than a jump would. The ramp may take half of each step, but of
+///    the longer one no more than the shorter lasts, else the longer one would not have its mean
+///    speed: |v2 - v1| <= acceleration * min((T1 + T2)/2, 3/2 T1, 3/2 T2). In a reversal each side
+///    brakes or starts on its own, and from rest to rest so do the start and the stop:
+///    |v| <= acceleration * T/2. The ramps from and to rest have nothing on the other side to make
+///    up for them and add |v| / (2 acceleration) each: `ramp_s`;
 /// the last by forward and backward sweeps that only lengthen, so the result is safe but not proven
-/// shortest. \pre path and joints have equal length
+/// shortest. \param fibre_mm per step, what the fibre's speed counts; the first is not used
+/// \pre fibre_mm has an entry for each point of joints
 /// \throws InputError time.fibre_speed when the fibre speed is not positive
+[[nodiscard]] TimedPath time_path(const Machine& machine, std::span<const double> fibre_mm,
+                                  const JointPath& joints, const TimeLawOptions& options = {});
+
+/// The same with fibre_mm = max(|ds|, |ds + dL|): fibre laid, and drawn through the eye, evenly
+/// from point to point. \pre path and joints have equal length
 [[nodiscard]] TimedPath time_path(const Machine& machine, const EyePath& path,
                                   const JointPath& joints, const TimeLawOptions& options = {});
 

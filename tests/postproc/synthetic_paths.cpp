@@ -94,4 +94,31 @@ EyePath elliptic_helix(int n) {
     return path;
 }
 
+EyePath on_ellipsoid(const EllipsoidLine& line, int n) {
+    const Eigen::Vector3d half_mm(90.0, 60.0, 150.0);
+    EyePath path;
+    for (int i = 0; i < n; ++i) {
+        const double share = n > 1 ? static_cast<double>(i) / (n - 1) : 0.0;
+        const double turn = 2.0 * kPi * share;
+        const double angle = line.waves * turn + line.phase_rad;
+        // Latitude of the stretched sphere and its rate.
+        const double latitude = line.swing * std::sin(angle);
+        const double rate = line.swing * line.waves * std::cos(angle);
+        const Eigen::Vector3d sphere(std::cos(latitude) * std::cos(turn),
+                                     std::cos(latitude) * std::sin(turn), std::sin(latitude));
+        const Eigen::Vector3d east(-std::sin(turn), std::cos(turn), 0.0);
+        const Eigen::Vector3d north(-std::sin(latitude) * std::cos(turn),
+                                    -std::sin(latitude) * std::sin(turn), std::cos(latitude));
+        const Eigen::Vector3d along = std::cos(latitude) * east + rate * north;
+        const double longer = line.longer_mm * (2.0 * share - 1.0);
+        path.push_back(eye_point(half_mm.cwiseProduct(sphere),
+                                 sphere.cwiseQuotient(half_mm).normalized(),
+                                 half_mm.cwiseProduct(along), line.free_length_mm + longer));
+        const EyePoint& before = path[i > 0 ? path.size() - 2 : 0];
+        path.back().s_mm = before.s_mm + (path.back().landing_mm - before.landing_mm).norm();
+        path.back().point = i;
+    }
+    return path;
+}
+
 }  // namespace meshwind::test

@@ -19,4 +19,17 @@ namespace meshwind::test {
 /// length going from 200 to 250 mm halfway.
 [[nodiscard]] EyePath elliptic_helix(int n);
 
+/// A line that winds around an ellipsoid of half axes 90, 60 and 150 mm: one turn about Z while its
+/// height swings.
+struct EllipsoidLine {
+    double swing = 0.5;             ///< of the height, as a share of the half axis, below 0.8
+    double waves = 1.0;             ///< swings a turn
+    double phase_rad = 0.0;         ///< of the swing
+    double free_length_mm = 200.0;  ///< at the middle
+    double longer_mm = 0.0;         ///< change of the free length from the middle to either end
+};
+
+/// n points at even turns from 0 to 1.
+[[nodiscard]] EyePath on_ellipsoid(const EllipsoidLine& line, int n);
+
 }  // namespace meshwind::test

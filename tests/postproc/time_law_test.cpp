@@ -43,8 +43,8 @@ void expect_limits_kept(const Machine& machine, const Timed& result, double fibr
         const double laid = result.path[i].s_mm - result.path[i - 1].s_mm;
         ASSERT_LE(laid, fibre_mm_s * step_s[i] * (1.0 + 1e-12));
     }
-    EXPECT_NEAR(std::accumulate(step_s.begin(), step_s.end(), 0.0), result.time.duration_s,
-                1e-9 * result.time.duration_s);
+    EXPECT_NEAR(std::accumulate(step_s.begin(), step_s.end(), result.time.ramp_s),
+                result.time.duration_s, 1e-9 * result.time.duration_s);
 }
 
 TEST(TimeLaw, LongHelixRunsAtTheFibreSpeed) {
@@ -55,9 +55,11 @@ TEST(TimeLaw, LongHelixRunsAtTheFibreSpeed) {
     ASSERT_FALSE(result.time.binding.empty());
     EXPECT_EQ(result.time.binding[0].name, "fibre");
     // 9995 mm at 500 mm/s, and starting and stopping: 5.05 rad/s of C at 31.4 rad/s^2 are 0.16 s,
-    // 354 mm/s of Z at 3000 mm/s^2 are 0.12 s; the longer one costs half of itself at both ends.
-    EXPECT_GT(result.time.duration_s, 19.99);
-    EXPECT_LT(result.time.duration_s, 19.99 + 0.17);
+    // 354 mm/s of Z at 3000 mm/s^2 are 0.12 s; the longer one costs half of itself at both ends,
+    // and the first and last step a ramp of their own.
+    EXPECT_GT(result.time.duration_s, 19.99 + 0.16);
+    EXPECT_LT(result.time.duration_s, 19.99 + 0.17 + result.time.ramp_s);
+    EXPECT_LT(result.time.ramp_s, 0.03);
     EXPECT_LE(result.time.worst_acceleration_ratio, 1.0 + 1e-5);
 }
 
@@ -107,6 +109,45 @@ TEST(TimeLaw, ReversalStopsWithinTheAcceleration) {
     EXPECT_LE(result.time.worst_acceleration_ratio, 1.0 + 1e-5);
     // Two strokes of 100 mm from rest to rest at 3000 mm/s^2 need 2 * 2 sqrt(100/3000) = 0.730 s.
     EXPECT_NEAR(result.time.duration_s, 0.730, 0.05);
+}
+
+TEST(TimeLaw, LongStepFromRestToRestIncludesItsRamps) {
+    const Machine machine = six_axis();
+    const EyePath dense = test::helix(70.0, rad_from_deg(45.0), 200.0, 5.0, 2001);
+    const JointPath joints = solve_joints(machine, dense, RedundancyPolicy::CentralAngle);
+    JointPath one{.axis_count = joints.axis_count, .joints = {}, .violations = {}, .notes = {}};
+    for (const std::size_t i : {0U, 2000U}) {
+        one.joints.insert(one.joints.end(), joints.row(i).begin(), joints.row(i).end());
+    }
+    const TimedPath time = time_path(machine, std::vector<double>{0.0, 10000.0}, one);
+    EXPECT_NEAR(time.step_s[1], 20.0, 1e-12);
+    // C reaches 500 / (70 sqrt 2) rad/s at 1800 deg/s^2: half of that time at the start, half at
+    // the stop.
+    const double ramp_s = 500.0 / (70.0 * std::sqrt(2.0)) / rad_from_deg(1800.0);
+    EXPECT_NEAR(time.ramp_s, ramp_s, 1e-9);
+    EXPECT_NEAR(time.duration_s, 20.0 + ramp_s, 1e-9);
+}
+
+TEST(TimeLaw, RampsStayWithinTheShorterStep) {
+    // A long slow step beside short fast ones: the long one lends no more than the short one lasts.
+    const Machine machine = six_axis();
+    const std::size_t axes = machine.axis_count();
+    JointPath path{.axis_count = axes, .joints = {}, .violations = {}, .notes = {}};
+    double z_mm = 0.0;
+    std::vector<double> fibre_mm;
+    for (int i = 0; i < 60; ++i) {
+        z_mm += i == 0 ? 0.0 : i == 30 ? 10.0 : 5.0;
+        fibre_mm.push_back(i == 30 ? 200.0 : 1.0);  // step 30 is held up by the fibre
+        std::vector<double> row(axes, 0.0);
+        row[1] = z_mm;
+        path.joints.insert(path.joints.end(), row.begin(), row.end());
+    }
+    const TimedPath time = time_path(machine, fibre_mm, path, {.fibre_speed_mm_s = 500.0});
+    EXPECT_NEAR(time.step_s[30], 0.4, 1e-12);
+    EXPECT_LE(time.worst_acceleration_ratio, 1.0 + 1e-5);
+    const double change = 5.0 / time.step_s[31] - 10.0 / time.step_s[30];
+    EXPECT_NEAR(change, 1.5 * 3000.0 * time.step_s[31], 1e-3 * change);
+    EXPECT_NEAR(time.step_s[29], time.step_s[31], 1e-3 * time.step_s[31]);
 }
 
 TEST(TimeLaw, RestTakesNoTime) {
