@@ -76,7 +76,9 @@ public:
         execute();
     }
 
-    [[nodiscard]] bool moved() const { return !list_.blocks.empty() || any_placed_ || ended_; }
+    [[nodiscard]] bool moved() const {
+        return !list_.blocks.empty() || any_placed_ || ended_ || list_.tie_on_mm.has_value();
+    }
 
 private:
     [[noreturn]] void fail(const std::string& code, const std::string& words) const {
@@ -98,6 +100,7 @@ private:
                     fail("nc.comment", "a comment is not closed; add )");
                 }
                 mark(text.substr(i + 1, close - i - 1));
+                tie_on(text.substr(i + 1, close - i - 1));
                 i = close + 1;
             } else {
                 i = word(text, i);
@@ -146,6 +149,37 @@ private:
                 piece_ = piece;
             }
         }
+    }
+
+    void tie_on(std::string_view comment) {
+        static constexpr std::array<std::string_view, 3> kBefore = {"tie on at X", " Y", " Z"};
+        if (comment.substr(0, 6) != "tie on") {
+            return;
+        }
+        if (list_.tie_on_mm) {
+            fail("nc.tie_on", "a second place to tie the fibre on; keep one");
+        }
+        Eigen::Vector3d place = Eigen::Vector3d::Zero();
+        for (std::size_t i = 0; i < kBefore.size(); ++i) {
+            const bool key = comment.substr(0, kBefore[i].size()) == kBefore[i];
+            comment.remove_prefix(key ? kBefore[i].size() : comment.size());
+            double& value = place[static_cast<Eigen::Index>(i)];
+            const auto [end, error] = std::from_chars(
+                comment.data(), comment.data() + comment.size(), value, std::chars_format::fixed);
+            if (error != std::errc{} || !std::isfinite(value)) {
+                bad_tie_on();
+            }
+            comment.remove_prefix(static_cast<std::size_t>(end - comment.data()));
+        }
+        if (comment != " on the mandrel") {
+            bad_tie_on();
+        }
+        list_.tie_on_mm = place;
+    }
+
+    [[noreturn]] void bad_tie_on() const {
+        fail("nc.tie_on",
+             "a comment \"tie on\" must read (tie on at X1.000 Y2.000 Z3.000 on the mandrel)");
     }
 
     // The word's number in 1e-9 units, exactly.
@@ -396,7 +430,7 @@ void check_linuxcnc_lines(const Machine& machine) {
             std::string trouble;
             try {
                 reader.line(line);
-                trouble = reader.moved() ? "it moves or ends the program" : "";
+                trouble = reader.moved() ? "it moves, ends the program or ties the fibre on" : "";
             } catch (const InputError& error) {
                 trouble = error.what();
             }
