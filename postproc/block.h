@@ -33,7 +33,8 @@ struct Block {
     double duration_s = 0.0;
     std::int32_t piece = -1;  ///< course or transition in winding order; -1 unknown
     std::int32_t point = -1;  ///< landing point within the piece at the block's end; -1 unknown
-    std::int32_t line = 0;    ///< line of the file it was read from, from 1; 0 when planned
+    std::int32_t line = 0;    ///< line of the file it was read from, from 1; 0 when planned.
+                              ///< Blocks that a program repeats share their line
 };
 
 /// Blocks with the absolute axis positions at their ends. Block 0 is the start position, which the

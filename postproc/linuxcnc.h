@@ -19,7 +19,8 @@ namespace meshwind {
 /// (l * F), so a tiny linear move beside a long turn makes the turn far too fast; `prepare` splits
 /// such blocks into a short one with the whole linear move and one that only turns.
 ///
-/// The reader takes G0 G1 G21 G90 G91 G93 G94, F, N, M0 M1 M2 M30, comments, `%`, and skips G17 G40
+/// The reader takes G0 G1 G21 G90 G91 G93 G94, F, N, M0 M1 M2 M30, comments, `%`, subprograms and
+/// repeats (postproc/linuxcnc_flow.h), which it follows as the interpreter does, and skips G17 G40
 /// G49 G54 G61 G61.1 G64 (with P and Q) G80. Refused besides all else: a rapid move after the first
 /// feed move (it would tear the fibre), a position finer than the axis' resolution, an axis that no
 /// absolute word has placed before the first feed move, a comment that begins with "tie on" and

@@ -247,7 +247,7 @@ TEST(LinuxCncRead, NamesTheLineOfWhatItRefuses) {
     EXPECT_EQ(refusal(kStart + "G1 E1 F60\nM2\n"), "nc.not_understood p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G2 X1 I1 F60\nM2\n"), "nc.not_understood p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G1 G0 X1 F60\nM2\n"), "nc.not_understood p.ngc:6");
-    EXPECT_EQ(refusal(kStart + "M98 P100 L3\nM2\n"), "nc.not_understood p.ngc:6");
+    EXPECT_EQ(refusal(kStart + "M98 P100 L3\nM2\n"), "nc.no_subprogram p.ngc:6");
     EXPECT_EQ(refusal(kStart + "#1=3\nM2\n"), "nc.not_understood p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G1 (a (b)) X1 F60\nM2\n"), "nc.comment p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G1 X1 F60 (" + std::string(300, 'x') + ")\nM2\n"),
