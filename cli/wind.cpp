@@ -486,6 +486,7 @@ private:
         header.mandrel_digest = "sha256 " + sha256_hex(read_bytes(request_.mandrel));
         header.job_digest = "sha256 " + sha256_hex(job_text(result_.job));
         header.fibre_length_mm = result_.plan.fibre_length_mm;
+        header.tie_on_mm = result_.eyes.path.front().landing_mm;
         for (const Check& check : result_.checks) {
             if (!check.ok) {
                 header.notes.push_back("CHECK FAILED, written by force: " + check.name);

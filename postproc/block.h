@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "machines/machine.h"
 #include "postproc/eye_path.h"
@@ -30,7 +33,8 @@ struct Block {
     double duration_s = 0.0;
     std::int32_t piece = -1;  ///< course or transition in winding order; -1 unknown
     std::int32_t point = -1;  ///< landing point within the piece at the block's end; -1 unknown
-    std::int32_t line = 0;    ///< line of the file it was read from, from 1; 0 when planned
+    std::int32_t line = 0;    ///< line of the file it was read from, from 1; 0 when planned.
+                              ///< Blocks that a program repeats share their line
 };
 
 /// Blocks with the absolute axis positions at their ends. Block 0 is the start position, which the
@@ -39,6 +43,9 @@ struct BlockList {
     std::vector<BlockAxis> axes;     ///< in the order of the machine's joint vector
     std::vector<Block> blocks;       ///< n
     std::vector<std::int64_t> nano;  ///< n x axes by rows: absolute, 1e-9 mm or 1e-9 deg
+    /// Where the fibre is tied on, in the mandrel frame, as the program's head says; unset when it
+    /// does not, and in a list that was planned.
+    std::optional<Eigen::Vector3d> tie_on_mm{};
 
     [[nodiscard]] std::span<const std::int64_t> row(std::size_t block) const {
         return {nano.data() + block * axes.size(), axes.size()};

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "machines/machine.h"
 #include "postproc/block.h"
@@ -18,6 +21,7 @@ struct ProgramHeader {
     std::string mandrel_digest{};  ///< e.g. "sha256 1f2e.."
     std::string job_digest{};
     double fibre_length_mm = 0.0;
+    std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
     std::vector<std::string> notes{};  ///< a line each, e.g. that a failed check was overruled
 };
 
@@ -44,7 +48,8 @@ public:
 
     /// Reads a program of the subset that `write` uses (and what is harmless besides).
     /// \param file name used in messages
-    /// \return positions and durations; `piece` from the course marks, `line` of each block
+    /// \return positions and durations; `piece` from the course marks, `line` of each block, the
+    /// tie-on of the head to three decimals
     /// \throws InputError nc.* with the place "file:line" for anything else
     [[nodiscard]] virtual BlockList read(std::string_view text, const std::string& file,
                                          const Machine& machine) const = 0;

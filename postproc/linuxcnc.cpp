@@ -155,6 +155,11 @@ private:
         comment("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
         comment("time: " + fixed(list_.duration_s(), 1) + " s");
         comment("blocks: " + std::to_string(list_.blocks.size() - 1));
+        if (header.tie_on_mm) {
+            const Eigen::Vector3d& p = *header.tie_on_mm;
+            comment("tie on at X" + fixed(p.x(), 3) + " Y" + fixed(p.y(), 3) + " Z" +
+                    fixed(p.z(), 3) + " on the mandrel");
+        }
         for (const std::string& note : header.notes) {
             comment("note: " + note);
         }

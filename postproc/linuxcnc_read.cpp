@@ -4,34 +4,25 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
+#include "postproc/linuxcnc_flow.h"
+#include "postproc/linuxcnc_words.h"
 
 namespace meshwind {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-constexpr int kNanoDecimals = 9;
 // G codes are compared in tenths: G61.1 is 611.
 constexpr std::array<int, 8> kHarmlessG = {170, 210, 400, 490, 540, 610, 611, 640};
 
-struct Word {
-    char letter = '?';
-    std::string_view number;
-};
-
-// One line split into words, the comments already taken out.
-struct Line {
-    std::int32_t number = 0;
-    std::vector<Word> words;
-};
-
 class Reader {
 public:
-    Reader(const std::string& file, const Machine& machine) : file_(file) {
+    Reader(std::string file, const Machine& machine) : file_(std::move(file)) {
+        line_.file = &file_;
         axis_of_.fill(-1);
         for (std::size_t a = 0; a < machine.axis_count(); ++a) {
             const Axis& axis = machine.axis(a);
@@ -43,14 +34,20 @@ public:
     }
 
     BlockList program(std::string_view text) && {
-        std::size_t begin = 0;
-        while (begin < text.size() && !ended_) {
-            std::size_t end = text.find('\n', begin);
-            end = end == std::string_view::npos ? text.size() : end;
-            ++line_.number;
-            line(text.substr(begin, end - begin));
-            begin = end + 1;
-        }
+        const std::vector<std::string_view> lines = lines_of(text);
+        const ProgramFlow flow = linuxcnc_flow(lines, file_);
+        run_flow(flow, file_, [&](std::int32_t number, FlowLine kind) {
+            line_.number = number;
+            const std::string_view words = lines[static_cast<std::size_t>(number) - 1];
+            if (kind == FlowLine::Code) {
+                line(words);
+            } else {
+                check_length(words);
+                (void)line_.split_comments(words);
+                comments();
+            }
+            return !ended_;
+        });
         if (!ended_) {
             fail("nc.no_end", "the program has no M2; the file may be cut off");
         }
@@ -61,78 +58,51 @@ public:
     }
 
     void line(std::string_view text) {
-        if (!text.empty() && text.back() == '\r') {
-            text.remove_suffix(1);
-        }
-        if (text.size() > kLinuxCncLineLength) {
-            fail("nc.long_line", "has " + std::to_string(text.size()) +
-                                     " characters; the interpreter reads at most 252");
-        }
+        check_length(text);
         if (text == "%") {
             ended_ = list_.blocks.empty() ? ended_ : true;
             return;
         }
-        split(text);
+        line_.split(text);
+        comments();
         execute();
     }
 
-    [[nodiscard]] bool moved() const { return !list_.blocks.empty() || any_placed_ || ended_; }
+    [[nodiscard]] bool moved() const {
+        return !list_.blocks.empty() || any_placed_ || ended_ || list_.tie_on_mm.has_value();
+    }
 
 private:
     [[noreturn]] void fail(const std::string& code, const std::string& words) const {
-        throw InputError(code, file_ + ":" + std::to_string(line_.number), words);
+        line_.fail(code, words);
     }
 
-    void split(std::string_view text) {
-        line_.words.clear();
-        std::size_t i = 0;
-        while (i < text.size()) {
-            const char c = text[i];
-            if (c == ' ' || c == '\t') {
-                ++i;
-            } else if (c == ';') {
-                return;
-            } else if (c == '(') {
-                const std::size_t close = text.find_first_of("()", i + 1);
-                if (close == std::string_view::npos || text[close] == '(') {
-                    fail("nc.comment", "a comment is not closed; add )");
-                }
-                mark(text.substr(i + 1, close - i - 1));
-                i = close + 1;
-            } else {
-                i = word(text, i);
+    static std::vector<std::string_view> lines_of(std::string_view text) {
+        std::vector<std::string_view> lines;
+        while (!text.empty()) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            std::string_view line = text.substr(0, end);
+            if (!line.empty() && line.back() == '\r') {
+                line.remove_suffix(1);
             }
+            lines.push_back(line);
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+        return lines;
+    }
+
+    void check_length(std::string_view text) const {
+        if (text.size() > kLinuxCncLineLength) {
+            fail("nc.long_line", "has " + std::to_string(text.size()) +
+                                     " characters; the interpreter reads at most 252");
         }
     }
 
-    std::size_t word(std::string_view text, std::size_t i) {
-        const char c = text[i];
-        const char letter = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-        if (letter < 'A' || letter > 'Z') {
-            fail("nc.not_understood", "unexpected \"" + printable(c) + "\"");
+    void comments() {
+        for (const std::string_view comment : line_.comments) {
+            mark(comment);
+            tie_on(comment);
         }
-        std::size_t begin = text.find_first_not_of(" \t", i + 1);
-        begin = begin == std::string_view::npos ? text.size() : begin;
-        std::size_t end = begin;
-        while (end < text.size() && (text[end] == '.' || text[end] == '-' || text[end] == '+' ||
-                                     (text[end] >= '0' && text[end] <= '9'))) {
-            ++end;
-        }
-        if (end == begin) {
-            fail("nc.number", std::string("no number after ") + letter);
-        }
-        for (const Word& other : line_.words) {
-            if (other.letter == letter && letter != 'G' && letter != 'M') {
-                fail("nc.word_twice", std::string("word ") + letter + " stands twice");
-            }
-        }
-        line_.words.push_back({letter, text.substr(begin, end - begin)});
-        return end;
-    }
-
-    static std::string printable(char c) {
-        return c >= ' ' && c <= '~' ? std::string(1, c)
-                                    : "byte " + std::to_string(static_cast<unsigned char>(c));
     }
 
     void mark(std::string_view comment) {
@@ -148,52 +118,38 @@ private:
         }
     }
 
-    // The word's number in 1e-9 units, exactly.
-    [[nodiscard]] std::int64_t nano(const Word& word) const {
-        std::string_view digits = word.number;
-        const bool negative = digits.front() == '-';
-        if (negative || digits.front() == '+') {
-            digits.remove_prefix(1);
+    void tie_on(std::string_view comment) {
+        static constexpr std::array<std::string_view, 3> kBefore = {"tie on at X", " Y", " Z"};
+        if (comment.substr(0, 6) != "tie on") {
+            return;
         }
-        std::int64_t value = 0;
-        int decimals = -1;  // before the point
-        bool any = false;
-        for (const char c : digits) {
-            if (c == '.' && decimals < 0) {
-                decimals = 0;
-            } else if (c < '0' || c > '9') {
-                bad_number(word);
-            } else if (decimals == kNanoDecimals) {
-                if (c != '0') {
-                    bad_number(word);
-                }
-            } else {
-                if (value > (std::numeric_limits<std::int64_t>::max() - 9) / 10) {
-                    bad_number(word);
-                }
-                value = 10 * value + (c - '0');
-                decimals += decimals < 0 ? 0 : 1;
-                any = true;
+        if (list_.tie_on_mm) {
+            fail("nc.tie_on", "a second place to tie the fibre on; keep one");
+        }
+        Eigen::Vector3d place = Eigen::Vector3d::Zero();
+        for (std::size_t i = 0; i < kBefore.size(); ++i) {
+            const bool key = comment.substr(0, kBefore[i].size()) == kBefore[i];
+            comment.remove_prefix(key ? kBefore[i].size() : comment.size());
+            double& value = place[static_cast<Eigen::Index>(i)];
+            const auto [end, error] = std::from_chars(
+                comment.data(), comment.data() + comment.size(), value, std::chars_format::fixed);
+            if (error != std::errc{} || !std::isfinite(value)) {
+                bad_tie_on();
             }
+            comment.remove_prefix(static_cast<std::size_t>(end - comment.data()));
         }
-        for (int i = std::max(decimals, 0); i < kNanoDecimals; ++i) {
-            if (value > std::numeric_limits<std::int64_t>::max() / 10) {
-                bad_number(word);
-            }
-            value *= 10;
+        if (comment != " on the mandrel") {
+            bad_tie_on();
         }
-        if (!any) {
-            bad_number(word);
-        }
-        return negative ? -value : value;
+        list_.tie_on_mm = place;
     }
 
-    [[noreturn]] void bad_number(const Word& word) const {
-        fail("nc.number", std::string("\"") + word.letter + std::string(word.number) +
-                              "\" is not a number of at most nine decimals");
+    [[noreturn]] void bad_tie_on() const {
+        fail("nc.tie_on",
+             "a comment \"tie on\" must read (tie on at X1.000 Y2.000 Z3.000 on the mandrel)");
     }
 
-    [[nodiscard]] double feed(const Word& word) const {
+    [[nodiscard]] double feed(const NcWord& word) const {
         double value = 0.0;
         const char* last = word.number.data() + word.number.size();
         const auto [end, error] =
@@ -204,29 +160,14 @@ private:
         return value;
     }
 
-    // Code in tenths: G61.1 gives 611.
-    [[nodiscard]] int code(const Word& word) const {
-        constexpr std::int64_t kTenth = kNanoPerUnit / 10;
-        const std::int64_t value = nano(word);
-        if (value < 0 || value % kTenth != 0 || value > 1000 * kNanoPerUnit) {
-            not_understood(word);
-        }
-        return static_cast<int>(value / kTenth);
-    }
-
-    [[noreturn]] void not_understood(const Word& word) const {
-        fail("nc.not_understood", std::string("\"") + word.letter + std::string(word.number) +
-                                      "\" is not part of the subset that is read back");
-    }
-
     void execute() {
         feed_word_.reset();
         bool axes = false;
         bool blending = false;
         int motions = 0;
-        for (const Word& word : line_.words) {
+        for (const NcWord& word : line_.words) {
             if (word.letter == 'G') {
-                const int number = code(word);
+                const int number = line_.code(word);
                 motions += number == 0 || number == 10 ? 1 : 0;
                 blending = blending || number == 640;
                 g_code(number, word);
@@ -236,11 +177,11 @@ private:
                 feed_word_ = feed(word);
             } else if (word.letter == 'N' ||
                        ((word.letter == 'P' || word.letter == 'Q') && blending)) {
-                (void)nano(word);
+                (void)line_.nano(word);
             } else if (axis_of_[static_cast<std::size_t>(word.letter - 'A')] >= 0) {
                 axes = true;
             } else {
-                not_understood(word);
+                line_.not_understood(word);
             }
         }
         if (motions > 1) {
@@ -254,7 +195,7 @@ private:
         }
     }
 
-    void g_code(int number, const Word& word) {
+    void g_code(int number, const NcWord& word) {
         switch (number) {
             case 0:
             case 10:
@@ -274,17 +215,17 @@ private:
                 break;
             default:
                 if (std::find(kHarmlessG.begin(), kHarmlessG.end(), number) == kHarmlessG.end()) {
-                    not_understood(word);
+                    line_.not_understood(word);
                 }
         }
     }
 
-    void m_code(const Word& word) {
-        const int number = code(word);
+    void m_code(const NcWord& word) {
+        const int number = line_.code(word);
         if (number == 20 || number == 300) {
             ended_ = true;
         } else if (number != 0 && number != 10) {
-            not_understood(word);
+            line_.not_understood(word);
         }
     }
 
@@ -296,7 +237,7 @@ private:
             start();
         }
         const std::vector<std::int64_t> before = position_;
-        for (const Word& word : line_.words) {
+        for (const NcWord& word : line_.words) {
             const int axis = axis_of_[static_cast<std::size_t>(word.letter - 'A')];
             if (axis >= 0) {
                 place(static_cast<std::size_t>(axis), word);
@@ -327,15 +268,15 @@ private:
         list_.nano.insert(list_.nano.end(), position_.begin(), position_.end());
     }
 
-    void place(std::size_t axis, const Word& word) {
-        const std::int64_t value = nano(word);
+    void place(std::size_t axis, const NcWord& word) {
+        const std::int64_t value = line_.nano(word);
         if (value % list_.axes[axis].resolution_nano != 0) {
             fail("nc.resolution", std::string("\"") + word.letter + std::string(word.number) +
                                       "\" is not a multiple of the axis' resolution");
         }
         std::int64_t sum = value;
         if (incremental_ && __builtin_add_overflow(position_[axis], value, &sum)) {
-            bad_number(word);
+            line_.bad_number(word);
         }
         position_[axis] = sum;
         placed_[axis] = placed_[axis] || !incremental_;
@@ -371,12 +312,12 @@ private:
 
     enum class Motion { None, Rapid, Feed };
 
-    std::string file_;
+    const std::string file_;
     BlockList list_;
     std::array<int, 26> axis_of_{};
     std::vector<std::int64_t> position_;
     std::vector<bool> placed_;
-    Line line_;
+    NcLine line_;
     Motion motion_ = Motion::None;
     bool incremental_ = false;
     bool inverse_time_ = false;
@@ -396,7 +337,7 @@ void check_linuxcnc_lines(const Machine& machine) {
             std::string trouble;
             try {
                 reader.line(line);
-                trouble = reader.moved() ? "it moves or ends the program" : "";
+                trouble = reader.moved() ? "it moves, ends the program or ties the fibre on" : "";
             } catch (const InputError& error) {
                 trouble = error.what();
             }

@@ -5,9 +5,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include <gtest/gtest.h>
 
+#include "core/text_number.h"
 #include "core/units.h"
 #include "machines/machine_json.h"
 #include "postproc/linuxcnc.h"
@@ -56,15 +58,27 @@ protected:
         const std::string text =
             dialect.write(machine, prepared, {.version = "test", .mandrel = "synthetic (no file)"});
         EXPECT_EQ(dialect.read(text, "program.ngc", machine).nano, prepared.nano);
+        compare(machine_file, text, prepared);
+    }
+
+    // Their reading of the program against the blocks.
+    void compare(const std::string& machine_file, const std::string& text,
+                 const BlockList& blocks) {
         save(folder_ / "program.ngc", text);
-        save(folder_ / "motion.csv", motion_csv(machine, prepared));
+        save(folder_ / "motion.csv", motion_csv(read_machine(machine_file), blocks));
         const int code =
             run(kSource + "/tests/tools/check_program.py " + (folder_ / "program.ngc").string() +
                 " " + (folder_ / "motion.csv").string() + " " + machine_file);
         if (code == kUnavailable) {
             GTEST_SKIP() << "LinuxCNC's interpreter is unavailable";
         }
-        EXPECT_EQ(code, 0);
+        EXPECT_EQ(code, 0) << text.substr(0, 2000);
+    }
+
+    // Their reading of the program against ours.
+    void compare(const std::string& machine_file, const std::string& text) {
+        compare(machine_file, text,
+                LinuxCnc().read(text, "program.ngc", read_machine(machine_file)));
     }
 
     static BlockList plan(const std::string& machine_file, const EyePath& path) {
@@ -103,6 +117,88 @@ TEST_F(LinuxCncOracle, LongTurnBesideATinyLinearMove) {
         list.nano.insert(list.nano.end(), row.begin(), row.end());
     }
     check(six_axis_, list);
+}
+
+// Random programs of subprograms in both forms and of repeats, calling only what comes later in
+// their own order, so that none calls itself. Each repeat has its own number.
+class RandomProgram {
+public:
+    explicit RandomProgram(unsigned seed) : engine_(seed) {}
+
+    std::string text() {
+        const int subs = number(0, 4);
+        by_number_.resize(static_cast<std::size_t>(subs));
+        std::string before;
+        std::string behind;
+        for (int s = subs - 1; s >= 0; --s) {
+            const bool numbered = number(0, 1) == 0;
+            by_number_[static_cast<std::size_t>(s)] = numbered;
+            const std::string body = stretch(s + 1, 0);
+            if (numbered) {
+                behind.insert(0, "O" + label(s) + " (course " + label(s) + ")\n" + body + "M99\n");
+            } else {
+                const std::string sub =
+                    "o" + label(s) + " sub\n" + body + "o" + label(s) + " endsub\n";
+                number(0, 1) == 0 ? before += sub : behind.insert(0, sub);
+            }
+        }
+        return before + "G21 G90\nG0 A0 B0 C0\nG0 X100 Y0 Z0\nM0\nG91 G93\n" + move() +
+               stretch(0, 0) + "M2\n" + behind;
+    }
+
+private:
+    int number(int least, int most) {
+        return std::uniform_int_distribution<int>(least, most)(engine_);
+    }
+
+    static std::string label(int sub) { return std::to_string(100 + sub); }
+
+    std::string move() {
+        static constexpr const char* kAxes[] = {"X", "Y", "Z", "A", "B", "C"};
+        std::string line = "G1";
+        const int first = number(0, 5);
+        for (int a = first; a < number(first + 1, 6); ++a) {
+            line += " " + std::string(kAxes[a]) + fixed(0.001 * number(100, 5000), 3);
+        }
+        return line + " F" + std::to_string(number(20, 400)) + "\n";
+    }
+
+    // In feed per minute and back, for G93 must have an F in every line.
+    std::string per_minute() {
+        return "G94\n" + move() + "G1 C" + std::to_string(number(1, 9)) + "\nG93\n";
+    }
+
+    std::string stretch(int first_sub, int depth) {
+        std::string text;
+        for (int i = number(0, 4); i >= 0; --i) {
+            const int what = number(0, 5);
+            const int subs = static_cast<int>(by_number_.size());
+            if (what == 0 && depth < 3) {
+                const std::string o = "o" + std::to_string(++repeats_);
+                text += o + " repeat [" + std::to_string(number(0, 3)) + "]\n" +
+                        stretch(first_sub, depth + 1) + o + " endrepeat\n";
+            } else if (what < 3 && first_sub < subs) {
+                const int sub = number(first_sub, subs - 1);
+                text += by_number_[static_cast<std::size_t>(sub)]
+                            ? "M98 P" + label(sub) + " L" + std::to_string(number(1, 3)) + "\n"
+                            : "o" + label(sub) + " call\n";
+            } else {
+                text += what == 5 ? per_minute() : move();
+            }
+        }
+        return text;
+    }
+
+    std::mt19937 engine_;
+    std::vector<bool> by_number_;
+    int repeats_ = 0;
+};
+
+TEST_F(LinuxCncOracle, SubprogramsAndRepeatsRunAsWeReadThem) {
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        SCOPED_TRACE(seed);
+        compare(six_axis_, RandomProgram(seed).text());
+    }
 }
 
 // The comparison itself must be able to fail: each program differs from its table in one thing.

@@ -247,7 +247,7 @@ TEST(LinuxCncRead, NamesTheLineOfWhatItRefuses) {
     EXPECT_EQ(refusal(kStart + "G1 E1 F60\nM2\n"), "nc.not_understood p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G2 X1 I1 F60\nM2\n"), "nc.not_understood p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G1 G0 X1 F60\nM2\n"), "nc.not_understood p.ngc:6");
-    EXPECT_EQ(refusal(kStart + "M98 P100 L3\nM2\n"), "nc.not_understood p.ngc:6");
+    EXPECT_EQ(refusal(kStart + "M98 P100 L3\nM2\n"), "nc.no_subprogram p.ngc:6");
     EXPECT_EQ(refusal(kStart + "#1=3\nM2\n"), "nc.not_understood p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G1 (a (b)) X1 F60\nM2\n"), "nc.comment p.ngc:6");
     EXPECT_EQ(refusal(kStart + "G1 X1 F60 (" + std::string(300, 'x') + ")\nM2\n"),
@@ -261,6 +261,38 @@ TEST(LinuxCncRead, NamesTheLineOfWhatItRefuses) {
     EXPECT_EQ(refusal("X1\nM2\n"), "nc.no_motion_mode p.ngc:1");
     EXPECT_EQ(refusal("G20\nM2\n"), "nc.not_understood p.ngc:1");
     EXPECT_EQ(refusal("\xef\xbb\xbfG21\nM2\n"), "nc.not_understood p.ngc:1");
+}
+
+TEST(LinuxCnc, TieOnIsWrittenAndReadBack) {
+    const Machine machine = six_axis();
+    const BlockList list = random_list(machine, 1, 3);
+    const std::string text =
+        LinuxCnc().write(machine, list, {.tie_on_mm = Eigen::Vector3d(12.3449, -6.7891, -0.0001)});
+    EXPECT_NE(text.find("(tie on at X12.345 Y-6.789 Z0.000 on the mandrel)\n"), std::string::npos);
+    const BlockList read = LinuxCnc().read(text, "p.ngc", machine);
+    ASSERT_TRUE(read.tie_on_mm.has_value());
+    EXPECT_EQ(*read.tie_on_mm, Eigen::Vector3d(12.345, -6.789, 0.0));
+    EXPECT_EQ(read.nano, list.nano);
+    EXPECT_FALSE(LinuxCnc().read(write(machine, list), "p.ngc", machine).tie_on_mm.has_value());
+}
+
+TEST(LinuxCncRead, TieOnIsReadWholeOrRefused) {
+    const std::string moves = kStart + "G1 X1 F60\nM2\n";
+    const std::string good = "(tie on at X1.5 Y-2 Z3.000 on the mandrel)\n";
+    EXPECT_EQ(refusal(good + moves), "accepted");
+    EXPECT_EQ(refusal("(note: tie on here)\n" + moves), "accepted");
+    EXPECT_EQ(refusal(good + good + moves), "nc.tie_on p.ngc:2");
+    for (const char* bad :
+         {"tie on", "tie on at X1.5 Y-2 Z3.000", "tie on at X1.5 Y-2 on the mandrel",
+          "tie on at X1.5 Y-2 Z on the mandrel", "tie on at X1.5Y-2 Z3 on the mandrel",
+          "tie on at X1.5 Y-2 Z3 on the mandrel ", "tie on at X1e2 Y-2 Z3 on the mandrel",
+          "tie on at Xnan Y-2 Z3 on the mandrel", "tie on at X1 Yinf Z3 on the mandrel",
+          "tie on at X1.5 Z3 Y-2 on the mandrel", "tie on at X1.5.2 Y-2 Z3 on the mandrel"}) {
+        EXPECT_EQ(refusal('(' + std::string(bad) + ")\n" + moves), "nc.tie_on p.ngc:1") << bad;
+    }
+    Machine machine = six_axis();
+    machine.controller.header = {"(tie on at X1 Y2 Z3 on the mandrel)"};
+    EXPECT_THROW((void)write(machine, random_list(machine, 1, 3)), InputError);
 }
 
 TEST(LinuxCncRead, SurvivesEveryTruncationAndByteChange) {
