@@ -58,8 +58,9 @@ struct Job {
         double free_length_mm = 200.0;  ///< > 0
     };
     struct ToleranceJob {
-        double laydown_mm = 0.2;    ///< > 0; laid fibre against planned fibre
-        double clearance_mm = 5.0;  ///< >= 0; machine and free fibre against mandrel
+        double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways
+        double laydown_angle_deg = 0.3;  ///< > 0; and in direction
+        double clearance_mm = 5.0;       ///< >= 0; machine and free fibre against mandrel
     };
     struct SpeedJob {
         double fibre_m_min = 30.0;  ///< > 0

@@ -157,8 +157,9 @@ Job job_of(const JsonDocument& document) {
     }
     read_word(root, "redundancy", kRedundancyWords, job.redundancy);
     if (const auto tolerance = root.optional("tolerance")) {
-        const JsonObject object = tolerance->object({"laydown", "clearance"});
+        const JsonObject object = tolerance->object({"laydown", "laydown_angle", "clearance"});
         read_number(object, "laydown", kPositive, job.tolerance.laydown_mm);
+        read_number(object, "laydown_angle", kPositive, job.tolerance.laydown_angle_deg);
         read_number(object, "clearance", kNotNegative, job.tolerance.clearance_mm);
     }
     if (const auto speed = root.optional("speed")) {
@@ -278,6 +279,7 @@ std::string job_text(const Job& job) {
     append_member(eye, "free_length", job.eye.free_length_mm);
     std::string tolerance = "{";
     append_member(tolerance, "laydown", job.tolerance.laydown_mm);
+    append_member(tolerance, "laydown_angle", job.tolerance.laydown_angle_deg);
     append_member(tolerance, "clearance", job.tolerance.clearance_mm);
     std::string speed = "{";
     append_member(speed, "fibre", job.speed.fibre_m_min);

@@ -73,9 +73,6 @@ json checks_report(const std::vector<Check>& checks) {
         }
         report[check.name] = entry;
     }
-    // Part of the contract; null until the program is wound again from its text.
-    report["laydown"] = {
-        {"max_deviation_mm", nullptr}, {"max_angle_deg", nullptr}, {"ok", nullptr}};
     return report;
 }
 
@@ -116,7 +113,7 @@ json program_report(const WindResult& result) {
         binding.push_back({{"limit", limit.name}, {"time_s", rounded(limit.time_s)}});
     }
     return {{"file", result.program_written ? json(result.program_file) : json(nullptr)},
-            {"dialect", result.machine.controller.dialect},
+            {"dialect", result.setup.machine.controller.dialect},
             {"path_points", result.path_points},
             {"blocks", result.blocks.blocks.size()},
             {"choice", choice_report(result.choice)},
@@ -154,8 +151,8 @@ std::string report_json(const WindResult& result) {
         timing[stage] = seconds;
     }
     const json report = {{"meshwind", kVersion},
-                         {"machine", result.machine.name},
-                         {"mandrel", mandrel_report(result.mandrel)},
+                         {"machine", result.setup.machine.name},
+                         {"mandrel", mandrel_report(result.setup.mandrel)},
                          {"plan", plan_report(result.plan)},
                          {"checks", checks_report(result.checks)},
                          {"program", program_report(result)},
@@ -168,10 +165,10 @@ void print_summary(std::ostream& out, const WindResult& result,
                    const std::filesystem::path& folder) {
     const Plan& plan = result.plan;
     if (plan.failure.empty()) {
-        out << result.mandrel.file << " on " << result.machine.name << ": " << plan.courses
-            << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1) << " m of fibre, "
-            << result.blocks.blocks.size() << " blocks, " << fixed(result.duration_s / 60.0, 1)
-            << " min\n"
+        out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
+            << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
+            << " m of fibre, " << result.blocks.blocks.size() << " blocks, "
+            << fixed(result.duration_s / 60.0, 1) << " min\n"
             << "covered " << percent(plan.coverage.fraction) << " of the wall (reachable "
             << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
             << " layers on average, at most " << plan.coverage.max_layers << '\n';

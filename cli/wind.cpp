@@ -17,9 +17,6 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "machines/kinematics.h"
-#include "machines/machine_json.h"
-#include "mesh/extension.h"
-#include "mesh/import.h"
 #include "postproc/choose_blocks.h"
 #include "postproc/dialect.h"
 #include "postproc/motion_csv.h"
@@ -32,14 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The free fibre's ray starts two mesh edges along the tangent: nearer, the facet that holds the
-// landing point itself may stand in the way; a wall within that distance would bridge first.
-constexpr double kRayStartEdges = 2.0;
-
-// Added to the clearance where free lengths are chosen: between the ends of a block the axes cut
-// the corner of the eye's curve by up to this much, and the clearance must hold there as well.
-constexpr double kBetweenBlocks_mm = 0.5;
-
 // Where the head has more room than that the corner may be cut by up to this much.
 constexpr double kMostBetweenBlocks_mm = 2.0;
 
@@ -49,12 +38,7 @@ constexpr double kLeastBetweenBlocks_mm = 0.1;
 // Laid fibre against the plan. For the choice of blocks a fifth is left for what the choice does
 // not see: rounding to the axes' resolution (0.005 mm at 300 mm from the spindle) and the first
 // order.
-constexpr double kLaydownAngle_deg = 0.3;
 constexpr double kChoiceShare = 0.8;
-
-// Clearances are tabulated this far around the mandrel: further out nothing of a head is in the
-// way.
-constexpr double kTableReach_mm = 60.0;
 
 // Share of the reachable wall that a plan must cover to count as one.
 constexpr double kCoveredShare = 0.9;
@@ -109,49 +93,6 @@ void refuse_what_is_not_offered(const Job& job, const fs::path& file) {
     }
 }
 
-MandrelOptions mandrel_options(const Job& job, double unit_mm) {
-    MandrelOptions options;
-    options.unit_mm = unit_mm > 0.0 ? unit_mm : mm_per(job.mandrel.units);
-    if (job.mandrel.axis) {
-        options.axis = {job.mandrel.axis->origin, job.mandrel.axis->direction};
-    }
-    options.keep_regions = job.mandrel.keep_regions;
-    return options;
-}
-
-// The head as planning sees it: a ball around the eye that holds every part which turns with the
-// last wrist axis, however that turns, and the other parts as capsules on the line away from the
-// spindle, on which the central-angle policy keeps them.
-void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFibreRule& rule) {
-    const Eigen::Vector3d& eye = machine.eye.position_mm;
-    const Eigen::Vector3d outward = -machine.eye.exit;
-    rule.head_radius_mm = 0.0;
-    rule.arm.clear();
-    for (const HeadEnvelope::Part& part : envelope.parts) {
-        std::vector<Eigen::Vector3d> points = part.triangles.points_mm;
-        double thickness = 0.0;
-        if (points.empty()) {
-            points = {part.capsule.from_mm, part.capsule.to_mm};
-            thickness = part.capsule.radius_mm;
-        }
-        double reach = 0.0;
-        ArmPart arm{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0.0};
-        for (const Eigen::Vector3d& point : points) {
-            const double along = outward.dot(point - eye);
-            reach = std::max(reach, (point - eye).norm() + thickness);
-            arm.from_mm = std::min(arm.from_mm, along);
-            arm.to_mm = std::max(arm.to_mm, along);
-            arm.radius_mm =
-                std::max(arm.radius_mm, (point - eye - along * outward).norm() + thickness);
-        }
-        if (part.link == machine.eye_chain.back().letter) {
-            rule.head_radius_mm = std::max(rule.head_radius_mm, reach);
-        } else {
-            rule.arm.push_back(arm);
-        }
-    }
-}
-
 class Winder {
 public:
     explicit Winder(const WindRequest& request) : request_(request), watch_(result_.timing_s) {}
@@ -165,7 +106,6 @@ public:
         } else {
             result_.checks.push_back({"plan", false, result_.plan.failure, {}});
         }
-        watch_.stage("post");
         write();
         return std::move(result_);
     }
@@ -179,47 +119,11 @@ private:
 
     void read() {
         tell("import", 0.0);
-        result_.machine = read_machine(request_.machine.string());
-        if (!request_.job.empty()) {
-            result_.job = read_job(request_.job);
-        }
-        refuse_what_is_not_offered(result_.job, request_.job);
-        inverse_ = std::make_unique<SpindleWristInverse>(result_.machine);
-        dialect_ = make_dialect(result_.machine.controller.dialect);
-        envelope_ = head_envelope(result_.machine,
-                                  [](const std::string& file) { return read_triangles(file); });
-        result_.mandrel =
-            load_mandrel(request_.mandrel, mandrel_options(result_.job, request_.unit_mm));
-        set_up_rules();
+        setup_ = read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
+        refuse_what_is_not_offered(setup_.job, request_.job);
+        inverse_ = std::make_unique<SpindleWristInverse>(setup_.machine);
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         watch_.stage("import");
-    }
-
-    void set_up_rules() {
-        const Job& job = result_.job;
-        const Mandrel& mandrel = result_.mandrel;
-        const FibreLimits& fibre = result_.machine.fibre;
-        rule_.clearance_mm = job.tolerance.clearance_mm;
-        FreeFibreRule& free = rule_.free_fibre;
-        free.min_mm = fibre.min_free_length_mm;
-        free.max_mm = fibre.max_free_length_mm;
-        free.preferred_mm = job.eye.free_length_mm;
-        if (free.preferred_mm < free.min_mm || free.preferred_mm > free.max_mm) {
-            throw InputError("job.free_length", request_.job.string() + ": /eye/free_length",
-                             fixed(free.preferred_mm, 1) + " mm is outside the " +
-                                 fixed(free.min_mm, 1) + " to " + fixed(free.max_mm, 1) +
-                                 " mm of the machine; choose a length between");
-        }
-        describe_head(result_.machine, envelope_, free);
-        free.clearance_mm = job.tolerance.clearance_mm + kBetweenBlocks_mm;
-        free.start_mm = std::min(kRayStartEdges * mandrel.surface.mean_edge_mm, 0.5 * free.min_mm);
-        std::vector<TriangleSoup> parts{mandrel.whole};
-        for (const Rim& rim : mandrel.rims) {
-            if (job.mandrel.extension_mm > 0.0) {
-                parts.push_back(extension_of(rim, job.mandrel.extension_mm));
-            }
-        }
-        obstacles_ = std::make_unique<RayQuery>(parts, kTableReach_mm);
     }
 
     // What the machine does for some pieces, point by point.
@@ -232,23 +136,23 @@ private:
     [[nodiscard]] Motion motion_for(std::span<const Piece> pieces) const {
         constexpr RedundancyPolicy kPolicy = RedundancyPolicy::CentralAngle;
         Motion motion;
-        motion.eyes = equal_free_length(pieces, *obstacles_, rule_.free_fibre);
-        motion.path = refine_path(result_.machine, motion.eyes.path, kPolicy, block_tolerance());
-        motion.joints = solve_joints(result_.machine, motion.path, kPolicy);
+        motion.eyes = equal_free_length(pieces, *setup_.obstacles, setup_.rule.free_fibre);
+        motion.path = refine_path(setup_.machine, motion.eyes.path, kPolicy, block_tolerance());
+        motion.joints = solve_joints(setup_.machine, motion.path, kPolicy);
         return motion;
     }
 
     [[nodiscard]] BlockTolerance block_tolerance() const {
         BlockTolerance tolerance;
-        tolerance.sideways_mm = kChoiceShare * result_.job.tolerance.laydown_mm;
-        tolerance.angle_rad = kChoiceShare * rad_from_deg(kLaydownAngle_deg);
+        tolerance.sideways_mm = kChoiceShare * setup_.job.tolerance.laydown_mm;
+        tolerance.angle_rad = kChoiceShare * rad_from_deg(setup_.job.tolerance.laydown_angle_deg);
         tolerance.eye_mm = kMostBetweenBlocks_mm;
         return tolerance;
     }
 
     [[nodiscard]] CollisionReport collisions_of(const Motion& motion) const {
-        return check_collisions(result_.machine, envelope_, *obstacles_, motion.path, motion.joints,
-                                rule_);
+        return check_collisions(setup_.machine, setup_.envelope, *setup_.obstacles, motion.path,
+                                motion.joints, setup_.rule);
     }
 
     // Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason:
@@ -279,12 +183,12 @@ private:
     }
 
     void plan() {
-        const Job& job = result_.job;
+        const Job& job = setup_.job;
         CoverOptions options;
         options.tow = {job.tow.width_mm, job.tow.thickness_mm, job.tow.friction,
                        job.tow.bridging_tolerance_mm};
         options.turn.extension_mm = job.mandrel.extension_mm;
-        options.free_fibre = rule_.free_fibre;
+        options.free_fibre = setup_.rule.free_fibre;
         options.select.target_layers =
             static_cast<int>(std::ceil(job.layers.front().target_layers));
         options.seed = request_.seed;
@@ -300,7 +204,7 @@ private:
             return indices;
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
-        result_.plan = plan_cover(result_.mandrel, *obstacles_, options);
+        result_.plan = plan_cover(setup_.mandrel, *setup_.obstacles, options);
         watch_.stage("plan");
     }
 
@@ -313,21 +217,20 @@ private:
         collisions_ = collisions_of(motion_);
         std::vector<double> room_mm = collisions_.clearance_mm;
         for (double& room : room_mm) {
-            room = std::clamp(room - rule_.clearance_mm, kLeastBetweenBlocks_mm,
+            room = std::clamp(room - setup_.rule.clearance_mm, kLeastBetweenBlocks_mm,
                               kMostBetweenBlocks_mm);
         }
         result_.choice = choose_blocks(
-            result_.machine, {.path = motion_.path, .joints = motion_.joints, .room_mm = room_mm},
+            setup_.machine, {.path = motion_.path, .joints = motion_.joints, .room_mm = room_mm},
             block_tolerance());
         const std::span<const std::size_t> ends = result_.choice.ends;
         const EyePath path = points_at(motion_.path, ends);
         const JointPath joints = points_at(motion_.joints, ends);
-        const TimeLawOptions time{.fibre_speed_mm_s =
-                                      result_.job.speed.fibre_m_min * 1000.0 / 60.0};
-        const TimedPath timed = time_path(result_.machine, result_.choice.fibre_mm, joints, time);
+        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
+        const TimedPath timed = time_path(setup_.machine, result_.choice.fibre_mm, joints, time);
         result_.duration_s = timed.duration_s;
         result_.binding = timed.binding;
-        result_.blocks = dialect_->prepare(make_blocks(result_.machine, path, joints, timed));
+        result_.blocks = setup_.dialect->prepare(make_blocks(setup_.machine, path, joints, timed));
     }
 
     [[nodiscard]] static std::string place_of(const EyePoint& eye) {
@@ -339,12 +242,12 @@ private:
     void check() {
         check_fibres();
         check_coverage();
-        check_slip();
-        check_bridging();
-        check_collision();
-        check_limits();
-        check_payout();
-        check_rounding();
+        check_eyes();
+        if (result_.plan.fibres == 1) {
+            check_program();
+        } else {
+            check_planned_slip();
+        }
     }
 
     void check_fibres() {
@@ -387,104 +290,61 @@ private:
         result_.checks.push_back(check);
     }
 
-    void check_slip() {
+    void check_eyes() {
+        const std::vector<std::size_t>& blocked = result_.eyes.blocked;
+        Check check{"eye", blocked.empty(), {}, {}};
+        check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
+        if (!check.ok) {
+            check.words = "no free fibre length between " +
+                          fixed(setup_.rule.free_fibre.min_mm, 0) + " and " +
+                          fixed(setup_.rule.free_fibre.max_mm, 0) + " mm is clear at " +
+                          place_of(result_.eyes.path[blocked.front()]);
+        }
+        result_.checks.push_back(check);
+    }
+
+    // Several fibres make no program that could be wound again: what the plan says of itself.
+    void check_planned_slip() {
         const Plan& plan = result_.plan;
-        const double limit = result_.job.tow.friction;
-        Check check{"slip", plan.worst_slip <= limit, {}, {}};
-        check.numbers = {{"limit", limit}, {"worst", plan.worst_slip}};
-        if (!check.ok) {
-            check.words = "slip ratio " + fixed(plan.worst_slip, 4) + " exceeds the friction " +
-                          fixed(limit, 4);
+        const Job::TowJob& tow = setup_.job.tow;
+        Check slip{"slip", plan.worst_slip <= tow.friction, {}, {}};
+        slip.numbers = {{"limit", tow.friction}, {"worst", plan.worst_slip}};
+        Check bridging{"bridging", plan.worst_bridge_mm <= tow.bridging_tolerance_mm, {}, {}};
+        bridging.numbers = {{"limit_mm", tow.bridging_tolerance_mm},
+                            {"worst_mm", plan.worst_bridge_mm}};
+        Check laydown{"laydown", false, "not wound again: one program winds one fibre", {}};
+        for (Check* const check : {&slip, &bridging}) {
+            check->words = check->ok ? "" : "the plan exceeds the limit";
         }
-        result_.checks.push_back(check);
+        result_.checks.insert(result_.checks.end(), {slip, bridging, laydown});
     }
 
-    void check_bridging() {
-        const Plan& plan = result_.plan;
-        const double limit = result_.job.tow.bridging_tolerance_mm;
-        Check check{"bridging", plan.worst_bridge_mm <= limit, {}, {}};
-        check.numbers = {{"limit_mm", limit}, {"worst_mm", plan.worst_bridge_mm}};
-        if (!check.ok) {
-            check.words = "the fibre bridges by " + fixed(plan.worst_bridge_mm, 3) +
-                          " mm, more than " + fixed(limit, 3) + " mm";
-        }
-        result_.checks.push_back(check);
-    }
-
-    void check_collision() {
-        Check check{"collision", true, {}, {}};
-        check.numbers = {{"fibre_hits", static_cast<double>(collisions_.fibre_hits.size())},
-                         {"head_hits", static_cast<double>(collisions_.head_hits.size())},
-                         {"blocked_points", static_cast<double>(result_.eyes.blocked.size())},
-                         {"min_clearance_mm", collisions_.min_clearance_mm}};
-        if (!result_.eyes.blocked.empty()) {
-            check.ok = false;
-            check.words = "no free fibre length between " + fixed(rule_.free_fibre.min_mm, 0) +
-                          " and " + fixed(rule_.free_fibre.max_mm, 0) + " mm is clear at " +
-                          place_of(result_.eyes.path[result_.eyes.blocked.front()]);
-        } else if (!collisions_.fibre_hits.empty()) {
-            check.ok = false;
-            check.words = "the free fibre meets the mandrel at " +
-                          place_of(motion_.path[collisions_.fibre_hits.front()]);
-        } else if (!collisions_.head_hits.empty()) {
-            check.ok = false;
-            check.words = "the head comes within " + fixed(rule_.clearance_mm, 1) +
-                          " mm of the mandrel at " +
-                          place_of(motion_.path[collisions_.head_hits.front()]);
-        }
-        result_.checks.push_back(check);
-    }
-
-    void check_limits() {
-        Check check{"limits", motion_.joints.violations.empty(), {}, {}};
-        check.numbers["violations"] = static_cast<double>(motion_.joints.violations.size());
-        if (!check.ok) {
-            const LimitViolation& worst = motion_.joints.violations.front();
-            const auto joint = result_.machine.joint_of(worst.axis).value_or(0);
-            const bool rotary = result_.machine.axis(joint).type == AxisType::Rotary;
-            const auto shown = [&](double value) {
-                return rotary ? fixed(deg_from_rad(value), 2) + " deg" : fixed(value, 2) + " mm";
-            };
-            check.words = std::string("axis ") + worst.axis + " would go to " + shown(worst.value) +
-                          ", past its end at " + shown(worst.limit) + ", at " +
-                          place_of(motion_.path[worst.point]);
-        }
-        result_.checks.push_back(check);
-    }
-
-    void check_payout() {
-        const double back_mm = largest_take_back_mm(result_.eyes.path);
-        const double limit = result_.machine.fibre.take_up_mm;
-        Check check{"payout", back_mm <= limit, {}, {}};
-        check.numbers = {{"limit_mm", limit}, {"worst_mm", back_mm}};
-        if (!check.ok) {
-            check.words = "the tensioner would have to take back " + fixed(back_mm, 1) +
-                          " mm of fibre, more than its " + fixed(limit, 1) + " mm";
-        }
-        result_.checks.push_back(check);
-    }
-
-    // The program is read back from its text: every position must be the planned one within half a
-    // step.
-    void check_rounding() {
-        tell("write", 0.0);
+    // The program is read back from its text and wound again.
+    void check_program() {
+        tell("verify", 0.0);
         write_program();
+        watch_.stage("post");
         const BlockList read =
-            dialect_->read(result_.program, result_.program_file, result_.machine);
+            setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
         Check check{"rounding", read.nano == result_.blocks.nano, {}, {}};
         check.numbers["blocks"] = static_cast<double>(read.blocks.size());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";
         }
         result_.checks.push_back(check);
+        result_.verification = verify_program(setup_, read, planned_fibre(result_.plan.pieces));
+        const std::vector<Check>& found = result_.verification.checks;
+        result_.checks.insert(result_.checks.end(), found.begin(), found.end());
+        watch_.stage("verify");
+        write_program();  // with what failed, for --force
     }
 
     void write_program() {
         ProgramHeader header;
         header.version = kVersion;
-        header.mandrel = result_.mandrel.file;
+        header.mandrel = setup_.mandrel.file;
         header.mandrel_digest = "sha256 " + sha256_hex(read_bytes(request_.mandrel));
-        header.job_digest = "sha256 " + sha256_hex(job_text(result_.job));
+        header.job_digest = "sha256 " + sha256_hex(job_text(setup_.job));
         header.fibre_length_mm = result_.plan.fibre_length_mm;
         header.tie_on_mm = result_.eyes.path.front().landing_mm;
         for (const Check& check : result_.checks) {
@@ -492,17 +352,17 @@ private:
                 header.notes.push_back("CHECK FAILED, written by force: " + check.name);
             }
         }
-        result_.program_file = "program" + dialect_->extension();
-        result_.program = dialect_->write(result_.machine, result_.blocks, header);
+        result_.program_file = "program" + setup_.dialect->extension();
+        result_.program = setup_.dialect->write(setup_.machine, result_.blocks, header);
     }
 
     [[nodiscard]] std::string vtu() const {
-        const Surface& surface = result_.mandrel.surface;
+        const Surface& surface = setup_.mandrel.surface;
         const Plan& plan = result_.plan;
         std::vector<double> thickness;
         std::vector<double> angle_deg;
         for (std::size_t f = 0; f < plan.face_layers.size(); ++f) {
-            thickness.push_back(plan.face_layers[f] * result_.job.tow.thickness_mm);
+            thickness.push_back(plan.face_layers[f] * setup_.job.tow.thickness_mm);
             angle_deg.push_back(deg_from_rad(plan.face_angle_rad[f]));
         }
         const std::vector<CellArray> cells{
@@ -519,7 +379,7 @@ private:
         OutputFolder& folder = *folder_;
         if (planned) {
             folder.add("path.csv", path_csv(result_.plan.pieces, result_.eyes.path));
-            folder.add("motion.csv", motion_csv(result_.machine, result_.blocks));
+            folder.add("motion.csv", motion_csv(setup_.machine, result_.blocks));
             folder.add("layup.vtu", vtu());
         } else {
             for (const char* const name : {"path.csv", "motion.csv", "layup.vtu"}) {
@@ -529,7 +389,7 @@ private:
         if (result_.program_written) {
             folder.add(result_.program_file, result_.program);
         } else {
-            folder.withdraw("program" + dialect_->extension());
+            folder.withdraw("program" + setup_.dialect->extension());
         }
         watch_.stage("write");
         folder.add("report.json", report_json(result_));
@@ -538,13 +398,10 @@ private:
 
     const WindRequest& request_;
     WindResult result_;
+    Setup& setup_ = result_.setup;
     Stopwatch watch_;
     std::unique_ptr<SpindleWristInverse> inverse_;
-    std::unique_ptr<Dialect> dialect_;
-    std::unique_ptr<RayQuery> obstacles_;
     std::unique_ptr<OutputFolder> folder_;
-    HeadEnvelope envelope_;
-    CollisionRule rule_;
     Motion motion_;
     CollisionReport collisions_;
 };

@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/job.h"
-#include "machines/machine.h"
-#include "mesh/mandrel.h"
+#include "cli/setup.h"
 #include "postproc/block.h"
 #include "postproc/choose_blocks.h"
-#include "postproc/collision.h"
 #include "postproc/eye_path.h"
+#include "postproc/time_law.h"
+#include "postproc/verify.h"
 #include "winding/plan.h"
 
 namespace meshwind {
@@ -30,19 +29,9 @@ struct WindRequest {
     std::function<void(const std::string& step, double share)> progress;
 };
 
-/// One check of the report. The place is empty where the check passed.
-struct Check {
-    std::string name;  ///< key in report.json
-    bool ok = true;
-    std::string words;  ///< where it failed: one line with the place, the number and the limit
-    std::map<std::string, double> numbers;  ///< further keys of the check, e.g. "worst", "limit"
-};
-
 /// Everything that was found, for the report.
 struct WindResult {
-    Mandrel mandrel;
-    Machine machine;
-    Job job;
+    Setup setup;
     Plan plan;
     EyePathResult eyes;
     std::size_t path_points = 0;  ///< points that blocks were chosen from
@@ -53,6 +42,7 @@ struct WindResult {
     double duration_s = 0.0;
     std::vector<BindingLimit> binding;
     std::vector<std::string> notes;
+    Verification verification;  ///< of the program, where it winds one fibre
     std::vector<Check> checks;
     std::map<std::string, double> timing_s;
     bool program_written = false;

@@ -114,10 +114,14 @@ JointPath solve_joints(const Machine& machine, const EyePath& path,
             note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
         }
     }
-    for (std::size_t joint = 0; joint < result.axis_count; ++joint) {
-        find_violations(machine.axis(joint), joint, result);
-    }
+    find_travel_violations(machine, result);
     return result;
+}
+
+void find_travel_violations(const Machine& machine, JointPath& path) {
+    for (std::size_t joint = 0; joint < path.axis_count; ++joint) {
+        find_violations(machine.axis(joint), joint, path);
+    }
 }
 
 JointPath solve_joints(const Machine& machine, const EyePath& path, RedundancyPolicy policy) {

@@ -74,6 +74,9 @@ inline constexpr double kLeastEyeRadius_mm = 1e-6;
 [[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
                                      std::span<const double> turns_rad);
 
+/// Appends the runs of points beyond an axis' travel to `path.violations`.
+void find_travel_violations(const Machine& machine, JointPath& path);
+
 /// The same with the turns of a policy.
 [[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
                                      RedundancyPolicy policy);

@@ -43,6 +43,9 @@ public:
           step_s_(joints.size(), 0.0),
           limit_(joints.size(), kNoLimit) {}
 
+    TimeLaw(const Machine& machine, const JointPath& joints, std::span<const double> step_s)
+        : machine_(machine), joints_(joints), step_s_(step_s.begin(), step_s.end()) {}
+
     void keep_velocities(std::span<const double> fibre_mm, double fibre_mm_s) {
         for (std::size_t i = 1; i < joints_.size(); ++i) {
             lengthen(i, fibre_mm[i] / fibre_mm_s, kFibre);
@@ -68,22 +71,27 @@ public:
         return changed;
     }
 
-    [[nodiscard]] double worst_ratio() const {
-        double worst = 0.0;
+    [[nodiscard]] AxisLoads loads() const {
+        AxisLoads loads;
+        const auto raise = [](AxisLoad& load, double ratio, std::size_t step, std::size_t joint) {
+            load = ratio > load.ratio ? AxisLoad{ratio, step, joint} : load;
+        };
         std::size_t before = 0;
         for (std::size_t i = 1; i < joints_.size(); ++i) {
             if (step_s_[i] <= 0.0) {
                 continue;
             }
             for (std::size_t a = 0; a < joints_.axis_count; ++a) {
-                worst = std::max({worst, ramp_ratio(i, before, a), ramp_ratio(before, i, a)});
+                raise(loads.velocity, std::abs(speed(i, a)) / machine_.axis(a).velocity, i, a);
+                raise(loads.acceleration, ramp_ratio(i, before, a), i, a);
+                raise(loads.acceleration, ramp_ratio(before, i, a), before, a);
             }
             before = i;
         }
         for (std::size_t a = 0; a < joints_.axis_count && before != 0; ++a) {
-            worst = std::max(worst, ramp_ratio(before, 0, a));
+            raise(loads.acceleration, ramp_ratio(before, 0, a), before, a);
         }
-        return worst;
+        return loads;
     }
 
     // Time that the first moving step loses in its start, and the last in its stop.
@@ -123,7 +131,7 @@ public:
         std::stable_sort(
             timed.binding.begin(), timed.binding.end(),
             [](const BindingLimit& a, const BindingLimit& b) { return a.time_s > b.time_s; });
-        timed.worst_acceleration_ratio = worst_ratio();
+        timed.worst_acceleration_ratio = loads().acceleration.ratio;
         timed.step_s = std::move(step_s_);
         return timed;
     }
@@ -242,6 +250,12 @@ TimedPath time_path(const Machine& machine, const EyePath& path, const JointPath
         fibre_mm[i] = std::max(std::abs(laid), std::abs(laid + longer));
     }
     return time_path(machine, fibre_mm, joints, options);
+}
+
+AxisLoads axis_loads(const Machine& machine, const JointPath& joints,
+                     std::span<const double> step_s) {
+    assert(step_s.size() == joints.size());
+    return TimeLaw(machine, joints, step_s).loads();
 }
 
 double largest_take_back_mm(const EyePath& path) {

@@ -58,6 +58,22 @@ struct TimedPath {
 [[nodiscard]] TimedPath time_path(const Machine& machine, const EyePath& path,
                                   const JointPath& joints, const TimeLawOptions& options = {});
 
+/// Where a limit of an axis is used most.
+struct AxisLoad {
+    double ratio = 0.0;  ///< needed over allowed; above 1 the limit is broken
+    std::size_t step = 0;
+    std::size_t joint = 0;
+};
+
+struct AxisLoads {
+    AxisLoad velocity;
+    AxisLoad acceleration;  ///< ramps over the room that they have, as above
+};
+
+/// What given durations ask of the axes. \param step_s per step, the first is not used
+[[nodiscard]] AxisLoads axis_loads(const Machine& machine, const JointPath& joints,
+                                   std::span<const double> step_s);
+
 /// Longest fibre that the tensioner must take back: the largest fall of s + L behind its running
 /// maximum, in mm; compare with FibreLimits::take_up_mm.
 [[nodiscard]] double largest_take_back_mm(const EyePath& path);

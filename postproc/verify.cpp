@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/error.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "geodesic/measure.h"
@@ -27,8 +28,13 @@ public:
     explicit Verifier(const VerifyTask& task) : task_(task), rules_(task.rules) {}
 
     Verification run() {
-        found_.laid = lay_down(task_.surface, task_.machine, task_.program, task_.tie_on_mm,
-                               rules_.simulation);
+        if (!task_.program.tie_on_mm) {
+            throw InputError("verify.tie_on", "",
+                             "the program does not say where the fibre is tied on; give --tie-on "
+                             "X,Y,Z in the mandrel's frame");
+        }
+        found_.laid = lay_down(task_.surface, task_.machine, task_.program,
+                               *task_.program.tie_on_mm, rules_.simulation);
         found_.fibre_length_mm = found_.laid.path.back().s_mm;
         found_.duration_s = task_.program.duration_s();
         check_laydown();
@@ -68,8 +74,8 @@ private:
     void check_laydown() {
         const LaidPath& laid = found_.laid;
         Check check{"laydown", true, {}, {}};
-        if (task_.plan != nullptr) {
-            found_.deviation = compare(laid, *task_.plan, rules_.laydown);
+        if (!task_.plan.empty()) {
+            found_.deviation = compare(laid, task_.plan, rules_.laydown);
             const Deviation& off = *found_.deviation;
             check.numbers = {{"max_deviation_mm", off.max_mm},
                              {"max_angle_deg", deg_from_rad(off.max_angle_rad)},
@@ -231,8 +237,7 @@ private:
             step_s.push_back(list.blocks[b].duration_s);
         }
         find_travel_violations(task_.machine, joints);
-        const AxisLoad velocity = worst_velocity(task_.machine, joints, step_s);
-        const AxisLoad acceleration = worst_acceleration(task_.machine, joints, step_s);
+        const auto [velocity, acceleration] = axis_loads(task_.machine, joints, step_s);
         check.numbers = {{"violations", static_cast<double>(joints.violations.size())},
                          {"velocity_ratio", velocity.ratio},
                          {"acceleration_ratio", acceleration.ratio}};

@@ -39,14 +39,13 @@ struct VerifyRules {
 
 /// A program that was read back, and the world in which it runs.
 struct VerifyTask {
-    const BlockList& program;  ///< as a dialect's reader gave it
-    Eigen::Vector3d tie_on_mm;
+    const BlockList& program;  ///< as a dialect's reader gave it, with the place of its tie-on
     const Machine& machine;
     const HeadEnvelope& envelope;
     const Surface& surface;     ///< the wall with its extensions
     const RayQuery& obstacles;  ///< everything that can be hit
     const VerifyRules& rules;
-    const PlannedFibre* plan = nullptr;  ///< for the last comparison; none: nothing is compared
+    const PlannedFibre& plan;  ///< for the last comparison; empty: nothing is compared
 };
 
 struct Verification {
@@ -72,6 +71,7 @@ struct Verification {
 ///  - limits: travel, velocity and acceleration of the axes (time_law.h);
 ///  - payout: speed of the fibre through the eye, and length to be taken back, which is slack.
 /// The words of a failed check name the block and its line.
+/// \throws InputError verify.tie_on without a tie-on, or with one off the mandrel
 [[nodiscard]] Verification verify(const VerifyTask& task);
 
 /// The landing points that the program lays, as a table with the columns

@@ -1,0 +1,136 @@
+#include "cli/setup.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "core/text_number.h"
+#include "core/units.h"
+#include "machines/machine_json.h"
+#include "mesh/extension.h"
+#include "mesh/import.h"
+
+namespace meshwind {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The free fibre's ray starts two mesh edges along the tangent: nearer, the facet that holds the
+// landing point itself may stand in the way; a wall within that distance would bridge first.
+constexpr double kRayStartEdges = 2.0;
+
+// Clearances are tabulated this far around the mandrel: further out nothing of a head is in the
+// way.
+constexpr double kTableReach_mm = 60.0;
+
+MandrelOptions mandrel_options(const Job& job, double unit_mm) {
+    MandrelOptions options;
+    options.unit_mm = unit_mm > 0.0 ? unit_mm : mm_per(job.mandrel.units);
+    if (job.mandrel.axis) {
+        options.axis = {job.mandrel.axis->origin, job.mandrel.axis->direction};
+    }
+    options.keep_regions = job.mandrel.keep_regions;
+    return options;
+}
+
+// The head as planning sees it: a ball around the eye that holds every part which turns with the
+// last wrist axis, however that turns, and the other parts as capsules on the line away from the
+// spindle, on which the central-angle policy keeps them.
+void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFibreRule& rule) {
+    const Eigen::Vector3d& eye = machine.eye.position_mm;
+    const Eigen::Vector3d outward = -machine.eye.exit;
+    rule.head_radius_mm = 0.0;
+    rule.arm.clear();
+    for (const HeadEnvelope::Part& part : envelope.parts) {
+        std::vector<Eigen::Vector3d> points = part.triangles.points_mm;
+        double thickness = 0.0;
+        if (points.empty()) {
+            points = {part.capsule.from_mm, part.capsule.to_mm};
+            thickness = part.capsule.radius_mm;
+        }
+        double reach = 0.0;
+        ArmPart arm{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0.0};
+        for (const Eigen::Vector3d& point : points) {
+            const double along = outward.dot(point - eye);
+            reach = std::max(reach, (point - eye).norm() + thickness);
+            arm.from_mm = std::min(arm.from_mm, along);
+            arm.to_mm = std::max(arm.to_mm, along);
+            arm.radius_mm =
+                std::max(arm.radius_mm, (point - eye - along * outward).norm() + thickness);
+        }
+        if (part.link == machine.eye_chain.back().letter) {
+            rule.head_radius_mm = std::max(rule.head_radius_mm, reach);
+        } else {
+            rule.arm.push_back(arm);
+        }
+    }
+}
+
+CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
+    CollisionRule rule;
+    rule.clearance_mm = setup.job.tolerance.clearance_mm;
+    FreeFibreRule& free = rule.free_fibre;
+    free.min_mm = setup.machine.fibre.min_free_length_mm;
+    free.max_mm = setup.machine.fibre.max_free_length_mm;
+    free.preferred_mm = setup.job.eye.free_length_mm;
+    if (free.preferred_mm < free.min_mm || free.preferred_mm > free.max_mm) {
+        throw InputError("job.free_length", job_file.string() + ": /eye/free_length",
+                         fixed(free.preferred_mm, 1) + " mm is outside the " +
+                             fixed(free.min_mm, 1) + " to " + fixed(free.max_mm, 1) +
+                             " mm of the machine; choose a length between");
+    }
+    describe_head(setup.machine, setup.envelope, free);
+    free.clearance_mm = rule.clearance_mm + kBetweenBlocks_mm;
+    free.start_mm =
+        std::min(kRayStartEdges * setup.mandrel.surface.mean_edge_mm, 0.5 * free.min_mm);
+    return rule;
+}
+
+std::unique_ptr<RayQuery> obstacles_of(const Mandrel& mandrel, double extension_mm) {
+    std::vector<TriangleSoup> parts{mandrel.whole};
+    for (const Rim& rim : mandrel.rims) {
+        if (extension_mm > 0.0) {
+            parts.push_back(extension_of(rim, extension_mm));
+        }
+    }
+    return std::make_unique<RayQuery>(parts, kTableReach_mm);
+}
+
+}  // namespace
+
+Setup read_setup(const SetupRequest& request) {
+    Setup setup;
+    setup.machine = read_machine(request.machine.string());
+    if (!request.job.empty()) {
+        setup.job = read_job(request.job);
+    }
+    setup.dialect = make_dialect(setup.machine.controller.dialect);
+    setup.envelope =
+        head_envelope(setup.machine, [](const std::string& file) { return read_triangles(file); });
+    setup.mandrel = load_mandrel(request.mandrel, mandrel_options(setup.job, request.unit_mm));
+    setup.rule = collision_rule(setup, request.job);
+    setup.obstacles = obstacles_of(setup.mandrel, setup.job.mandrel.extension_mm);
+    return setup;
+}
+
+Verification verify_program(const Setup& setup, const BlockList& program,
+                            const PlannedFibre& plan) {
+    const Job& job = setup.job;
+    const VerifyRules rules{.collision = setup.rule,
+                            .friction = job.tow.friction,
+                            .bridging_tolerance_mm = job.tow.bridging_tolerance_mm,
+                            .tow_width_mm = job.tow.width_mm,
+                            .laydown = {.deviation_mm = job.tolerance.laydown_mm,
+                                        .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},
+                            .simulation = {}};
+    const Surface surface = extended_surface(setup.mandrel, job.mandrel.extension_mm);
+    return verify({.program = program,
+                   .machine = setup.machine,
+                   .envelope = setup.envelope,
+                   .surface = surface,
+                   .obstacles = *setup.obstacles,
+                   .rules = rules,
+                   .plan = plan});
+}
+
+}  // namespace meshwind

@@ -1,0 +1,47 @@
+/// What planning and verifying start from: machine, job and mandrel, read, and what follows from
+/// them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/job.h"
+#include "machines/machine.h"
+#include "mesh/mandrel.h"
+#include "mesh/ray_query.h"
+#include "postproc/collision.h"
+#include "postproc/dialect.h"
+#include "postproc/verify.h"
+
+namespace meshwind {
+
+struct SetupRequest {
+    std::filesystem::path mandrel;
+    std::filesystem::path machine;
+    std::filesystem::path job;  ///< empty: the defaults
+    double unit_mm = 0.0;       ///< overrides the job's units where > 0
+};
+
+struct Setup {
+    Machine machine;
+    Job job;
+    Mandrel mandrel;
+    std::unique_ptr<Dialect> dialect;
+    HeadEnvelope envelope;
+    CollisionRule rule;
+    std::unique_ptr<RayQuery> obstacles;  ///< mandrel and extensions
+};
+
+/// \throws InputError, IoError for input that cannot be used; machine and job are read first
+[[nodiscard]] Setup read_setup(const SetupRequest& request);
+
+/// Added to the clearance where free lengths are chosen: between the ends of a block the axes cut
+/// the corner of the eye's curve by up to this much, and the clearance must hold there as well.
+inline constexpr double kBetweenBlocks_mm = 0.5;
+
+/// Winds a program again and judges it by the job's tolerances. \param program as read from its
+/// text, with the place of its tie-on \param plan to compare with; may be empty
+[[nodiscard]] Verification verify_program(const Setup& setup, const BlockList& program,
+                                          const PlannedFibre& plan);
+
+}  // namespace meshwind
