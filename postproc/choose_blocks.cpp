@@ -24,6 +24,8 @@ constexpr int kSecants = 2;
 constexpr double kSameEye_mm = 1e-6;
 // Joint values and frames are good to this; free lengths planned at a limit are not beyond it.
 constexpr double kLengthRounding_mm = 1e-6;
+// A block is about as long as the one before: the search starts with this share of it.
+constexpr std::size_t kFirstStride = 8;
 // A step is cut by the square root of its excess, and what is left over in the next round. Beyond
 // so many parts the deviation of the whole step says little about that of a part.
 constexpr int kRefineRounds = 4;
@@ -257,11 +259,20 @@ FoundBlock longest_block(const BlockCheck& check, std::size_t first, std::size_t
         return true;
     };
     good.last = first + 1;
-    std::size_t reach = std::max<std::size_t>(guess, 2);
-    while (good.last < limit && keeps(std::min(first + reach, limit))) {
-        reach *= 2;
+    // Strides that double, up from the guess or down from it, then bisection.
+    std::size_t stride = std::max<std::size_t>(guess / kFirstStride, 1);
+    const std::size_t start = std::min(first + std::max<std::size_t>(guess, 2), limit);
+    if (start > good.last && keeps(start)) {
+        while (good.last < limit && keeps(std::min(good.last + stride, limit))) {
+            stride *= 2;
+        }
+    } else {
+        while (bad > good.last + 1 &&
+               !keeps(std::max(good.last + 1, bad - std::min(stride, bad)))) {
+            stride *= 2;
+        }
     }
-    while (bad <= limit && bad - good.last > 1) {
+    while (bad - good.last > 1) {
         keeps(good.last + (bad - good.last) / 2);
     }
     if (good.last == first + 1) {
