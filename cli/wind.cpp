@@ -276,9 +276,17 @@ private:
         result_.binding = timed.binding;
         result_.blocks =
             dialect_->prepare(make_blocks(result_.machine, result_.eyes.path, joints_, timed));
+        fold();
         tell("collisions", 0.5);
         collisions_ = check_collisions(result_.machine, envelope_, *obstacles_, result_.eyes.path,
                                        joints_, rule_);
+    }
+
+    // From here on the blocks are those that the program runs, repeated circuits included.
+    void fold() {
+        FoldedProgram folded = dialect_->fold(std::move(result_.blocks));
+        result_.blocks = std::move(folded.list);
+        result_.layout = std::move(folded.layout);
     }
 
     [[nodiscard]] std::string place_of(std::size_t point) const {
@@ -444,7 +452,7 @@ private:
             }
         }
         result_.program_file = "program" + dialect_->extension();
-        result_.program = dialect_->write(result_.machine, result_.blocks, header);
+        result_.program = dialect_->write(result_.machine, result_.blocks, result_.layout, header);
     }
 
     [[nodiscard]] std::string vtu() const {

@@ -14,6 +14,7 @@
 #include "postproc/block.h"
 #include "postproc/collision.h"
 #include "postproc/eye_path.h"
+#include "postproc/repeats.h"
 #include "winding/plan.h"
 
 namespace meshwind {
@@ -44,7 +45,8 @@ struct WindResult {
     Job job;
     Plan plan;
     EyePathResult eyes;
-    BlockList blocks;
+    BlockList blocks;          ///< what the program runs, one by one
+    ProgramLayout layout;      ///< how they are written
     std::string program;       ///< text; empty when nothing can be written
     std::string program_file;  ///< name, e.g. "program.ngc"
     double duration_s = 0.0;
