@@ -60,7 +60,8 @@ public:
                                             const ProgramLayout& layout,
                                             const ProgramHeader& header) const = 0;
 
-    /// Reads a program of the subset that `write` uses (and what is harmless besides).
+    /// Reads a program of the subset that `write` uses (and what is harmless besides): the blocks
+    /// that the controller would run, one by one, whatever the text repeats.
     /// \param file name used in messages
     /// \return positions and durations; `piece` from the course marks, `line` of each block, the
     /// tie-on of the head to three decimals

@@ -198,11 +198,12 @@ private:
                     const std::size_t begin = run.start + k * run.length;
                     return planned_.row(begin + j)[a] - planned_.row(begin)[a];
                 };
-                double more = 0.0;  // than the first circuit, in steps
+                std::int64_t more = 0;  // than the first circuit, in steps
                 for (std::size_t k = 1; k < run.count; ++k) {
-                    more += static_cast<double>((at(k) - at(0)) / planned_.axes[a].resolution_nano);
+                    more += (at(k) - at(0)) / planned_.axes[a].resolution_nano;
                 }
-                offset_.push_back(at(0) + std::llround(more / static_cast<double>(run.count)) *
+                offset_.push_back(at(0) + std::llround(static_cast<double>(more) /
+                                                       static_cast<double>(run.count)) *
                                               planned_.axes[a].resolution_nano);
             }
         }

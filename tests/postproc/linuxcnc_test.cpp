@@ -149,7 +149,8 @@ TEST(LinuxCnc, NeverGivesTheInterpreterATinyLinearFeedBesideATurn) {
 }
 
 TEST(LinuxCnc, ControllerLinesMustBeHarmless) {
-    for (const char* line : {"G1 X1 F1", "M2", "G20", "M3 S100", "G64 P0.01 (open"}) {
+    for (const char* line :
+         {"G1 X1 F1", "M2", "G20", "M3 S100", "G64 P0.01 (open", "O7", "M98 P7", "o7 call"}) {
         Machine machine = six_axis();
         machine.controller.header = {line};
         EXPECT_THROW((void)write(machine, random_list(machine, 1, 3)), InputError) << line;
