@@ -76,6 +76,22 @@ json checks_report(const std::vector<Check>& checks) {
     return report;
 }
 
+// Furthest of an axis from its planned position for circuits that are repeated, mm or deg.
+double drift_of(const WindResult& result, std::size_t axis) {
+    const std::vector<std::int64_t>& nano = result.layout.drift_nano;
+    return nano.empty() ? 0.0 : static_cast<double>(nano[axis]) / static_cast<double>(kNanoPerUnit);
+}
+
+json repeats_report(const WindResult& result) {
+    json drift = json::object();
+    for (std::size_t a = 0; a < result.blocks.axes.size(); ++a) {
+        drift[std::string(1, result.blocks.axes[a].letter)] = rounded(drift_of(result, a));
+    }
+    return {{"subprograms", result.layout.subprograms.size()},
+            {"calls", result.layout.calls()},
+            {"drift", drift}};
+}
+
 json axes_report(const WindResult& result) {
     json axes = json::object();
     const BlockList& list = result.blocks;
@@ -93,7 +109,7 @@ json axes_report(const WindResult& result) {
             {"min", rounded(low)},
             {"max", rounded(high)},
             {"resolution", step},
-            {"max_rounding_error", 0.5 * step}};
+            {"max_rounding_error", 0.5 * step + drift_of(result, a)}};
     }
     return axes;
 }
@@ -121,6 +137,7 @@ json program_report(const WindResult& result) {
             {"free_length_mm",
              {{"min", rounded(result.eyes.shortest_mm)}, {"max", rounded(result.eyes.longest_mm)}}},
             {"binding_limits", binding},
+            {"repeats", repeats_report(result)},
             {"axes", axes_report(result)}};
 }
 

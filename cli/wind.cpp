@@ -230,7 +230,11 @@ private:
         const TimedPath timed = time_path(setup_.machine, result_.choice.fibre_mm, joints, time);
         result_.duration_s = timed.duration_s;
         result_.binding = timed.binding;
-        result_.blocks = setup_.dialect->prepare(make_blocks(setup_.machine, path, joints, timed));
+        // What the program runs, repeated circuits included.
+        FoldedProgram folded = setup_.dialect->fold(
+            setup_.dialect->prepare(make_blocks(setup_.machine, path, joints, timed)));
+        result_.blocks = std::move(folded.list);
+        result_.layout = std::move(folded.layout);
     }
 
     [[nodiscard]] static std::string place_of(const EyePoint& eye) {
@@ -353,7 +357,8 @@ private:
             }
         }
         result_.program_file = "program" + setup_.dialect->extension();
-        result_.program = setup_.dialect->write(setup_.machine, result_.blocks, header);
+        result_.program =
+            setup_.dialect->write(setup_.machine, result_.blocks, result_.layout, header);
     }
 
     [[nodiscard]] std::string vtu() const {

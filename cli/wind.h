@@ -12,6 +12,7 @@
 #include "postproc/block.h"
 #include "postproc/choose_blocks.h"
 #include "postproc/eye_path.h"
+#include "postproc/repeats.h"
 #include "postproc/time_law.h"
 #include "postproc/verify.h"
 #include "winding/plan.h"
@@ -36,7 +37,8 @@ struct WindResult {
     EyePathResult eyes;
     std::size_t path_points = 0;  ///< points that blocks were chosen from
     BlockChoice choice;
-    BlockList blocks;
+    BlockList blocks;          ///< what the program runs, one by one
+    ProgramLayout layout;      ///< how they are written
     std::string program;       ///< text; empty when nothing can be written
     std::string program_file;  ///< name, e.g. "program.ngc"
     double duration_s = 0.0;

@@ -5,12 +5,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "machines/machine.h"
 #include "postproc/block.h"
+#include "postproc/repeats.h"
 
 namespace meshwind {
 
@@ -40,13 +42,26 @@ public:
     /// prepare(prepare(list)) = prepare(list).
     [[nodiscard]] virtual BlockList prepare(BlockList list) const = 0;
 
-    /// The program of prepare(list).
+    /// Folds circuits that repeat where the language has subprograms; here nothing.
+    /// \param list a result of prepare()
+    /// \return what the program will really run (tables are made from it), and how it is written
+    [[nodiscard]] virtual FoldedProgram fold(BlockList list) const { return {std::move(list), {}}; }
+
+    /// The program of prepare(list), a line for each block.
     /// \pre list has the axes of the machine and at least one block
     /// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line, dialect.duration
+    [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
+                                    const ProgramHeader& header) const {
+        return write(machine, prepare(list), {}, header);
+    }
+
+    /// The program of what fold() returned; the same errors.
     [[nodiscard]] virtual std::string write(const Machine& machine, const BlockList& list,
+                                            const ProgramLayout& layout,
                                             const ProgramHeader& header) const = 0;
 
-    /// Reads a program of the subset that `write` uses (and what is harmless besides).
+    /// Reads a program of the subset that `write` uses (and what is harmless besides): the blocks
+    /// that the controller would run, one by one, whatever the text repeats.
     /// \param file name used in messages
     /// \return positions and durations; `piece` from the course marks, `line` of each block, the
     /// tie-on of the head to three decimals

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text_number.h"
@@ -18,6 +19,8 @@ constexpr double kMmPerM = 1000.0;
 // its linear part then has the second one, clear of the floor by more than F's last digit.
 constexpr double kLeastFeed_mm_min = 0.12;
 constexpr double kSplitFeed_mm_min = 0.2;
+// Numbers of subprograms count from here, clear of those that people give to programs.
+constexpr std::size_t kFirstSubprogram = 1001;
 // Text per line in bytes, to reserve the output once.
 constexpr std::size_t kTypicalLine = 64;
 
@@ -123,7 +126,7 @@ public:
         text_.reserve(kTypicalLine * (list.blocks.size() + 40));
     }
 
-    std::string program(const ProgramHeader& header) && {
+    std::string program(const ProgramHeader& header, const ProgramLayout& layout) && {
         comments(header);
         text_ += "G21 G90 G94 G17 G40 G49 G80\n";
         raw_lines(machine_.controller.header);
@@ -132,16 +135,19 @@ public:
         start_moves();
         comment("MSG, tie the fibre on at the landing point, then start again");
         text_ += "M0\nG91 G93\n";
-        std::int32_t piece = -1;
-        for (std::size_t i = 1; i < list_.blocks.size(); ++i) {
-            if (list_.blocks[i].piece != piece) {
-                piece = list_.blocks[i].piece;
-                text_ += "(course " + std::to_string(piece) + ")\n";
-            }
-            block(i);
+        std::vector<ProgramPart> main = layout.main;
+        if (main.empty()) {
+            main.push_back({.first = 1, .last = list_.blocks.size() - 1});
         }
+        parts(main);
         raw_lines(machine_.controller.footer);
         text_ += "M2\n";
+        marks_ = false;
+        for (std::size_t s = 0; s < layout.subprograms.size(); ++s) {
+            text_ += "O" + std::to_string(kFirstSubprogram + s) + '\n';
+            parts(layout.subprograms[s]);
+            text_ += "M99\n";
+        }
         return std::move(text_);
     }
 
@@ -205,6 +211,28 @@ private:
         }
     }
 
+    void parts(const std::vector<ProgramPart>& parts) {
+        for (const ProgramPart& part : parts) {
+            if (part.kind == ProgramPart::Kind::Call) {
+                mark(part.first);
+                text_ += "M98 P" + std::to_string(kFirstSubprogram + part.subprogram);
+                text_ += part.times > 1 ? " L" + std::to_string(part.times) + '\n' : "\n";
+                continue;
+            }
+            for (std::size_t i = part.first; i <= part.last; ++i) {
+                mark(i);
+                block(i);
+            }
+        }
+    }
+
+    void mark(std::size_t block) {
+        if (marks_ && list_.blocks[block].piece != piece_) {
+            piece_ = list_.blocks[block].piece;
+            text_ += "(course " + std::to_string(piece_) + ")\n";
+        }
+    }
+
     void block(std::size_t i) {
         const std::span<const std::int64_t> now = list_.row(i);
         const std::span<const std::int64_t> before = list_.row(i - 1);
@@ -231,6 +259,8 @@ private:
     std::vector<int> decimals_;
     std::vector<std::size_t> order_;
     std::string text_;
+    std::int32_t piece_ = -1;  // of the last course mark
+    bool marks_ = true;
 };
 
 }  // namespace
@@ -256,16 +286,21 @@ BlockList LinuxCnc::prepare(BlockList list) const {
     return result;
 }
 
+FoldedProgram LinuxCnc::fold(BlockList list) const {
+    FoldedProgram folded = fold_repeats(list);
+    // A corrected block might have become one that the interpreter runs too fast.
+    if (!blocks_to_split(folded.list).empty()) {
+        return {std::move(list), {}};
+    }
+    return folded;
+}
+
 std::string LinuxCnc::write(const Machine& machine, const BlockList& list,
-                            const ProgramHeader& header) const {
+                            const ProgramLayout& layout, const ProgramHeader& header) const {
     assert(!list.blocks.empty() && list.axes.size() == machine.axis_count());
     check_letters(machine, list);
     check_linuxcnc_lines(machine);
-    if (blocks_to_split(list).empty()) {
-        return Writer(machine, list).program(header);
-    }
-    const BlockList prepared = prepare(list);
-    return Writer(machine, prepared).program(header);
+    return Writer(machine, list).program(header, layout);
 }
 
 }  // namespace meshwind

@@ -13,6 +13,9 @@ namespace meshwind {
 /// the head is where the fibre starts (mm in the mandrel frame). The footer lines and M2 close it;
 /// nothing homes.
 ///
+/// Circuits that repeat stand behind M2 as `O1001` .. `M99` and are called by `M98 P1001 L20`. They
+/// carry no course marks; the mark before a call is that of its first block.
+///
 /// Kept because the interpreter asks for it: lines of at most 252 characters, ASCII without nested
 /// brackets in comments, no exponents, F with six digits on every G1 line and never 0.
 /// Interpreters before May 2023 run a G93 line of linear length l at a feed of at least 0.1 mm/min
@@ -31,7 +34,10 @@ public:
     [[nodiscard]] std::string name() const override { return "linuxcnc"; }
     [[nodiscard]] std::string extension() const override { return ".ngc"; }
     [[nodiscard]] BlockList prepare(BlockList list) const override;
+    [[nodiscard]] FoldedProgram fold(BlockList list) const override;
+    using Dialect::write;
     [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
+                                    const ProgramLayout& layout,
                                     const ProgramHeader& header) const override;
     [[nodiscard]] BlockList read(std::string_view text, const std::string& file,
                                  const Machine& machine) const override;

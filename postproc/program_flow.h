@@ -11,8 +11,8 @@
 namespace meshwind {
 
 /// Lines that a program may run, its repetitions counted each time: a larger program is refused
-/// before the first line is read, for it would not fit in memory (20 million blocks of six axes
-/// take 1.5 GB) and wind for weeks.
+/// before the first line is run, for it would not fit in memory: 20 million blocks of six axes take
+/// 1.5 GB, twice that while they grow.
 inline constexpr std::int64_t kMostLinesRun = 20'000'000;
 
 /// Repeated stretches within one another that are followed; no program has a use for more.

@@ -2,6 +2,7 @@
 import csv
 import json
 import re
+import subprocess
 import sys
 from decimal import Decimal
 
@@ -55,6 +56,8 @@ class MainJob(program.ProgramTest):
             self.assertLessEqual(keys | {"ok"}, set(report["checks"][name]), name)
         part = report["program"]
         self.assertLessEqual({"file", "dialect", "blocks", "duration_s", "axes"}, set(part))
+        self.assertEqual(part["repeats"], {"subprograms": 0, "calls": 0,
+                                           "drift": dict.fromkeys("CZYXAB", 0.0)})
         for axis in "CZYXAB":
             self.assertLessEqual({"min", "max", "max_rounding_error"}, set(part["axes"][axis]))
         self.assertLessEqual(TIMES, set(report["timing_s"]))
@@ -81,6 +84,13 @@ class MainJob(program.ProgramTest):
             for axis in letters:
                 self.assertEqual(position[axis], Decimal(rows[row][axis]), f"block {row} {axis}")
         self.assertEqual(row, len(rows) - 1)
+        # LinuxCNC's own interpreter, where it is at hand (exit code 77: it is not).
+        tools = program.SOURCE / "tests/tools"
+        subprocess.run([tools / "run_rs274.sh", "--setup"], check=False)
+        verdict = subprocess.run([tools / "check_program.py", out / "program.ngc",
+                                  out / "motion.csv", program.SOURCE / "machines/six_axis.json"],
+                                 capture_output=True, text=True, check=False)
+        self.assertIn(verdict.returncode, (0, 77), verdict.stdout)
 
     def test_files_program_and_repeat(self):
         first = self.wind(self.folder / "one")

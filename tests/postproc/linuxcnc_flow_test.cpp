@@ -5,17 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "machines/machine_json.h"
 #include "postproc/linuxcnc.h"
+#include "tests/postproc/block_lists.h"
 
 namespace meshwind {
 namespace {
 
 const std::string kStart = "G21 G90\nG0 A0 B0 C0\nG0 X0 Y0 Z0\nM0\nG91 G93\n";
 
-Machine six_axis() {
-    return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/six_axis.json");
-}
+using test::six_axis;
 
 // Moves along X by 1, 2, .. 9 as digits, so that "112" is what a program ran.
 std::string moves(const std::string& text) {

@@ -14,6 +14,7 @@
 #include "machines/machine_json.h"
 #include "postproc/linuxcnc.h"
 #include "postproc/motion_csv.h"
+#include "tests/postproc/block_lists.h"
 #include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
@@ -50,15 +51,27 @@ protected:
         }
     }
 
-    // Writes program and table, compares ours and theirs.
-    void check(const std::string& machine_file, const BlockList& blocks) {
-        const Machine machine = read_machine(machine_file);
+    // Writes program and table, compares ours and theirs; then the same with repeats folded.
+    // Returns whether there were any.
+    bool check(const std::string& machine_file, const BlockList& blocks) {
         const LinuxCnc dialect;
         const BlockList prepared = dialect.prepare(blocks);
-        const std::string text =
-            dialect.write(machine, prepared, {.version = "test", .mandrel = "synthetic (no file)"});
-        EXPECT_EQ(dialect.read(text, "program.ngc", machine).nano, prepared.nano);
-        compare(machine_file, text, prepared);
+        check_text(machine_file, {prepared, {}});
+        const FoldedProgram folded = dialect.fold(prepared);
+        if (!folded.layout.main.empty()) {
+            check_text(machine_file, folded);
+        }
+        return !folded.layout.main.empty();
+    }
+
+    void check_text(const std::string& machine_file, const FoldedProgram& program) {
+        const Machine machine = read_machine(machine_file);
+        const LinuxCnc dialect;
+        const std::string text = dialect.write(
+            machine, program.list, program.layout,
+            {.version = "test", .mandrel = "synthetic (no file)", .tie_on_mm = {{70.0, 0.0, 1.5}}});
+        EXPECT_EQ(dialect.read(text, "program.ngc", machine).nano, program.list.nano);
+        compare(machine_file, text, program.list);
     }
 
     // Their reading of the program against the blocks.
@@ -117,6 +130,59 @@ TEST_F(LinuxCncOracle, LongTurnBesideATinyLinearMove) {
         list.nano.insert(list.nano.end(), row.begin(), row.end());
     }
     check(six_axis_, list);
+}
+
+TEST_F(LinuxCncOracle, RandomBlocks) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        check(six_axis_, test::random_list(read_machine(six_axis_), seed, 20'000));
+    }
+}
+
+// Steps that are not powers of ten, and controller lines of one's own.
+TEST_F(LinuxCncOracle, OtherMachineFiles) {
+    std::ifstream stream(six_axis_);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        const std::size_t at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        text.replace(at, from.size(), to);
+    };
+    replace("\"resolution\": 0.001", "\"resolution\": 0.015625");
+    replace("\"resolution\": 0.001", "\"resolution\": 0.0005");
+    replace("G64 P0.02", "G91 G64 P0.05 (a mode that the start must not inherit)");
+    const std::string file = (folder_ / "machine.json").string();
+    save(file, text);
+    const Machine machine = read_machine(file);
+    EXPECT_EQ(machine.mandrel_chain[0].resolution_nano, 15'625'000);
+    check(file, test::random_list(machine, 4, 5000));
+    EXPECT_TRUE(check(file, test::pattern(machine, {.circuits = 60, .advance_deg = 777.773})));
+}
+
+TEST_F(LinuxCncOracle, RepeatedCircuits) {
+    const Machine machine = read_machine(six_axis_);
+    EXPECT_TRUE(check(six_axis_, test::pattern(machine, {.advance_deg = 1234.56746})));
+    EXPECT_TRUE(check(six_axis_, test::pattern(machine, {.circuits = 50, .advance_deg = 1234.5})));
+    EXPECT_TRUE(
+        check(six_axis_, test::pattern(machine, {.circuits = 500, .length = 4, .lead = 1})));
+}
+
+TEST_F(LinuxCncOracle, FormsThatTheReaderTakes) {
+    const std::string start = "G21 G90\nG0 A0 B0 C0\nG0 X100 Y0 Z0\nM0\nG91 G93\n";
+    for (const std::string& text :
+         {std::string(
+              "%\n(head)\r\nN10 g21 g90 ; words\nG0A0B0C0\nG0 X 100.000000000000 Y-.5 Z+7.\n"
+              "M1\nG91 G93\nG1X1.5F60\n(course 4) x-1.25 c-360 f30\nG90 X100 F120\n"
+              "G94 G91 G1 Z3 Y4 F300\nC90 F900\nM30\nX9\n"),
+          start +
+              "G1 X1 F60\nG94 F600\nX3 Y4 C1\nA3 B4\nX0.001 C90\nG90 X100 C0\nG93 X101 F20\nM2\n",
+          "O7 (title)\no<one> sub\nG1 X1 F60\no<One>endsub\n" + start +
+              "o1 repeat[ 3 ]\no<o ne> call\no1 endrepeat ; three\nm98p0100l2\nM2\nO0100\n"
+              "N5 G94\nG1 X3 C9 F900\nG93\nM99 (back)\n",
+          "%\n" + start +
+              "M98 P7. L2.\nG1 Y1 F30\nM30\nO7\no5 repeat [2]\nG1 Z1 F60\n"
+              "o5 endrepeat\nM98 P8\nM99\nO8\nG1 B1 F60\nM99\n%\n"}) {
+        compare(six_axis_, text);
+    }
 }
 
 // Random programs of subprograms in both forms and of repeats, calling only what comes later in

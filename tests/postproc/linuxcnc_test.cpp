@@ -7,53 +7,17 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/units.h"
-#include "machines/machine_json.h"
-#include "tests/postproc/synthetic_paths.h"
+#include "tests/postproc/block_lists.h"
 
 namespace meshwind {
 namespace {
 
-const std::string kSource = MESHWIND_SOURCE_DIR;
 const std::string kStart = "G21 G90\nG0 A0 B0 C0\nG0 X100 Y0 Z0\nM0\nG91 G93\n";
 
-Machine six_axis() {
-    return read_machine(kSource + "/machines/six_axis.json");
-}
-
-BlockList empty_list(const Machine& machine) {
-    BlockList list;
-    for (std::size_t a = 0; a < machine.axis_count(); ++a) {
-        const Axis& axis = machine.axis(a);
-        list.axes.push_back({axis.letter, axis.type, axis.resolution_nano});
-    }
-    return list;
-}
-
-void add(BlockList& list, std::vector<std::int64_t> steps, double duration_s, int piece = 0) {
-    list.blocks.push_back({.duration_s = duration_s, .piece = piece});
-    for (std::size_t a = 0; a < steps.size(); ++a) {
-        list.nano.push_back(steps[a] * list.axes[a].resolution_nano);
-    }
-}
-
-BlockList random_list(const Machine& machine, unsigned seed, int n) {
-    std::mt19937 engine(seed);
-    std::uniform_int_distribution<int> step(-20'000, 20'000);
-    std::uniform_int_distribution<int> still(0, 2);
-    std::uniform_real_distribution<double> exponent(-3.0, 1.5);
-    BlockList list = empty_list(machine);
-    std::vector<std::int64_t> steps(machine.axis_count(), 0);
-    add(list, steps, 0.0);
-    for (int i = 0; i < n; ++i) {
-        for (std::int64_t& value : steps) {
-            value += still(engine) == 0 ? step(engine) : 0;
-        }
-        steps[0] += 1;  // never a block without motion
-        add(list, steps, std::pow(10.0, exponent(engine)), i / 100);
-    }
-    return list;
-}
+using test::add;
+using test::empty_list;
+using test::random_list;
+using test::six_axis;
 
 std::string write(const Machine& machine, const BlockList& list) {
     return LinuxCnc().write(machine, list, {.version = "0.1.0", .mandrel = "tee.stl"});
@@ -185,7 +149,8 @@ TEST(LinuxCnc, NeverGivesTheInterpreterATinyLinearFeedBesideATurn) {
 }
 
 TEST(LinuxCnc, ControllerLinesMustBeHarmless) {
-    for (const char* line : {"G1 X1 F1", "M2", "G20", "M3 S100", "G64 P0.01 (open"}) {
+    for (const char* line :
+         {"G1 X1 F1", "M2", "G20", "M3 S100", "G64 P0.01 (open", "O7", "M98 P7", "o7 call"}) {
         Machine machine = six_axis();
         machine.controller.header = {line};
         EXPECT_THROW((void)write(machine, random_list(machine, 1, 3)), InputError) << line;
