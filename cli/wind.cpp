@@ -35,10 +35,22 @@ constexpr double kMostBetweenBlocks_mm = 2.0;
 // And where a plan leaves less than nothing, blocks are not cut to crumbs for it: it is refused.
 constexpr double kLeastBetweenBlocks_mm = 0.1;
 
-// Laid fibre against the plan. For the choice of blocks a fifth is left for what the choice does
+// Laid fibre against the plan. For the choice of blocks a quarter is left for what the choice does
 // not see: rounding to the axes' resolution (0.005 mm at 300 mm from the spindle) and the first
 // order.
-constexpr double kChoiceShare = 0.8;
+constexpr double kChoiceShare = 0.75;
+
+// Share of the friction that is planned with: the rest is for what the blocks add.
+constexpr double kPlannedFriction = 0.96;
+
+// Share of the friction that plan and blocks may use together: the rest is for measuring it.
+constexpr double kUsedFriction = 0.995;
+
+// Share of the head's spare clearance that blocks may use: between two points it may be less.
+constexpr double kUsedRoom = 0.5;
+
+// Turns of less than this per mm (radius 100 m) are none.
+constexpr double kStraight_per_mm = 1e-5;
 
 // Share of the reachable wall that a plan must cover to count as one.
 constexpr double kCoveredShare = 0.9;
@@ -185,7 +197,7 @@ private:
     void plan() {
         const Job& job = setup_.job;
         CoverOptions options;
-        options.tow = {job.tow.width_mm, job.tow.thickness_mm, job.tow.friction,
+        options.tow = {job.tow.width_mm, job.tow.thickness_mm, kPlannedFriction * job.tow.friction,
                        job.tow.bridging_tolerance_mm};
         options.turn.extension_mm = job.mandrel.extension_mm;
         options.free_fibre = setup_.rule.free_fibre;
@@ -217,12 +229,16 @@ private:
         collisions_ = collisions_of(motion_);
         std::vector<double> room_mm = collisions_.clearance_mm;
         for (double& room : room_mm) {
-            room = std::clamp(room - setup_.rule.clearance_mm, kLeastBetweenBlocks_mm,
+            room = std::clamp(kUsedRoom * (room - setup_.rule.clearance_mm), kLeastBetweenBlocks_mm,
                               kMostBetweenBlocks_mm);
         }
-        result_.choice = choose_blocks(
-            setup_.machine, {.path = motion_.path, .joints = motion_.joints, .room_mm = room_mm},
-            block_tolerance());
+        const std::vector<double> turn_room = turn_room_per_mm();
+        result_.choice = choose_blocks(setup_.machine,
+                                       {.path = motion_.path,
+                                        .joints = motion_.joints,
+                                        .room_mm = room_mm,
+                                        .turn_room_per_mm = turn_room},
+                                       block_tolerance());
         const std::span<const std::size_t> ends = result_.choice.ends;
         const EyePath path = points_at(motion_.path, ends);
         const JointPath joints = points_at(motion_.joints, ends);
@@ -235,6 +251,21 @@ private:
             setup_.dialect->prepare(make_blocks(setup_.machine, path, joints, timed)));
         result_.blocks = std::move(folded.list);
         result_.layout = std::move(folded.layout);
+    }
+
+    // How much the blocks may turn the fibre on top of the plan without using up the friction, per
+    // point; where the plan lifts the fibre off, as they like.
+    [[nodiscard]] std::vector<double> turn_room_per_mm() const {
+        std::vector<double> room;
+        for (const EyePoint& point : motion_.path) {
+            const Piece& piece = result_.plan.pieces[static_cast<std::size_t>(point.piece)];
+            const auto i = static_cast<std::size_t>(point.point);
+            const double spare = kUsedFriction * setup_.job.tow.friction - piece.slip[i];
+            room.push_back(piece.string.gap_mm[i] > 0.0
+                               ? std::numeric_limits<double>::infinity()
+                               : std::max(spare * piece.path[i].kn_per_mm, kStraight_per_mm));
+        }
+        return room;
     }
 
     [[nodiscard]] static std::string place_of(const EyePoint& eye) {

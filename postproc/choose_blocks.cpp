@@ -31,10 +31,16 @@ constexpr std::size_t kFirstStride = 8;
 constexpr int kRefineRounds = 4;
 constexpr double kMostParts = 8.0;
 constexpr std::size_t kChunk = 256;
+// Where a piece begins, its first eye is that of the end before up to joints of some 0.001 mm and
+// their angle.
+constexpr double kRepeated_mm = 0.1;
 
 // A block, or the part of it up to where it left the tolerance.
 struct Deviation {
     double offset_mm = 0.0;  // y, signed, at the end
+    double tilt_rad = 0.0;   // dy/ds, signed, where the fibre was laid last
+    double turn_per_mm = 0.0;
+    double turn_share = 0.0;  // of the room it has
     double sideways_mm = 0.0;
     double angle_rad = 0.0;
     double pull_mm = 0.0;
@@ -80,6 +86,7 @@ public:
         const auto samples = static_cast<double>(kSamplesPerStep * (last - first));
         Deviation worst;
         worst.offset_mm = offset_mm;
+        worst.tilt_rad = -offset_mm / path_[first].free_length_mm;
         Place landing{first, 0.0};
         Place nearest{first, 0.0};
         Payout before = payout(nearest, last);
@@ -109,7 +116,8 @@ public:
     [[nodiscard]] bool within(const Deviation& block, double offset_mm) const {
         return block.sideways_mm <= std::max(tolerance_.sideways_mm, std::abs(offset_mm)) &&
                block.angle_rad <= tolerance_.angle_rad && block.eye_share <= 1.0 &&
-               block.twist_rad <= tolerance_.twist_rad && block.length_mm <= kLengthRounding_mm;
+               block.turn_share <= 1.0 && block.twist_rad <= tolerance_.twist_rad &&
+               block.length_mm <= kLengthRounding_mm;
     }
 
     // Into how many parts a single step must be cut.
@@ -188,7 +196,15 @@ private:
         const double pull = at.binormal.dot(free);
         const double length = at.tangent.dot(free);
         if (laid_mm > 0.0) {
-            worst.angle_rad = std::max(worst.angle_rad, std::abs(pull - worst.offset_mm) / length);
+            const double tilt = (pull - worst.offset_mm) / length;
+            worst.angle_rad = std::max(worst.angle_rad, std::abs(tilt));
+            const double turn = std::abs(tilt - worst.tilt_rad) / std::max(laid_mm, kTurnLength_mm);
+            worst.tilt_rad = tilt;
+            worst.turn_per_mm = std::max(worst.turn_per_mm, turn);
+            if (!task_.turn_room_per_mm.empty()) {
+                worst.turn_share =
+                    std::max(worst.turn_share, turn / task_.turn_room_per_mm[landing.step]);
+            }
             worst.offset_mm = pull + (worst.offset_mm - pull) * std::exp(-laid_mm / length);
         } else if (height(at, eye_mm) > 0.0 && std::abs(pull) > std::abs(worst.offset_mm)) {
             worst.offset_mm = pull;  // lifted off and laid again, perhaps over a long flat
@@ -310,7 +326,24 @@ void add_block(BlockChoice& choice, const FoundBlock& block, bool with_fibre, bo
     raise(choice.worst_pull_mm, block.worst.pull_mm);
     raise(choice.worst_eye_mm, block.worst.eye_mm);
     raise(choice.worst_twist_rad, block.worst.twist_rad);
+    raise(choice.worst_turn_per_mm, block.worst.turn_per_mm);
     choice.beyond += within ? 0 : 1;
+}
+
+// Without the first points of pieces that repeat the last of the piece before: steps of no length
+// say nothing but rounding.
+EyePath without_repeats(const EyePath& path) {
+    EyePath kept;
+    kept.reserve(path.size());
+    for (const EyePoint& point : path) {
+        const bool repeats = !kept.empty() && kept.back().piece != point.piece &&
+                             (point.landing_mm - kept.back().landing_mm).norm() < kRepeated_mm &&
+                             (point.eye_mm - kept.back().eye_mm).norm() < kRepeated_mm;
+        if (!repeats) {
+            kept.push_back(point);
+        }
+    }
+    return kept;
 }
 
 EyePoint point_between(const EyePoint& from, const EyePoint& to, double share) {
@@ -354,8 +387,8 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
 
 EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolicy policy,
                     const BlockTolerance& tolerance) {
-    EyePath fine = path;
-    std::vector<char> open(path.size(), 1);  // per step: not yet known to be fine enough
+    EyePath fine = without_repeats(path);
+    std::vector<char> open(fine.size(), 1);  // per step: not yet known to be fine enough
     for (int round = 0; round < kRefineRounds; ++round) {
         const JointPath joints = solve_joints(machine, fine, policy);
         const BlockTask task{.path = fine, .joints = joints};

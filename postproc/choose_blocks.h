@@ -41,6 +41,8 @@ struct BlockTask {
     const JointPath& joints;            ///< of equal length
     std::span<const double> room_mm{};  ///< per point: the eye's bound where it is below `eye_mm`;
                                         ///< empty where it never is
+    std::span<const double> turn_room_per_mm{};  ///< per point: how much the laid fibre may turn
+                                                 ///< against the plan per mm; empty: as it likes
     std::span<const std::size_t>
         tied_on{};  ///< ascending points to which the machine moves without
                     ///< fibre: those steps are blocks, and keep nothing
@@ -60,7 +62,8 @@ struct BlockChoice {
     double worst_pull_mm = 0.0;      ///< |delta|
     double worst_eye_mm = 0.0;
     double worst_twist_rad = 0.0;
-    std::size_t beyond = 0;  ///< steps of the dense path that do not keep the tolerance
+    double worst_turn_per_mm = 0.0;  ///< |d2y/ds2|, over kTurnLength_mm
+    std::size_t beyond = 0;          ///< steps of the dense path that do not keep the tolerance
 };
 
 /// The longest block from each end on, by galloping and bisection, checked at the joints of as many
@@ -74,11 +77,14 @@ struct BlockChoice {
 /// of the policy, would pull sideways by more than `sideways_mm` or not keep the rest of the
 /// tolerance. Points between two stations bear the number of the first. Steps in which the eye
 /// moves less than kFinestStep_mm are left as they are: a wrist that flips does not get better by
-/// cutting.
+/// cutting. The first point of a piece is left out where it repeats the last of the piece before.
 [[nodiscard]] EyePath refine_path(const Machine& machine, const EyePath& path,
                                   RedundancyPolicy policy, const BlockTolerance& tolerance);
 
 inline constexpr double kFinestStep_mm = 0.5;
+
+/// Turns of the laid fibre are taken over such a length at least: the fibre is a band.
+inline constexpr double kTurnLength_mm = 3.0;
 
 /// The chosen points alone.
 [[nodiscard]] EyePath points_at(const EyePath& path, std::span<const std::size_t> ends);
