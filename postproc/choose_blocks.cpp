@@ -20,8 +20,6 @@ using Eigen::Vector3d;
 constexpr std::size_t kSamplesPerStep = 2;
 // Secant steps for the landing point: n . (E - P) is nearly straight over a step.
 constexpr int kSecants = 2;
-// Eyes nearer than this are one place: the next one says nothing of a direction.
-constexpr double kSameEye_mm = 1e-6;
 // Joint values and frames are good to this; free lengths planned at a limit are not beyond it.
 constexpr double kLengthRounding_mm = 1e-6;
 // A block is about as long as the one before: the search starts with this share of it.
@@ -213,27 +211,54 @@ private:
         worst.sideways_mm = std::max(worst.sideways_mm, std::abs(worst.offset_mm));
     }
 
-    // Moves on to the planned eye nearest to the eye, and compares with what is planned there.
-    void compare(const Isometry3d& pose, std::size_t last, Place& nearest, Deviation& worst) const {
-        const Vector3d eye_mm = pose.translation();
-        Vector3d along = Vector3d::Zero();
-        for (; nearest.step < last; nearest = {nearest.step + 1, 0.0}) {
-            const Vector3d& from = path_[nearest.step].eye_mm;
-            along = path_[nearest.step + 1].eye_mm - from;
-            const double squared = along.squaredNorm();
-            const double reached = along.dot(eye_mm - from);
-            if (squared > kSameEye_mm * kSameEye_mm && reached < squared) {
-                nearest.share = std::max(nearest.share, reached / squared);
-                along /= std::sqrt(squared);
+    struct OnStep {
+        double share = 0.0;
+        double squared_mm2 = 0.0;  // distance
+    };
+
+    // The place on a step of the planned eye, taken as straight, that is nearest to the eye.
+    [[nodiscard]] OnStep nearest_on(std::size_t step, const Vector3d& eye_mm) const {
+        const Vector3d& from = path_[step].eye_mm;
+        const Vector3d along = path_[step + 1].eye_mm - from;
+        const double squared = along.squaredNorm();
+        const double share =
+            squared > 0.0 ? std::clamp(along.dot(eye_mm - from) / squared, 0.0, 1.0) : 0.0;
+        return {share, (eye_mm - from - share * along).squaredNorm()};
+    }
+
+    // Moves on while the next step is not further away: also over steps that lead back a little, as
+    // at the joint of two pieces.
+    void approach(const Vector3d& eye_mm, std::size_t last, Place& nearest) const {
+        if (nearest.step == last) {
+            return;
+        }
+        OnStep here = nearest_on(nearest.step, eye_mm);
+        while (nearest.step + 1 < last) {
+            const OnStep next = nearest_on(nearest.step + 1, eye_mm);
+            if (next.squared_mm2 > here.squared_mm2) {
                 break;
             }
+            here = next;
+            nearest = {nearest.step + 1, 0.0};
         }
+        nearest.share = std::max(nearest.share, here.share);
+        if (nearest.share >= 1.0) {
+            nearest = {nearest.step + 1, 0.0};
+        }
+    }
+
+    // Compares the eye with what is planned at the nearest place.
+    void compare(const Isometry3d& pose, std::size_t last, Place& nearest, Deviation& worst) const {
+        const Vector3d eye_mm = pose.translation();
+        approach(eye_mm, last, nearest);
         const bool end = nearest.step == last;
         const FibreFrame at = frame(nearest, last);
-        const Vector3d off = eye_mm - at.eye_mm();
-        const double eye = end ? off.norm() : (off - off.dot(along) * along).norm();
-        worst.eye_mm = std::max(worst.eye_mm, eye);
         const std::size_t to = end ? last : nearest.step + 1;
+        // Across the step alone: the place along it is that of the straight step.
+        const Vector3d along = (path_[to].eye_mm - path_[nearest.step].eye_mm).normalized();
+        const Vector3d off = eye_mm - at.eye_mm();
+        const double eye = (off - off.dot(along) * along).norm();
+        worst.eye_mm = std::max(worst.eye_mm, eye);
         double room = tolerance_.eye_mm;
         if (!task_.room_mm.empty()) {
             room = std::min({room, task_.room_mm[nearest.step], task_.room_mm[to]});

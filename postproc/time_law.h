@@ -15,7 +15,7 @@ struct TimeLawOptions {
     double fibre_speed_mm_s = 500.0;  ///< > 0 (30 m/min); the machine's max_speed holds besides
     /// Sweeps over the path that slow steps down for the accelerations. Each sweep makes a
     /// slow-down felt all along the path, so few are needed; 0 leaves the accelerations aside.
-    int acceleration_sweeps = 20;
+    int acceleration_sweeps = 50;
 };
 
 /// What set the duration of a step.
@@ -39,13 +39,14 @@ struct TimedPath {
 ///  - |dq| <= velocity * T for every axis,
 ///  - fibre_mm <= fibre speed * T,
 ///  - room for the ramps. Within a step all axes run evenly; about the point between two steps of
-///    velocities v1 and v2 a controller ramps from one to the other in |v2 - v1| / acceleration,
-///    which takes no longer in sum than a jump would. The ramp may take half of each step, but of
-///    the longer one no more than the shorter lasts, else the longer one would not have its mean
-///    speed: |v2 - v1| <= acceleration * min((T1 + T2)/2, 3/2 T1, 3/2 T2). In a reversal each side
-///    brakes or starts on its own, and from rest to rest so do the start and the stop:
-///    |v| <= acceleration * T/2. The ramps from and to rest have nothing on the other side to make
-///    up for them and add |v| / (2 acceleration) each: `ramp_s`;
+///    velocities v1 and v2 a controller ramps from one to the other in |v2 - v1| / acceleration.
+///    The ramp may take half of each step, so that ramps never overlap, but of the longer step no
+///    more than the shorter lasts: |v2 - v1| <= acceleration * min((T1 + T2)/2, 3/2 T1, 3/2 T2).
+///    Centred on the point it would take in sum no longer than a jump; so it is off by no more than
+///    |v2 - v1| * min(T1, T2) / 4. In a reversal each side brakes or starts on its own, and from
+///    rest to rest so do the start and the stop: |v| <= acceleration * T/2. The ramps from and to
+///    rest have nothing on the other side to make up for them and add |v| / (2 acceleration) each:
+///    `ramp_s`;
 /// the last by forward and backward sweeps that only lengthen, so the result is safe but not proven
 /// shortest. \param fibre_mm per step, what the fibre's speed counts; the first is not used
 /// \pre fibre_mm has an entry for each point of joints
