@@ -49,6 +49,11 @@ constexpr double kUsedFriction = 0.995;
 // Share of the head's spare clearance that blocks may use: between two points it may be less.
 constexpr double kUsedRoom = 0.5;
 
+// Where the simulation finds blocks too coarse they get this share of the tolerance they had, so
+// many times.
+constexpr double kTighter = 0.5;
+constexpr int kTighterRounds = 4;
+
 // Turns of less than this per mm (radius 100 m) are none.
 constexpr double kStraight_per_mm = 1e-5;
 
@@ -232,12 +237,20 @@ private:
             room = std::clamp(kUsedRoom * (room - setup_.rule.clearance_mm), kLeastBetweenBlocks_mm,
                               kMostBetweenBlocks_mm);
         }
+        room_mm_ = std::move(room_mm);
+        share_.assign(motion_.path.size(), 1.0);
+        make_program();
+    }
+
+    // Blocks for the motion, and their text.
+    void make_program() {
         const std::vector<double> turn_room = turn_room_per_mm();
         result_.choice = choose_blocks(setup_.machine,
                                        {.path = motion_.path,
                                         .joints = motion_.joints,
-                                        .room_mm = room_mm,
-                                        .turn_room_per_mm = turn_room},
+                                        .room_mm = room_mm_,
+                                        .turn_room_per_mm = turn_room,
+                                        .share = share_},
                                        block_tolerance());
         const std::span<const std::size_t> ends = result_.choice.ends;
         const EyePath path = points_at(motion_.path, ends);
@@ -251,6 +264,26 @@ private:
             setup_.dialect->prepare(make_blocks(setup_.machine, path, joints, timed)));
         result_.blocks = std::move(folded.list);
         result_.layout = std::move(folded.layout);
+        write_program();
+    }
+
+    // Asks for finer blocks where the simulation found some too coarse; false where it found none.
+    bool tighten() {
+        const auto key = [](const auto& at) { return std::pair(at.piece, at.point); };
+        bool any = false;
+        std::size_t point = 0;
+        for (const std::size_t block : result_.verification.coarse_blocks) {
+            const auto from = key(result_.blocks.blocks[block > 0 ? block - 1 : 0]);
+            const auto to = key(result_.blocks.blocks[block]);
+            while (point < motion_.path.size() && key(motion_.path[point]) < from) {
+                ++point;
+            }
+            for (; point < motion_.path.size() && key(motion_.path[point]) <= to; ++point) {
+                share_[point] *= kTighter;
+                any = true;
+            }
+        }
+        return any;
     }
 
     // How much the blocks may turn the fibre on top of the plan without using up the friction, per
@@ -354,24 +387,34 @@ private:
         result_.checks.insert(result_.checks.end(), {slip, bridging, laydown});
     }
 
-    // The program is read back from its text and wound again.
+    // The program is read back from its text and wound again, a few times where its blocks turn out
+    // too coarse.
     void check_program() {
-        tell("verify", 0.0);
-        write_program();
         watch_.stage("post");
-        const BlockList read =
-            setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
+        for (int round = 0;; ++round) {
+            tell("verify", static_cast<double>(round) / kTighterRounds);
+            const BlockList read =
+                setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
+            result_.verification = verify_program(setup_, read, planned_fibre(result_.plan.pieces));
+            if (round == kTighterRounds || !tighten()) {
+                check_rounding(read);
+                break;
+            }
+            make_program();
+        }
+        const std::vector<Check>& found = result_.verification.checks;
+        result_.checks.insert(result_.checks.end(), found.begin(), found.end());
+        watch_.stage("verify");
+        write_program();  // with what failed, for --force
+    }
+
+    void check_rounding(const BlockList& read) {
         Check check{"rounding", read.nano == result_.blocks.nano, {}, {}};
         check.numbers["blocks"] = static_cast<double>(read.blocks.size());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";
         }
         result_.checks.push_back(check);
-        result_.verification = verify_program(setup_, read, planned_fibre(result_.plan.pieces));
-        const std::vector<Check>& found = result_.verification.checks;
-        result_.checks.insert(result_.checks.end(), found.begin(), found.end());
-        watch_.stage("verify");
-        write_program();  // with what failed, for --force
     }
 
     void write_program() {
@@ -440,6 +483,8 @@ private:
     std::unique_ptr<OutputFolder> folder_;
     Motion motion_;
     CollisionReport collisions_;
+    std::vector<double> room_mm_;  // per point of the motion: how far the eye may be off
+    std::vector<double> share_;    // per point: of the tolerance, for blocks
 };
 
 }  // namespace

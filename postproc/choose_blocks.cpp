@@ -29,9 +29,10 @@ constexpr std::size_t kFirstStride = 8;
 constexpr int kRefineRounds = 4;
 constexpr double kMostParts = 8.0;
 constexpr std::size_t kChunk = 256;
-// Where a piece begins, its first eye is that of the end before up to joints of some 0.001 mm and
-// their angle.
-constexpr double kRepeated_mm = 0.1;
+// Where a piece begins, its first landing point is the last one before up to joints of some 0.001
+// mm, and its eye up to their angle.
+constexpr double kRepeated_mm = 0.02;
+constexpr double kRepeatedEye_mm = 1.0;
 
 // A block, or the part of it up to where it left the tolerance.
 struct Deviation {
@@ -45,6 +46,7 @@ struct Deviation {
     double eye_mm = 0.0;
     double eye_share = 0.0;  // of the room it has
     double twist_rad = 0.0;
+    double share = 1.0;      // of the tolerance, the least on the way
     double length_mm = 0.0;  // free length beyond the machine's limits
     double fibre_mm = 0.0;
 };
@@ -98,6 +100,9 @@ public:
             const Isometry3d pose = mandrel_from_eye(machine_, q);
             lay(pose.translation(), last, landing, worst);
             compare(pose, last, nearest, worst);
+            if (!task_.share.empty()) {
+                worst.share = std::min(worst.share, task_.share[nearest.step]);
+            }
             const Payout now = payout(nearest, last);
             worst.fibre_mm =
                 std::max({worst.fibre_mm, samples * std::abs(now.laid_mm - before.laid_mm),
@@ -112,10 +117,11 @@ public:
 
     // Fibre that arrives beyond the tolerance may not get further off.
     [[nodiscard]] bool within(const Deviation& block, double offset_mm) const {
-        return block.sideways_mm <= std::max(tolerance_.sideways_mm, std::abs(offset_mm)) &&
-               block.angle_rad <= tolerance_.angle_rad && block.eye_share <= 1.0 &&
-               block.turn_share <= 1.0 && block.twist_rad <= tolerance_.twist_rad &&
-               block.length_mm <= kLengthRounding_mm;
+        const double sideways = block.share * tolerance_.sideways_mm;
+        return block.sideways_mm <= std::max(sideways, std::abs(offset_mm)) &&
+               block.angle_rad <= block.share * tolerance_.angle_rad &&
+               block.eye_share <= block.share && block.turn_share <= block.share &&
+               block.twist_rad <= tolerance_.twist_rad && block.length_mm <= kLengthRounding_mm;
     }
 
     // Into how many parts a single step must be cut.
@@ -363,7 +369,7 @@ EyePath without_repeats(const EyePath& path) {
     for (const EyePoint& point : path) {
         const bool repeats = !kept.empty() && kept.back().piece != point.piece &&
                              (point.landing_mm - kept.back().landing_mm).norm() < kRepeated_mm &&
-                             (point.eye_mm - kept.back().eye_mm).norm() < kRepeated_mm;
+                             (point.eye_mm - kept.back().eye_mm).norm() < kRepeatedEye_mm;
         if (!repeats) {
             kept.push_back(point);
         }

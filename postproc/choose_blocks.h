@@ -43,6 +43,8 @@ struct BlockTask {
                                         ///< empty where it never is
     std::span<const double> turn_room_per_mm{};  ///< per point: how much the laid fibre may turn
                                                  ///< against the plan per mm; empty: as it likes
+    std::span<const double> share{};  ///< per point, 0..1: part of all these tolerances that blocks
+                                      ///< through the point may use; empty: 1
     std::span<const std::size_t>
         tied_on{};  ///< ascending points to which the machine moves without
                     ///< fibre: those steps are blocks, and keep nothing

@@ -94,9 +94,8 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
             deviation.max_angle_rad = angle;
             deviation.max_angle_at = i;
         }
-        if (!deviation.first_wrong &&
-            (sideways > tolerance.deviation_mm || angle > tolerance.angle_rad)) {
-            deviation.first_wrong = i;
+        if (sideways > tolerance.deviation_mm || angle > tolerance.angle_rad) {
+            deviation.wrong.push_back(i);
         }
     }
     deviation.end_gap_mm = (laid.path.back().position_mm - planned.back().position_mm).norm();

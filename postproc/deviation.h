@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,9 +39,9 @@ struct Deviation {
     std::size_t max_at = 0;
     double max_angle_rad = 0.0;  ///< between the tangents, in the tangent plane
     std::size_t max_angle_at = 0;
-    double end_gap_mm = 0.0;  ///< from the last landing point to the last planned one
-    std::optional<std::size_t> first_wrong;  ///< first laid station beyond a tolerance
-    std::vector<std::size_t> planned;        ///< per laid station: the planned one before it
+    double end_gap_mm = 0.0;           ///< from the last landing point to the last planned one
+    std::vector<std::size_t> wrong;    ///< laid stations beyond a tolerance, ascending
+    std::vector<std::size_t> planned;  ///< per laid station: the planned one before it
 };
 
 /// Goes along both fibres at once: each laid station is held against the cubic between the planned

@@ -23,6 +23,9 @@ constexpr double kLimitSlack = 1e-3;
 // What the eye may be off the planned free length between the ends of blocks (choose_blocks.h).
 constexpr double kFreeLengthSlack_mm = 2.0;
 
+// Fibre off the plan was pulled there over about so many free lengths.
+constexpr double kPulledShare = 1.5;
+
 class Verifier {
 public:
     explicit Verifier(const VerifyTask& task) : task_(task), rules_(task.rules) {}
@@ -44,6 +47,9 @@ public:
         check_free_length();
         check_limits();
         check_payout();
+        std::vector<std::size_t>& coarse = found_.coarse_blocks;
+        std::sort(coarse.begin(), coarse.end());
+        coarse.erase(std::unique(coarse.begin(), coarse.end()), coarse.end());
         return std::move(found_);
     }
 
@@ -71,6 +77,20 @@ private:
         }
     }
 
+    // The blocks that laid the fibre over `back_mm` up to a station.
+    void note_coarse(std::size_t station, double back_mm) {
+        const LaidPath& laid = found_.laid;
+        const double from_mm = laid.path[station].s_mm - back_mm;
+        for (std::size_t i = station;; --i) {
+            if (found_.coarse_blocks.empty() || found_.coarse_blocks.back() != laid.at[i].block) {
+                found_.coarse_blocks.push_back(laid.at[i].block);
+            }
+            if (i == 0 || laid.path[i].s_mm < from_mm) {
+                break;
+            }
+        }
+    }
+
     void check_laydown() {
         const LaidPath& laid = found_.laid;
         Check check{"laydown", true, {}, {}};
@@ -82,10 +102,13 @@ private:
                              {"limit_mm", rules_.laydown.deviation_mm},
                              {"limit_deg", deg_from_rad(rules_.laydown.angle_rad)},
                              {"end_gap_mm", off.end_gap_mm}};
+            for (const std::size_t station : off.wrong) {
+                note_coarse(station, kPulledShare * rules_.collision.free_fibre.preferred_mm);
+            }
             const std::size_t last = task_.program.blocks.size() - 1;
-            if (off.first_wrong) {
-                fail(check, laid.at[*off.first_wrong].block,
-                     "the laid fibre leaves the plan in " + station_words(*off.first_wrong) +
+            if (!off.wrong.empty()) {
+                fail(check, laid.at[off.wrong.front()].block,
+                     "the laid fibre leaves the plan in " + station_words(off.wrong.front()) +
                          ", by up to " + fixed(off.max_mm, 3) + " mm and " +
                          fixed(deg_from_rad(off.max_angle_rad), 3) + " deg");
             } else if (laid.failure.empty() && off.end_gap_mm > kEndGap_mm) {
@@ -131,8 +154,9 @@ private:
                 found_.slip[i] = 0.0;
             }
             worst = found_.slip[i] > found_.slip[worst] ? i : worst;
-            if (!first && found_.slip[i] > rules_.friction) {
-                first = i;
+            if (found_.slip[i] > rules_.friction) {
+                first = first.value_or(i);
+                note_coarse(i, 2.0 * rules_.tow_width_mm);
             }
         }
         Check check{"slip", true, {}, {}};
@@ -184,6 +208,11 @@ private:
                          place_words(laid.samples[sample].landing_mm));
             }
         };
+        for (const auto* const hits : {&report.fibre_hits, &report.head_hits}) {
+            for (const std::size_t sample : *hits) {
+                found_.coarse_blocks.push_back(laid.block[sample]);
+            }
+        }
         say(report.fibre_hits, "the free fibre meets the mandrel");
         say(report.head_hits, "the head comes within " + fixed(rules_.collision.clearance_mm, 1) +
                                   " mm of the mandrel");

@@ -58,6 +58,9 @@ struct Verification {
     double longest_free_mm = 0.0;
     std::vector<Check> checks;  ///< laydown, slip, bridging, collision, free_length, limits, payout
     std::optional<std::size_t> first_wrong_block;  ///< the first at which a check fails
+    /// Blocks, ascending, that finer ones may mend: those of laid stations beyond a tolerance with
+    /// the way over which the fibre was pulled there, and those in which something is hit.
+    std::vector<std::size_t> coarse_blocks;
 };
 
 /// Lays the fibre (laydown.h) and checks on it:
