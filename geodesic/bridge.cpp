@@ -16,6 +16,12 @@ constexpr double kStepEdges = 0.5;
 // Least angle by which the wall must stand over the fibre: 1 um at 10 mm.
 constexpr double kTouch_rad = 1e-7;
 
+// The wall under a step of the fibre is no longer than so many steps.
+constexpr double kMaxDetour = 4.0;
+
+// The place of contact is found to so many halvings of two steps.
+constexpr int kContactHalvings = 30;
+
 // Where a path leaves the wall is found to so many halvings of the way between two stations.
 constexpr int kHalvings = 14;
 
@@ -26,6 +32,74 @@ constexpr std::size_t kStationsBefore = 2;
 // Bridges along one path; more means a wall of spikes.
 constexpr int kMaxBridges = 200;
 
+// The wall under a straight fibre, seen from where the fibre begins.
+class Lookout {
+public:
+    Lookout(const FieldWalker& from, const Vector3d& along)
+        : from_mm_(from.position_mm()), along_(along), scout_(from) {}
+
+    // To where the wall is nearest to the fibre; false where there is none.
+    bool go(double ahead_mm) { return scout_.move_under(from_mm_ + ahead_mm * along_); }
+
+    [[nodiscard]] double ahead_mm() const { return along_.dot(sight()); }
+    // Angle by which the wall stands over the fibre.
+    [[nodiscard]] double over_rad() const {
+        const Vector3d up = scout_.normal() - along_ * along_.dot(scout_.normal());
+        return up.normalized().dot(sight()) / ahead_mm();
+    }
+    // > 0 where the wall turns away; a fibre touches it where this rises through zero.
+    [[nodiscard]] double away_mm() const { return scout_.normal().dot(sight()); }
+
+private:
+    [[nodiscard]] Vector3d sight() const { return scout_.position_mm() - from_mm_; }
+
+    Vector3d from_mm_;
+    Vector3d along_;
+    FieldWalker scout_;
+};
+
+// How far ahead a fibre from `from` touches the wall that stands over it; 0 where none does.
+double contact_ahead(const FieldWalker& from, const Vector3d& along, double reach_mm,
+                     double step_mm) {
+    Lookout last(from, along);
+    std::optional<Lookout> before;  // a step before the highest place
+    double highest = kTouch_rad;
+    double highest_at = 0.0;
+    double beyond = 0.0;  // a step beyond the highest place, where the wall turns away there
+    for (double ahead = step_mm; ahead < reach_mm; ahead += step_mm) {
+        Lookout here = last;
+        if (!here.go(ahead)) {
+            break;
+        }
+        const double over = here.over_rad();
+        // Of a stretch along which the fibre lies on the wall, the end.
+        if (over > kTouch_rad && over >= highest - kTouch_rad) {
+            highest = std::max(highest, over);
+            highest_at = ahead;
+            before = last;
+            beyond = 0.0;
+        }
+        if (highest_at > 0.0 && beyond == 0.0 && here.away_mm() > 0.0) {
+            beyond = ahead;
+        }
+        last = here;
+    }
+    if (beyond == 0.0) {
+        return 0.0;  // none, or a wall that rises on
+    }
+    double low = highest_at - step_mm;
+    double high = beyond;
+    if (low <= 0.0 || before->away_mm() >= 0.0) {
+        return highest_at;
+    }
+    for (int i = 0; i < kContactHalvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        last = *before;
+        (last.go(middle) && last.away_mm() < 0.0 ? low : high) = middle;
+    }
+    return last.ahead_mm();
+}
+
 // Leads along under the straight fibre through `target`.
 AimField shadow(const Vector3d& target, const Vector3d& along, double step) {
     return [&target, &along, step](const Vector3d& x, const Vector3d&) {
@@ -33,51 +107,6 @@ AimField shadow(const Vector3d& target, const Vector3d& along, double step) {
         const double left = along.dot(rest);
         return Aim{rest + (step - left) * along, -left, 1.0, 0.0};
     };
-}
-
-class Follower {
-public:
-    Follower(const FieldWalker& from, const Vector3d& along, double step_mm)
-        : from_mm_(from.position_mm()), along_(along), step_mm_(step_mm), scout_(from) {}
-
-    // Over the wall to below the fibre at `ahead_mm`; false where there is no wall.
-    bool go(double ahead_mm, const FieldWalker::Visit& visit = {}) {
-        const Vector3d target = from_mm_ + ahead_mm * along_;
-        const FieldWalk walk =
-            scout_.walk(shadow(target, along_, step_mm_), 2.0 * step_mm_, step_mm_, visit);
-        length_mm_ += walk.length_mm;
-        over_mm_ = scout_.normal().dot(scout_.position_mm() - target);
-        return walk.stop == FieldStop::Arrived;
-    }
-
-    [[nodiscard]] const FieldWalker& scout() const { return scout_; }
-    [[nodiscard]] double length_mm() const { return length_mm_; }
-    // Height of the wall over the fibre.
-    [[nodiscard]] double over_mm() const { return over_mm_; }
-
-private:
-    Vector3d from_mm_;
-    Vector3d along_;
-    double step_mm_;
-    FieldWalker scout_;
-    double length_mm_ = 0.0;
-    double over_mm_ = 0.0;
-};
-
-// How far ahead the wall stands highest; 0 where it stays below.
-double contact_ahead(const FieldWalker& from, const Vector3d& along, double reach_mm,
-                     double step_mm) {
-    Follower follower(from, along, step_mm);
-    double highest = kTouch_rad;
-    double contact_mm = 0.0;
-    for (double ahead = step_mm; ahead < reach_mm && follower.go(ahead); ahead += step_mm) {
-        const double slope = follower.over_mm() / ahead;
-        if (slope >= highest - kTouch_rad && slope > kTouch_rad) {
-            highest = std::max(highest, slope);
-            contact_mm = ahead;
-        }
-    }
-    return contact_mm;
 }
 
 // Where along a path of stations the taut fibre leaves it: the path up to there and the bridge.
@@ -202,26 +231,31 @@ std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& fr
     if (contact_mm == 0.0) {
         return std::nullopt;
     }
-    Follower follower(from, along, step);
-    SurfacePath under;
+    Bridge bridge{{}, {}, from};
+    const Vector3d start = from.position_mm();
+    double length_mm = 0.0;
     for (double ahead = 0.0; ahead < contact_mm;) {
         ahead = std::min(ahead + step, contact_mm);
-        const double before = follower.length_mm();
-        follower.go(ahead, [&](const PathPoint& station) {
-            under.push_back(station);
-            under.back().s_mm += before;
-        });
-        under.push_back(follower.scout().station(along));
-        under.back().s_mm = follower.length_mm();
+        const Vector3d target = start + ahead * along;
+        const FieldWalk walk = bridge.far.walk(shadow(target, along, step), kMaxDetour * step, step,
+                                               [&](const PathPoint& station) {
+                                                   bridge.under.push_back(station);
+                                                   bridge.under.back().s_mm += length_mm;
+                                               });
+        if (walk.stop != FieldStop::Arrived) {
+            return std::nullopt;
+        }
+        length_mm += walk.length_mm;
+        bridge.under.push_back(bridge.far.station(along));
+        bridge.under.back().s_mm = length_mm;
     }
-    const Vector3d& start = from.position_mm();
-    const Vector3d chord = under.back().position_mm - start;
-    std::vector<double> gap_mm;
-    for (const PathPoint& station : under) {
+    const Vector3d chord = bridge.under.back().position_mm - start;
+    for (const PathPoint& station : bridge.under) {
         const Vector3d rise = station.position_mm - start;
-        gap_mm.push_back(station.normal.dot(rise.dot(chord) / chord.squaredNorm() * chord - rise));
+        bridge.gap_mm.push_back(
+            station.normal.dot(rise.dot(chord) / chord.squaredNorm() * chord - rise));
     }
-    return Bridge{std::move(under), std::move(gap_mm), follower.scout()};
+    return bridge;
 }
 
 TraceResult trace_taut(const Surface& surface, const SurfacePoint& start, const Vector3d& direction,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace meshwind {
 namespace {
@@ -25,9 +26,16 @@ constexpr int kMaxLandings = 30;
 constexpr double kArrival_mm = 1e-9;
 constexpr int kMaxApproaches = 3;
 
-// Rise of `beyond` per mm below which it counts as rising no more: where a free fibre of 100 mm
-// lies over a radius of 10 km.
-constexpr double kLeastRise = 1e-5;
+// Curvature within which the wall counts as flat: noise of the fits on cylinders and cones.
+constexpr double kFlat_per_mm = 1e-6;
+
+// On flat wall the walk goes on where `beyond` is lower by this share of `per_curvature`: an eye
+// that far under the plane is no rounding of its position.
+constexpr double kFlatUnder_rad = 1e-5;
+
+// move_under() is there when a step of Newton's method is no longer, and gives up after so many.
+constexpr double kNear_mm = 1e-4;
+constexpr int kMaxNearing = 60;
 
 // So many steps in a row without a way: a patch folded over itself.
 constexpr int kIdleSteps = 500;
@@ -90,14 +98,23 @@ void FieldWalker::settle(const Vector2d& uv) {
     normal_ = place_.normal();
 }
 
+// On the edge just crossed, and back over it.
+bool FieldWalker::goes_back(const Vector2d& uv, const Vector2d& rate) const {
+    return entry_ != kNoEdge && bary(rate, entry_, 0.0) <= 0.0 && bary(uv, entry_, 1.0) <= kOutside;
+}
+
+Vector2d FieldWalker::entry_edge() const {
+    return corner_uv((entry_ + 2) % 3) - corner_uv((entry_ + 1) % 3);
+}
+
 // Along the tangential part of a direction; on the edge just crossed never back over it.
 Vector2d FieldWalker::rate_at(const Vector2d& uv, const PatchPlace& place,
                               const Vector3d& direction) const {
     const Vector2d rate = unit_rate(place, direction);
-    if (entry_ == kNoEdge || bary(rate, entry_, 0.0) > 0.0 || bary(uv, entry_, 1.0) > kOutside) {
+    if (!goes_back(uv, rate)) {
         return rate;
     }
-    const Vector3d edge = place.along(corner_uv((entry_ + 2) % 3) - corner_uv((entry_ + 1) % 3));
+    const Vector3d edge = place.along(entry_edge());
     return unit_rate(place, edge.dot(direction) * edge);
 }
 
@@ -170,11 +187,14 @@ FieldWalk FieldWalker::walk(const AimField& field, double longest_mm, double lon
             walk.stop = FieldStop::Arrived;
             return walk;
         }
-        if (!(rise > kLeastRise)) {
+        const double flat_rise = kFlat_per_mm * here.aim.per_curvature;
+        const bool rises = rise > flat_rise;
+        if (!rises &&
+            !(rise >= -flat_rise && here.aim.beyond < -kFlatUnder_rad * here.aim.per_curvature)) {
             walk.stop = FieldStop::Stalled;
             return walk;
         }
-        double h = -here.aim.beyond / rise;
+        double h = rises ? -here.aim.beyond / rise : longest_step_mm;
         if (h < kArrival_mm) {
             walk.stop = FieldStop::Arrived;
             return walk;
@@ -207,7 +227,7 @@ FieldWalk FieldWalker::walk(const AimField& field, double longest_mm, double lon
             here = next;
             continue;
         }
-        if (!cross(next, edge, walk.length_mm, visit, walk)) {
+        if (!cross(next, edge, visit, walk)) {
             return walk;
         }
         here = heading(field);
@@ -216,37 +236,42 @@ FieldWalk FieldWalker::walk(const AimField& field, double longest_mm, double lon
     return walk;
 }
 
-// Over the edge opposite `opposite`; false where the walk ends there.
-bool FieldWalker::cross(const Heading& heading, std::size_t opposite, double s_mm,
-                        const Visit& visit, FieldWalk& walk) {
+// Onto the face over the edge opposite `opposite`: Arrived, or why not.
+FieldStop FieldWalker::enter(std::size_t opposite) {
     const std::size_t from = (opposite + 1) % 3;
     const std::size_t to = (opposite + 2) % 3;
-    const double share = std::clamp(bary(uv_, to, 1.0), kVertexClearance, 1.0 - kVertexClearance);
-    PathPoint leaving = station(heading.aim.direction);
-    leaving.s_mm = s_mm;
     const std::int32_t next = surface_->neighbour[at(face_)][from];
     if (next == kNoFace) {
-        walk.stop = FieldStop::Rim;
-        walk.rim = surface_->rim[at(face_)][from];
-        return false;
+        return FieldStop::Rim;
     }
-    const bool feature = surface_->feature[at(face_)][from] != 0;
-    const std::int32_t first_vertex = surface_->face[at(face_)][to];
+    const double share = std::clamp(bary(uv_, to, 1.0), kVertexClearance, 1.0 - kVertexClearance);
     const auto& vertices = surface_->face[at(next)];
     const auto first = static_cast<std::size_t>(
-        std::find(vertices.begin(), vertices.end(), first_vertex) - vertices.begin());
+        std::find(vertices.begin(), vertices.end(), surface_->face[at(face_)][to]) -
+        vertices.begin());
     const std::size_t second = (first + 1) % 3;
     face_ = next;
     patch_ = Patch(*surface_, next);
     entry_ = (first + 2) % 3;
     settle(corner_uv(second) + share * (corner_uv(first) - corner_uv(second)));
-    if (!patch_.holds(normal_)) {
-        walk.stop = FieldStop::Folded;
+    return patch_.holds(normal_) ? FieldStop::Arrived : FieldStop::Folded;
+}
+
+// Over the edge opposite `opposite`; false where the walk ends there.
+bool FieldWalker::cross(const Heading& heading, std::size_t opposite, const Visit& visit,
+                        FieldWalk& walk) {
+    const std::size_t edge = (opposite + 1) % 3;
+    const bool feature = surface_->feature[at(face_)][edge] != 0;
+    PathPoint leaving = station(heading.aim.direction);
+    leaving.s_mm = walk.length_mm;
+    walk.stop = enter(opposite);
+    if (walk.stop != FieldStop::Arrived) {
+        walk.rim = walk.stop == FieldStop::Rim ? surface_->rim[at(face_)][edge] : -1;
         return false;
     }
     if (visit) {
         PathPoint entering = station(heading.aim.direction);
-        entering.s_mm = s_mm;
+        entering.s_mm = walk.length_mm;
         if (!feature) {
             leaving.kn_per_mm = 0.5 * (leaving.kn_per_mm + entering.kn_per_mm);
         }
@@ -256,6 +281,55 @@ bool FieldWalker::cross(const Heading& heading, std::size_t opposite, double s_m
         }
     }
     return true;
+}
+
+// Step in u and v to the place nearest to a point, by the second order of the distance.
+Vector2d FieldWalker::towards(const Vector3d& point_mm) const {
+    const Vector3d rest = point_mm - place_.position_mm;
+    const Vector2d slope(place_.along_u.dot(rest), place_.along_v.dot(rest));
+    Eigen::Matrix2d metric;
+    metric << place_.along_u.squaredNorm(), place_.along_u.dot(place_.along_v),
+        place_.along_u.dot(place_.along_v), place_.along_v.squaredNorm();
+    Eigen::Matrix2d bent;
+    bent << place_.second_uu.dot(rest), place_.second_uv.dot(rest), place_.second_uv.dot(rest),
+        place_.second_vv.dot(rest);
+    const Eigen::Matrix2d whole = metric - bent;
+    // Further off than the surface's centre of curvature the nearest place is no longer below.
+    const bool sound = whole(0, 0) > 0.0 && whole.determinant() > 0.0;
+    const Vector2d step = (sound ? whole : metric).inverse() * slope;
+    if (!goes_back(uv_, step)) {
+        return step;
+    }
+    const Vector3d edge = place_.along(entry_edge());
+    return edge.dot(rest) / edge.squaredNorm() * entry_edge();
+}
+
+bool FieldWalker::move_under(const Vector3d& point_mm) {
+    for (int i = 0; i < kMaxNearing; ++i) {
+        const Vector2d step = towards(point_mm);
+        double share = 1.0;
+        std::size_t edge = kNoEdge;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double room = std::max(0.0, bary(uv_, k, 1.0));
+            if (bary(step, k, 0.0) < 0.0 && room < -share * bary(step, k, 0.0)) {
+                share = -room / bary(step, k, 0.0);
+                edge = k;
+            }
+        }
+        const double way_mm = place_.along(step).norm();
+        const Vector2d end = (uv_ + share * step).cwiseMax(0.0);
+        settle(end / std::max(1.0, end.sum()));
+        if (edge != kNoEdge) {
+            if (enter(edge) != FieldStop::Arrived) {
+                return false;
+            }
+        } else if (way_mm < kNear_mm) {
+            return true;
+        } else if (entry_ != kNoEdge && bary(uv_, entry_, 1.0) > kOutside) {
+            entry_ = kNoEdge;
+        }
+    }
+    return false;
 }
 
 PathPoint FieldWalker::station(const Vector3d& direction) const {

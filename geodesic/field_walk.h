@@ -46,6 +46,10 @@ public:
 
     void move_to(const SurfacePoint& place);
 
+    /// Goes over the faces to the place nearest to a point, by Newton's method on the patches;
+    /// false where that is beyond a rim, or not found.
+    bool move_under(const Eigen::Vector3d& point_mm);
+
     /// \param longest_step_mm a step is no longer, for fields that bend more than the surface
     FieldWalk walk(const AimField& field, double longest_mm, double longest_step_mm,
                    const Visit& visit = {});
@@ -68,9 +72,12 @@ private:
     [[nodiscard]] Eigen::Vector2d stepped(const Heading& from, double h,
                                           const AimField& field) const;
     [[nodiscard]] std::size_t step(const Heading& from, double& h, const AimField& field);
+    [[nodiscard]] Eigen::Vector2d towards(const Eigen::Vector3d& point_mm) const;
+    [[nodiscard]] bool goes_back(const Eigen::Vector2d& uv, const Eigen::Vector2d& rate) const;
+    [[nodiscard]] Eigen::Vector2d entry_edge() const;
     void settle(const Eigen::Vector2d& uv);
-    bool cross(const Heading& heading, std::size_t opposite, double s_mm, const Visit& visit,
-               FieldWalk& walk);
+    [[nodiscard]] FieldStop enter(std::size_t opposite);
+    bool cross(const Heading& heading, std::size_t opposite, const Visit& visit, FieldWalk& walk);
 
     const Surface* surface_;
     Patch patch_;

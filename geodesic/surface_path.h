@@ -1,6 +1,7 @@
 /// A point on the surface and a path over it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,29 @@ struct PathPoint {
 };
 
 using SurfacePath = std::vector<PathPoint>;
+
+/// The cubic between two places with unit tangents, as long as their chord, beside a point.
+struct CubicPlace {
+    double share;  ///< of the chord, 0..1
+    Eigen::Vector3d position_mm;
+    Eigen::Vector3d tangent;  ///< unit
+};
+
+[[nodiscard]] inline CubicPlace beside(const Eigen::Vector3d& a_mm,
+                                       const Eigen::Vector3d& a_tangent,
+                                       const Eigen::Vector3d& b_mm,
+                                       const Eigen::Vector3d& b_tangent,
+                                       const Eigen::Vector3d& point_mm) {
+    const Eigen::Vector3d chord = b_mm - a_mm;
+    const double length = chord.norm();
+    const double s = std::clamp((point_mm - a_mm).dot(chord) / (length * length), 0.0, 1.0);
+    const double r = 1.0 - s;
+    const Eigen::Vector3d in = length * a_tangent - chord;
+    const Eigen::Vector3d out = chord - length * b_tangent;
+    const Eigen::Vector3d bulge = r * in + s * out;
+    return {s, a_mm + s * chord + s * r * bulge,
+            (chord + (r - s) * bulge + s * r * (out - in)).normalized()};
+}
 
 /// Position of a surface point on its facet.
 [[nodiscard]] inline Eigen::Vector3d position_mm(const Surface& surface,

@@ -25,18 +25,10 @@ struct Matched {
 
 // The cubic between two stations at the place beside `x`.
 Matched between(const PlannedStation& a, const PlannedStation& b, const Vector3d& x) {
-    const Vector3d chord = b.position_mm - a.position_mm;
-    const double length = chord.norm();
-    const double share = std::clamp((x - a.position_mm).dot(chord) / (length * length), 0.0, 1.0);
-    const double r = 1.0 - share;
-    const Vector3d in = length * a.tangent - chord;
-    const Vector3d out = chord - length * b.tangent;
-    const Vector3d bulge = r * in + share * out;
-    const Vector3d slope = chord + (r - share) * bulge + share * r * (out - in);
-    Vector3d normal = r * a.normal + share * b.normal;
-    normal -= slope.normalized() * slope.normalized().dot(normal);
-    return {a.position_mm + share * chord + share * r * bulge, normal.normalized(),
-            slope.normalized()};
+    const CubicPlace place = beside(a.position_mm, a.tangent, b.position_mm, b.tangent, x);
+    const Vector3d normal = (1.0 - place.share) * a.normal + place.share * b.normal;
+    return {place.position_mm, (normal - place.tangent * place.tangent.dot(normal)).normalized(),
+            place.tangent};
 }
 
 }  // namespace

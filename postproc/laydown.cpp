@@ -161,15 +161,7 @@ public:
           options_(options),
           hollow_(hollow_faces(surface, options.bridge_reach_mm)),
           walker_(surface, on_surface(surface, tie_on_mm)) {
-        // From the facet's point to the one over which the tie-on is.
-        const Vector3d towards = tie_on_mm - walker_.position_mm();
-        walker_.walk(
-            [&](const Vector3d& x, const Vector3d& n) {
-                const Vector3d rest = tie_on_mm - x;
-                const Vector3d flat = rest - n * n.dot(rest);
-                return Aim{flat, flat.norm() > kStation_mm ? -flat.norm() : 0.0, 1.0, 0.0};
-            },
-            towards.norm() + surface.mean_edge_mm, surface.mean_edge_mm);
+        walker_.move_under(tie_on_mm);  // the patch's point instead of the facet's
     }
 
     LaidPath lay() {
@@ -243,26 +235,51 @@ private:
         return station.normal.dot(eye - station.position_mm);
     }
 
-    // Takes up what the eye has lifted off: back to the last station that still holds it.
+    // Takes up what the eye has lifted off.
     void peel(const Vector3d& eye) {
-        if (walker_.normal().dot(eye - walker_.position_mm()) <= kLift_mm) {
+        if (slack(walker_.station(eye - walker_.position_mm()), eye) <= kLift_mm) {
             return;
         }
         double peeled = 0.0;
+        std::optional<PathPoint> taken_up;
         while (laid_.path.size() > 1 &&
                (laid_.at.back().lifted || slack(laid_.path.back(), eye) > 0.0)) {
             const std::size_t last = laid_.path.size() - 1;
-            if (!laid_.at[last].lifted && !laid_.at[last - 1].lifted) {
-                peeled += laid_.path[last].s_mm - laid_.path[last - 1].s_mm;
-            }
+            const bool in_air = laid_.at[last].lifted || laid_.at[last - 1].lifted;
+            peeled += in_air ? 0.0 : laid_.path[last].s_mm - laid_.path[last - 1].s_mm;
+            taken_up = in_air ? std::nullopt : std::optional(laid_.path[last]);
             laid_.path.pop_back();
             laid_.at.pop_back();
         }
         walker_.move_to(laid_.path.back().at);
+        if (taken_up) {
+            peeled -= lay_again(*taken_up, eye);
+        }
         if (peeled > laid_.peeled_mm) {
             laid_.peeled_mm = peeled;
             laid_.peeled_block = block_;
         }
+    }
+
+    // From the last station that holds the fibre to where it lifts off before the next one, as it
+    // was laid: along the cubic between the two. Returns the length.
+    double lay_again(const PathPoint& next, const Vector3d& eye) {
+        const PathPoint last = laid_.path.back();
+        const double between_mm = next.s_mm - last.s_mm;
+        if (between_mm < kStation_mm) {
+            return 0.0;  // the two sides of a feature edge
+        }
+        const auto tangent = [&](const Vector3d& x) {
+            return beside(last.position_mm, last.tangent, next.position_mm, next.tangent, x)
+                .tangent;
+        };
+        const FieldWalk walk = walker_.walk(
+            [&](const Vector3d& x, const Vector3d& n) {
+                return Aim{tangent(x), n.dot(eye - x), 0.0, (eye - x).norm()};
+            },
+            between_mm, between_mm);
+        record(walker_.station(tangent(walker_.position_mm())), last.s_mm + walk.length_mm, false);
+        return walk.length_mm;
     }
 
     // The landing point follows the eye to the end of its curve.

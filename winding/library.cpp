@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -23,6 +24,9 @@ constexpr double kBridgeShare = 0.96;
 
 // Stations that a seed is moved beyond a bridge.
 constexpr std::size_t kStationsBeyond = 3;
+
+// So many seeds are tried for a course; the last is kept.
+constexpr int kMaxMoves = 3;
 
 constexpr std::size_t kCandidateChunk = 64;
 
@@ -88,12 +92,12 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
                : Refusal::None;
 }
 
-// The same course from a seed on the wall, where its own lies under a bridge: a taut fibre is
-// traced from where it touches. Some stations beyond the bridge, whose ends are not known better.
-Candidate on_the_wall(const Run& run, const Candidate& candidate) {
+// Where a seed lies under a bridge: one on the wall for the same course, as a taut fibre is traced
+// from where it touches. Some stations beyond the bridge, whose ends are not known better.
+std::optional<Candidate> seed_on_the_wall(const Run& run, const Candidate& candidate) {
     const std::vector<double>& gap = run.string.gap_mm;
-    if (gap[run.seed] <= 0.0) {
-        return candidate;
+    if (gap[run.seed] < kLeastBridge_mm) {
+        return std::nullopt;
     }
     std::size_t station = run.seed;
     while (station + 1 < gap.size() && gap[station] > 0.0) {
@@ -103,7 +107,21 @@ Candidate on_the_wall(const Run& run, const Candidate& candidate) {
         station += gap[station + 1] <= 0.0 ? 1 : 0;
     }
     const PathPoint& place = run.path[station];
-    return {place.at, direction_angle(place.normal, place.tangent), candidate.slip_ratio};
+    return Candidate{place.at, direction_angle(place.normal, place.tangent), candidate.slip_ratio};
+}
+
+// The walk tells most of what is not admissible, the patches then what is.
+Refusal follow_taut(const CourseRules& rules, Member& course, Run& run) {
+    Refusal refusal = follow(rules, TraceMethod::Walk, course, run);
+    for (int moved = 0; refusal == Refusal::None && moved < kMaxMoves; ++moved) {
+        const auto seed = seed_on_the_wall(run, course.candidate);
+        if (!seed && moved > 0) {
+            break;
+        }
+        course.candidate = seed.value_or(course.candidate);
+        refusal = follow(rules, TraceMethod::Patches, course, run);
+    }
+    return refusal;
 }
 
 // True when a free length can be found at every station tried, and carried from each to the next.
@@ -167,13 +185,9 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
     Member course;
     course.candidate = candidate;
     Run run;
-    // The walk tells most of what is not admissible, the patches then what is.
-    for (const TraceMethod method : {TraceMethod::Walk, TraceMethod::Patches}) {
-        const Refusal refusal = follow(rules, method, course, run);
-        if (refusal != Refusal::None) {
-            return refusal;
-        }
-        course.candidate = on_the_wall(run, course.candidate);
+    const Refusal refusal = follow_taut(rules, course, run);
+    if (refusal != Refusal::None) {
+        return refusal;
     }
     course.length_mm = run.path.back().s_mm;
     const SlipOptions limit{.friction = rules.tow.friction, .method = TraceMethod::Patches};
