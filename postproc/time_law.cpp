@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/text_number.h"
+#include "core/units.h"
 
 namespace meshwind {
 namespace {
@@ -16,6 +17,14 @@ constexpr double kRatioSlack = 1e-6;
 // Of a long and a short step the ramp takes half of the short one, and as long as all of it in the
 // long one.
 constexpr double kShorterShare = 1.5;
+
+// Moves of so few smallest increments are rest: rounding may have made them.
+constexpr double kRestSteps = 2.0;
+
+double smallest_move(const Axis& axis) {
+    const double step = static_cast<double>(axis.resolution_nano) * 1e-9;
+    return axis.type == AxisType::Rotary ? rad_from_deg(step) : step;
+}
 
 // Index of what sets a step's duration: 0 none, 1 fibre, then two per axis.
 constexpr std::size_t kNoLimit = 0;
@@ -146,6 +155,11 @@ private:
         return step == 0 ? 0.0 : move(step, joint) / step_s_[step];
     }
 
+    // True for a move that rounding may make nothing, or turn round.
+    [[nodiscard]] bool rests(std::size_t step, std::size_t joint) const {
+        return std::abs(move(step, joint)) <= kRestSteps * smallest_move(machine_.axis(joint));
+    }
+
     void lengthen(std::size_t step, double duration_s, std::size_t limit) {
         if (duration_s > step_s_[step]) {
             step_s_[step] = duration_s;
@@ -154,7 +168,7 @@ private:
     }
 
     // Ramp that `step` has with its neighbour over the time that it has for it; a neighbour 0 is
-    // rest. In a reversal the step looks after its own side alone.
+    // rest. In a reversal the step looks after its own side alone, beside rest it may.
     [[nodiscard]] double ramp_ratio(std::size_t step, std::size_t neighbour,
                                     std::size_t joint) const {
         if (step == 0) {
@@ -163,10 +177,16 @@ private:
         const double acceleration = machine_.axis(joint).acceleration;
         const double mine = speed(step, joint);
         const double other = speed(neighbour, joint);
-        const bool alone = neighbour == 0 || mine * other < 0.0;
-        return alone ? 2.0 * std::abs(mine) / (acceleration * step_s_[step])
-                     : std::abs(mine - other) /
-                           (acceleration * ramp_room_s(step_s_[step], step_s_[neighbour]));
+        const double alone = 2.0 * std::abs(mine) / (acceleration * step_s_[step]);
+        if (neighbour == 0) {
+            return alone;
+        }
+        const double shared = std::abs(mine - other) /
+                              (acceleration * ramp_room_s(step_s_[step], step_s_[neighbour]));
+        if (rests(neighbour, joint)) {
+            return std::min(alone, shared);
+        }
+        return mine * other < 0.0 ? alone : shared;
     }
 
     static double ramp_room_s(double one_s, double other_s) {
@@ -191,10 +211,13 @@ private:
                 continue;
             }
             const double acceleration = machine_.axis(a).acceleration;
-            const bool alone = neighbour == 0 || mine * other < 0.0;
-            const double duration = alone ? std::sqrt(2.0 * std::abs(move(step, a)) / acceleration)
-                                          : shortest(std::abs(move(step, a)), std::abs(other),
-                                                     step_s_[neighbour], acceleration);
+            const double alone = std::sqrt(2.0 * std::abs(move(step, a)) / acceleration);
+            double duration = alone;
+            if (neighbour != 0 && (mine * other >= 0.0 || rests(neighbour, a))) {
+                const double shared = shortest(std::abs(move(step, a)), std::abs(other),
+                                               step_s_[neighbour], acceleration);
+                duration = rests(neighbour, a) ? std::min(alone, shared) : shared;
+            }
             if (duration > step_s_[step]) {
                 lengthen(step, duration, acceleration_of(a));
                 changed = true;

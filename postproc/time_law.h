@@ -13,9 +13,9 @@ namespace meshwind {
 
 struct TimeLawOptions {
     double fibre_speed_mm_s = 500.0;  ///< > 0 (30 m/min); the machine's max_speed holds besides
-    /// Sweeps over the path that slow steps down for the accelerations. Each sweep makes a
-    /// slow-down felt all along the path, so few are needed; 0 leaves the accelerations aside.
-    int acceleration_sweeps = 50;
+    /// Sweeps over the path that slow steps down for the accelerations, at most: they end when
+    /// nothing changes any more; 0 leaves the accelerations aside.
+    int acceleration_sweeps = 2000;
 };
 
 /// What set the duration of a step.

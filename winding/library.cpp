@@ -18,9 +18,8 @@ using Eigen::Vector3d;
 // by.
 constexpr double kWindableStep_mm = 5.0;
 
-// Share of the bridging tolerance that a course may use: the string over a path is a little off the
-// straight fibre (geodesic/measure.h).
-constexpr double kBridgeShare = 0.96;
+// Share of the bridging tolerance that a course may use: stations are some way apart.
+constexpr double kBridgeShare = 0.98;
 
 // Stations that a seed is moved beyond a bridge.
 constexpr std::size_t kStationsBeyond = 3;
@@ -68,6 +67,31 @@ struct Run {
     std::size_t seed = 0;  // station of the candidate's seed
 };
 
+// Largest height of the straight fibre over the wall, from where it leaves the wall to where it
+// meets it again. The string over the path is a little off it (geodesic/measure.h).
+double worst_bridge_mm(const Run& run) {
+    const std::vector<double>& gap = run.string.gap_mm;
+    double worst = run.string.worst_gap_mm;
+    for (std::size_t first = 1; first + 1 < gap.size(); ++first) {
+        if (gap[first] <= 0.0) {
+            continue;
+        }
+        std::size_t end = first;
+        while (end + 1 < gap.size() && gap[end] > 0.0) {
+            ++end;
+        }
+        const Vector3d& from = run.path[first - 1].position_mm;
+        const Vector3d chord = run.path[end].position_mm - from;
+        for (std::size_t i = first; i < end; ++i) {
+            const Vector3d rise = run.path[i].position_mm - from;
+            const double share = rise.dot(chord) / chord.squaredNorm();
+            worst = std::max(worst, run.path[i].normal.dot(share * chord - rise));
+        }
+        first = end;
+    }
+    return worst;
+}
+
 // Traces a member's candidate, notes where it crosses the rims, and judges what the path alone
 // tells.
 Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run& run) {
@@ -87,9 +111,8 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
     run.seed = half[0].path.size() - 1;
     run.path = join_halves(half[0].path, half[1].path);
     run.string = taut_string(run.path);
-    return run.string.worst_gap_mm > kBridgeShare * rules.tow.bridging_tolerance_mm
-               ? Refusal::Bridging
-               : Refusal::None;
+    return worst_bridge_mm(run) > kBridgeShare * rules.tow.bridging_tolerance_mm ? Refusal::Bridging
+                                                                                 : Refusal::None;
 }
 
 // Where a seed lies under a bridge: one on the wall for the same course, as a taut fibre is traced
