@@ -256,12 +256,13 @@ private:
         const EyePath path = points_at(motion_.path, ends);
         const JointPath joints = points_at(motion_.joints, ends);
         const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
-        const TimedPath timed = time_path(setup_.machine, result_.choice.fibre_mm, joints, time);
-        result_.duration_s = timed.duration_s;
-        result_.binding = timed.binding;
+        TimedBlocks timed =
+            make_blocks(setup_.machine, path, joints, result_.choice.fibre_mm, time);
+        result_.duration_s = timed.time.duration_s;
+        result_.binding = std::move(timed.time.binding);
         // What the program runs, repeated circuits included.
-        FoldedProgram folded = setup_.dialect->fold(
-            setup_.dialect->prepare(make_blocks(setup_.machine, path, joints, timed)));
+        FoldedProgram folded =
+            setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
         result_.blocks = std::move(folded.list);
         result_.layout = std::move(folded.layout);
         write_program();

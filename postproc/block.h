@@ -61,12 +61,24 @@ struct BlockList {
 /// Absolute position of block `block` as a joint vector (mm, rad).
 [[nodiscard]] std::vector<double> joints_at(const BlockList& list, std::size_t block);
 
+/// The positions of all blocks.
+[[nodiscard]] JointPath joint_path(const BlockList& list);
+
+/// A program's blocks and what their durations come from.
+struct TimedBlocks {
+    BlockList list;
+    TimedPath time;  ///< a step per block; list has its durations
+};
+
 /// Rounds the absolute positions to each axis' resolution, so that the sum of increments stays
 /// within half a step of the plan over any number of blocks. Steps that move no axis by a whole
-/// step are merged into the next one that does, with their time; at the end into the last. \throws
-/// InputError block.too_far beyond +-4e9 mm or deg
-[[nodiscard]] BlockList make_blocks(const Machine& machine, const EyePath& path,
-                                    const JointPath& joints, const TimedPath& timed);
+/// step are merged into the next one that does, with their fibre; at the end into the last. The
+/// time law is that of the rounded positions, which are what the machine runs. \param fibre_mm per
+/// point, what the fibre's speed counts (time_path) \pre path, joints and fibre_mm have equal length
+/// \throws InputError block.too_far beyond +-4e9 mm or deg; what time_path throws
+[[nodiscard]] TimedBlocks make_blocks(const Machine& machine, const EyePath& path,
+                                      const JointPath& joints, std::span<const double> fibre_mm,
+                                      const TimeLawOptions& options = {});
 
 /// Decimals that print every multiple of the resolution exactly, 0..9.
 [[nodiscard]] int decimals_of(std::int64_t resolution_nano);

@@ -44,6 +44,17 @@ std::vector<double> joints_at(const BlockList& list, std::size_t block) {
     return joints;
 }
 
+JointPath joint_path(const BlockList& list) {
+    JointPath joints;
+    joints.axis_count = list.axes.size();
+    joints.joints.reserve(list.nano.size());
+    for (std::size_t b = 0; b < list.blocks.size(); ++b) {
+        const std::vector<double> row = joints_at(list, b);
+        joints.joints.insert(joints.joints.end(), row.begin(), row.end());
+    }
+    return joints;
+}
+
 int decimals_of(std::int64_t resolution_nano) {
     int decimals = 9;
     while (decimals > 0 && resolution_nano % 10 == 0) {
@@ -53,9 +64,9 @@ int decimals_of(std::int64_t resolution_nano) {
     return decimals;
 }
 
-BlockList make_blocks(const Machine& machine, const EyePath& path, const JointPath& joints,
-                      const TimedPath& timed) {
-    assert(path.size() == joints.size() && path.size() == timed.step_s.size());
+TimedBlocks make_blocks(const Machine& machine, const EyePath& path, const JointPath& joints,
+                        std::span<const double> fibre_mm, const TimeLawOptions& options) {
+    assert(path.size() == joints.size() && path.size() == fibre_mm.size());
     const std::size_t axes = machine.axis_count();
     BlockList list;
     for (std::size_t a = 0; a < axes; ++a) {
@@ -64,26 +75,31 @@ BlockList make_blocks(const Machine& machine, const EyePath& path, const JointPa
     }
     list.blocks.reserve(path.size());
     list.nano.reserve(path.size() * axes);
+    std::vector<double> fibre;  // of the blocks
     std::vector<std::int64_t> row(axes);
-    double waiting_s = 0.0;
+    double merged_mm = 0.0;
     for (std::size_t i = 0; i < path.size(); ++i) {
         for (std::size_t a = 0; a < axes; ++a) {
             row[a] = rounded_nano(joints.row(i)[a], machine.axis(a), i);
         }
-        waiting_s += timed.step_s[i];
+        merged_mm += fibre_mm[i];
         const bool moves =
             i == 0 || !std::equal(row.begin(), row.end(), list.row(list.blocks.size() - 1).begin());
         if (moves) {
-            list.blocks.push_back(
-                {.duration_s = waiting_s, .piece = path[i].piece, .point = path[i].point});
+            list.blocks.push_back({.piece = path[i].piece, .point = path[i].point});
             list.nano.insert(list.nano.end(), row.begin(), row.end());
-            waiting_s = 0.0;
+            fibre.push_back(merged_mm);
+            merged_mm = 0.0;
         }
     }
-    if (list.blocks.size() > 1) {
-        list.blocks.back().duration_s += waiting_s;
+    if (!fibre.empty()) {
+        fibre.back() += merged_mm;
     }
-    return list;
+    TimedPath time = time_path(machine, fibre, joint_path(list), options);
+    for (std::size_t b = 0; b < list.blocks.size(); ++b) {
+        list.blocks[b].duration_s = time.step_s[b];
+    }
+    return {std::move(list), std::move(time)};
 }
 
 }  // namespace meshwind

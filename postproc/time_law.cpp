@@ -18,14 +18,6 @@ constexpr double kRatioSlack = 1e-6;
 // long one.
 constexpr double kShorterShare = 1.5;
 
-// Moves of so few smallest increments are rest: rounding may have made them.
-constexpr double kRestSteps = 2.0;
-
-double smallest_move(const Axis& axis) {
-    const double step = static_cast<double>(axis.resolution_nano) * 1e-9;
-    return axis.type == AxisType::Rotary ? rad_from_deg(step) : step;
-}
-
 // Index of what sets a step's duration: 0 none, 1 fibre, then two per axis.
 constexpr std::size_t kNoLimit = 0;
 constexpr std::size_t kFibre = 1;
@@ -155,11 +147,6 @@ private:
         return step == 0 ? 0.0 : move(step, joint) / step_s_[step];
     }
 
-    // True for a move that rounding may make nothing, or turn round.
-    [[nodiscard]] bool rests(std::size_t step, std::size_t joint) const {
-        return std::abs(move(step, joint)) <= kRestSteps * smallest_move(machine_.axis(joint));
-    }
-
     void lengthen(std::size_t step, double duration_s, std::size_t limit) {
         if (duration_s > step_s_[step]) {
             step_s_[step] = duration_s;
@@ -168,7 +155,7 @@ private:
     }
 
     // Ramp that `step` has with its neighbour over the time that it has for it; a neighbour 0 is
-    // rest. In a reversal the step looks after its own side alone, beside rest it may.
+    // rest. In a reversal the step looks after its own side alone; beside an axis at rest it may.
     [[nodiscard]] double ramp_ratio(std::size_t step, std::size_t neighbour,
                                     std::size_t joint) const {
         if (step == 0) {
@@ -183,8 +170,9 @@ private:
         }
         const double shared = std::abs(mine - other) /
                               (acceleration * ramp_room_s(step_s_[step], step_s_[neighbour]));
-        if (rests(neighbour, joint)) {
-            return std::min(alone, shared);
+        if (mine == 0.0 || other == 0.0) {
+            // What rests leaves the ramp to what moves, which may do it alone.
+            return mine == 0.0 ? 0.0 : std::min(alone, shared);
         }
         return mine * other < 0.0 ? alone : shared;
     }
@@ -213,10 +201,10 @@ private:
             const double acceleration = machine_.axis(a).acceleration;
             const double alone = std::sqrt(2.0 * std::abs(move(step, a)) / acceleration);
             double duration = alone;
-            if (neighbour != 0 && (mine * other >= 0.0 || rests(neighbour, a))) {
+            if (neighbour != 0 && mine * other >= 0.0) {
                 const double shared = shortest(std::abs(move(step, a)), std::abs(other),
                                                step_s_[neighbour], acceleration);
-                duration = rests(neighbour, a) ? std::min(alone, shared) : shared;
+                duration = other == 0.0 ? std::min(alone, shared) : shared;
             }
             if (duration > step_s_[step]) {
                 lengthen(step, duration, acceleration_of(a));
@@ -264,15 +252,14 @@ TimedPath time_path(const Machine& machine, std::span<const double> fibre_mm,
     return std::move(law).result();
 }
 
-TimedPath time_path(const Machine& machine, const EyePath& path, const JointPath& joints,
-                    const TimeLawOptions& options) {
+std::vector<double> fibre_moved_mm(const EyePath& path) {
     std::vector<double> fibre_mm(path.size(), 0.0);
     for (std::size_t i = 1; i < path.size(); ++i) {
         const double laid = path[i].s_mm - path[i - 1].s_mm;
         const double longer = path[i].free_length_mm - path[i - 1].free_length_mm;
         fibre_mm[i] = std::max(std::abs(laid), std::abs(laid + longer));
     }
-    return time_path(machine, fibre_mm, joints, options);
+    return fibre_mm;
 }
 
 AxisLoads axis_loads(const Machine& machine, const JointPath& joints,

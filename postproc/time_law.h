@@ -54,10 +54,9 @@ struct TimedPath {
 [[nodiscard]] TimedPath time_path(const Machine& machine, std::span<const double> fibre_mm,
                                   const JointPath& joints, const TimeLawOptions& options = {});
 
-/// The same with fibre_mm = max(|ds|, |ds + dL|): fibre laid, and drawn through the eye, evenly
-/// from point to point. \pre path and joints have equal length
-[[nodiscard]] TimedPath time_path(const Machine& machine, const EyePath& path,
-                                  const JointPath& joints, const TimeLawOptions& options = {});
+/// What the fibre's speed counts at each point of a path, in mm: max(|ds|, |ds + dL|), fibre laid,
+/// and drawn through the eye, evenly from the point before; 0 for the first.
+[[nodiscard]] std::vector<double> fibre_moved_mm(const EyePath& path);
 
 /// Where a limit of an axis is used most.
 struct AxisLoad {

@@ -257,13 +257,10 @@ private:
     void check_limits() {
         const BlockList& list = task_.program;
         Check check{"limits", true, {}, {}};
-        JointPath joints;
-        joints.axis_count = list.axes.size();
+        JointPath joints = joint_path(list);
         std::vector<double> step_s;
-        for (std::size_t b = 0; b < list.blocks.size(); ++b) {
-            const std::vector<double> row = joints_at(list, b);
-            joints.joints.insert(joints.joints.end(), row.begin(), row.end());
-            step_s.push_back(list.blocks[b].duration_s);
+        for (const Block& block : list.blocks) {
+            step_s.push_back(block.duration_s);
         }
         find_travel_violations(task_.machine, joints);
         const auto [velocity, acceleration] = axis_loads(task_.machine, joints, step_s);

@@ -21,14 +21,14 @@ Machine six_axis() {
 
 BlockList blocks_of(const Machine& machine, const EyePath& path) {
     const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
-    return make_blocks(machine, path, joints, time_path(machine, path, joints));
+    return make_blocks(machine, path, joints, fibre_moved_mm(path)).list;
 }
 
 TEST(Blocks, NoDriftOverAHundredThousandBlocks) {
     const Machine machine = six_axis();
     const EyePath path = test::helix(70.0, rad_from_deg(45.0), 200.0, 0.02, 100'000);
     const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
-    const BlockList list = make_blocks(machine, path, joints, time_path(machine, path, joints));
+    const BlockList list = make_blocks(machine, path, joints, fibre_moved_mm(path)).list;
     ASSERT_EQ(list.blocks.size(), path.size());
     std::vector<std::int64_t> sum(list.row(0).begin(), list.row(0).end());
     for (std::size_t i = 1; i < list.blocks.size(); ++i) {
@@ -48,8 +48,7 @@ TEST(Blocks, StepsBelowTheResolutionAreMergedWithTheirTime) {
     // 0.0002 mm per step are 1.4e-4 mm of Z and 1.2e-4 deg of C: several steps make one block.
     const EyePath path = test::helix(70.0, rad_from_deg(45.0), 200.0, 0.0002, 5000);
     const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
-    const TimedPath time = time_path(machine, path, joints);
-    const BlockList list = make_blocks(machine, path, joints, time);
+    const auto [list, time] = make_blocks(machine, path, joints, fibre_moved_mm(path));
     EXPECT_LT(list.blocks.size(), path.size() / 2);
     EXPECT_NEAR(list.duration_s(), time.duration_s - time.ramp_s, 1e-12);
     for (std::size_t i = 1; i < list.blocks.size(); ++i) {

@@ -98,7 +98,7 @@ protected:
         const Machine machine = read_machine(machine_file);
         const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
         EXPECT_TRUE(joints.violations.empty());
-        return make_blocks(machine, path, joints, time_path(machine, path, joints));
+        return make_blocks(machine, path, joints, fibre_moved_mm(path)).list;
     }
 
     std::string six_axis_ = kSource + "/machines/six_axis.json";

@@ -26,7 +26,7 @@ struct Timed {
 Timed timed(const Machine& machine, EyePath path, const TimeLawOptions& options) {
     Timed result{.path = std::move(path), .joints = {}, .time = {}};
     result.joints = solve_joints(machine, result.path, RedundancyPolicy::CentralAngle);
-    result.time = time_path(machine, result.path, result.joints, options);
+    result.time = time_path(machine, fibre_moved_mm(result.path), result.joints, options);
     return result;
 }
 
