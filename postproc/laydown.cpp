@@ -237,24 +237,26 @@ private:
 
     // Takes up what the eye has lifted off.
     void peel(const Vector3d& eye) {
-        if (slack(walker_.station(eye - walker_.position_mm()), eye) <= kLift_mm) {
+        const Vector3d free = eye - walker_.position_mm();
+        if (walker_.normal().dot(free) <= kLift_mm) {
             return;
         }
-        double peeled = 0.0;
+        furthest_mm_ = std::max(furthest_mm_, laid_.path.back().s_mm);
         std::optional<PathPoint> taken_up;
         while (laid_.path.size() > 1 &&
                (laid_.at.back().lifted || slack(laid_.path.back(), eye) > 0.0)) {
             const std::size_t last = laid_.path.size() - 1;
             const bool in_air = laid_.at[last].lifted || laid_.at[last - 1].lifted;
-            peeled += in_air ? 0.0 : laid_.path[last].s_mm - laid_.path[last - 1].s_mm;
-            taken_up = in_air ? std::nullopt : std::optional(laid_.path[last]);
+            furthest_mm_ -= in_air ? laid_.path[last].s_mm - laid_.path[last - 1].s_mm : 0.0;
+            taken_up = in_air ? std::nullopt : std::optional(laid_.path.back());
             laid_.path.pop_back();
             laid_.at.pop_back();
         }
         walker_.move_to(laid_.path.back().at);
         if (taken_up) {
-            peeled -= lay_again(*taken_up, eye);
+            lay_again(*taken_up, eye);
         }
+        const double peeled = furthest_mm_ - laid_.path.back().s_mm;
         if (peeled > laid_.peeled_mm) {
             laid_.peeled_mm = peeled;
             laid_.peeled_block = block_;
@@ -262,12 +264,12 @@ private:
     }
 
     // From the last station that holds the fibre to where it lifts off before the next one, as it
-    // was laid: along the cubic between the two. Returns the length.
-    double lay_again(const PathPoint& next, const Vector3d& eye) {
+    // was laid: along the cubic between the two.
+    void lay_again(const PathPoint& next, const Vector3d& eye) {
         const PathPoint last = laid_.path.back();
         const double between_mm = next.s_mm - last.s_mm;
         if (between_mm < kStation_mm) {
-            return 0.0;  // the two sides of a feature edge
+            return;  // the two sides of a feature edge
         }
         const auto tangent = [&](const Vector3d& x) {
             return beside(last.position_mm, last.tangent, next.position_mm, next.tangent, x)
@@ -279,7 +281,6 @@ private:
             },
             between_mm, between_mm);
         record(walker_.station(tangent(walker_.position_mm())), last.s_mm + walk.length_mm, false);
-        return walk.length_mm;
     }
 
     // The landing point follows the eye to the end of its curve.
@@ -340,6 +341,7 @@ private:
             record(bridge->under[i], begun + bridge->under[i].s_mm, lifted);
             laid_.at.back().gap_mm = lifted ? bridge->gap_mm[i] : 0.0;
         }
+        furthest_mm_ = std::max(furthest_mm_, begun) + laid_.path.back().s_mm - begun;
         walker_ = bridge->far;
         return true;
     }
@@ -385,6 +387,7 @@ private:
     Vector3d eye_mm_ = Vector3d::Zero();
     std::size_t block_ = 0;
     double time_s_ = 0.0;
+    double furthest_mm_ = 0.0;  // laid so far, with what is in the air now
     LaidPath laid_;
 };
 

@@ -41,7 +41,9 @@ struct LaidPath {
     JointPath joints;            ///< the axes at the samples
     std::vector<double> time_s;  ///< at the samples, from the start of the program
     std::vector<std::size_t> block;  ///< of each sample
-    double peeled_mm = 0.0;          ///< longest stretch that was laid and lifted off again
+    /// Longest stretch that was laid on the wall and lifted off again: the largest fall of the
+    /// laid length behind its maximum, bridges apart.
+    double peeled_mm = 0.0;
     std::size_t peeled_block = 0;
     std::string failure;  ///< empty, or in words why the fibre cannot be followed on
     std::size_t failed_block = 0;

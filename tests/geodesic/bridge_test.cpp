@@ -1,0 +1,162 @@
+#include "geodesic/bridge.h"
+
+#include <gtest/gtest.h>
+
+#include "geodesic/measure.h"
+#include "mesh/make.h"
+#include "tests/geodesic/hourglass.h"
+#include "tests/geodesic/reference.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+using test::Hourglass;
+
+// The patches' normals, of fourth order: (1.5 / 25)^4 is 1.3e-5 rad. Over the shoulders' curvature
+// of 0.04 / mm the place of touch is out by 3e-4 mm.
+constexpr double kNormal_rad = 2e-5;
+constexpr double kTouch_mm = 5e-4;
+
+const Surface& hourglass() {
+    static const Surface surface = Hourglass{}.surface(1.5);
+    return surface;
+}
+
+// On the lower shoulder, `angle` from the meridian.
+struct Start {
+    SurfacePoint at;
+    Vector3d direction;
+};
+
+Start start_of(double z_mm, double angle_rad) {
+    const Eigen::Vector2d profile = Hourglass{}.point(z_mm);
+    const Vector3d p(profile.x(), 0.0, z_mm);
+    const Vector3d n = Hourglass{}.normal(p);
+    const Vector3d around = Vector3d::UnitY();
+    return {test::patch_point(hourglass(), p),
+            std::cos(angle_rad) * n.cross(around) + std::sin(angle_rad) * around};
+}
+
+// The stations around the stretch in the air.
+struct Stretch {
+    std::size_t leaving, landing;
+};
+
+Stretch bridge_in(const SurfacePath& path, const TautString& string) {
+    std::size_t i = string.worst_station;
+    std::size_t j = i;
+    while (i > 0 && string.gap_mm[i] > 0.0) {
+        --i;
+    }
+    while (j + 1 < path.size() && string.gap_mm[j] > 0.0) {
+        ++j;
+    }
+    return {i, j};
+}
+
+TraceResult taut_path(double angle_deg, double length_mm = 70.0) {
+    const Start start = start_of(-25.0, rad_from_deg(angle_deg));
+    return trace_taut(hourglass(), start.at, start.direction, {}, {.max_length_mm = length_mm});
+}
+
+TEST(BridgeAhead, MeridianTouchesAlongTheCommonTangent) {
+    const Hourglass shape;
+    const Start start = start_of(-shape.height_mm, 0.0);
+    const auto bridge =
+        bridge_ahead(hourglass(), FieldWalker(hourglass(), start.at),
+                     // Lowered, so that the far shoulder stands over it.
+                     (start.direction - Vector3d(1e-5, 0.0, 0.0)).normalized(), kBridgeReach_mm);
+    ASSERT_TRUE(bridge);
+    EXPECT_NEAR(bridge->far.position_mm().z(), shape.height_mm, kTouch_mm);
+    EXPECT_NEAR(bridge->far.position_mm().x(), shape.line_mm(), 1e-5);
+    ASSERT_EQ(bridge->gap_mm.size(), bridge->under.size());
+    EXPECT_EQ(bridge->gap_mm.back(), 0.0);
+    double s_mm = 0.0;
+    for (std::size_t i = 0; i < bridge->under.size(); ++i) {
+        const PathPoint& station = bridge->under[i];
+        EXPECT_GE(station.s_mm, s_mm);
+        s_mm = station.s_mm;
+        // Where shoulder and waist meet, the fits of degree four are 5e-3 mm off: half the jump of
+        // curvature, 0.08 / mm, over the square of a quarter of their reach of some mm.
+        const double below_mm = shape.line_mm() - shape.point(station.position_mm.z()).x();
+        EXPECT_NEAR(bridge->gap_mm[i],
+                    below_mm * shape.normal(station.position_mm).head<2>().norm(), 0.01);
+    }
+}
+
+TEST(BridgeAhead, NothingWhereTheWallStaysBelowOrTheReachIsTooShort) {
+    const FieldWalker from(hourglass(), start_of(-12.0, 0.0).at);
+    const Vector3d raised = Vector3d(1e-3, 0.0, 1.0).normalized();
+    const Vector3d lowered = Vector3d(-1e-3, 0.0, 1.0).normalized();
+    EXPECT_FALSE(bridge_ahead(hourglass(), from, raised, kBridgeReach_mm));
+    EXPECT_TRUE(bridge_ahead(hourglass(), from, lowered, kBridgeReach_mm));
+    EXPECT_FALSE(bridge_ahead(hourglass(), from, lowered, 20.0));
+}
+
+TEST(TraceTaut, MeridianLeavesAndLandsWhereTheCommonTangentTouches) {
+    const Hourglass shape;
+    const TraceResult taut = taut_path(0.0);
+    const TautString string = taut_string(taut.path);
+    const auto [leaving, landing] = bridge_in(taut.path, string);
+    EXPECT_NEAR(taut.path[leaving].position_mm.z(), -shape.height_mm, kTouch_mm);
+    EXPECT_NEAR(taut.path[landing].position_mm.z(), shape.height_mm, kTouch_mm);
+    // theta^2 / 4 of itself for the string that turns by 14 deg (measure.h), and 1e-3 by which the
+    // station nearest to the middle may miss it.
+    EXPECT_NEAR(string.worst_gap_mm, shape.gap_mm(), 0.016 * shape.gap_mm());
+    EXPECT_EQ(taut.stop, TraceStop::Rim);
+}
+
+TEST(TraceTaut, StraightPartIsTangentToTheSurfaceAtBothEnds) {
+    const Hourglass shape;
+    for (const double angle_deg : {0.0, 20.0, 45.0}) {
+        const TraceResult taut = taut_path(angle_deg);
+        const auto [leaving, landing] = bridge_in(taut.path, taut_string(taut.path));
+        const PathPoint& from = taut.path[leaving];
+        const PathPoint& to = taut.path[landing];
+        const Vector3d chord = (to.position_mm - from.position_mm).normalized();
+        EXPECT_GT((to.position_mm - from.position_mm).norm(), 15.0);
+        EXPECT_NEAR(shape.normal(from.position_mm).dot(chord), 0.0, kNormal_rad) << angle_deg;
+        EXPECT_NEAR(shape.normal(to.position_mm).dot(chord), 0.0, kNormal_rad) << angle_deg;
+        // It leaves and arrives in its own direction.
+        EXPECT_NEAR(from.tangent.cross(chord).norm(), 0.0, kNormal_rad) << angle_deg;
+        EXPECT_NEAR(to.tangent.cross(chord).norm(), 0.0, kNormal_rad) << angle_deg;
+    }
+}
+
+TEST(TraceTaut, IsContinuousInPlaceAndDirection) {
+    for (const double angle_deg : {0.0, 20.0, 45.0}) {
+        const SurfacePath path = taut_path(angle_deg).path;
+        for (std::size_t i = 1; i < path.size(); ++i) {
+            const double ds = path[i].s_mm - path[i - 1].s_mm;
+            ASSERT_GE(ds, 0.0);
+            ASSERT_LE((path[i].position_mm - path[i - 1].position_mm).norm(), ds + 1e-9);
+            // Curvature along the path is at most 0.05 / mm where the fits round the joint off.
+            const double turn = path[i].tangent.cross(path[i - 1].tangent).norm();
+            ASSERT_LE(turn, 0.06 * ds + 1e-3) << angle_deg << " " << i;
+        }
+    }
+}
+
+// The way back over the bridge is the same bridge.
+TEST(TraceTaut, GivesTheSameWayBackwards) {
+    const TraceResult there = taut_path(30.0, 55.0);
+    const PathPoint& end = there.path.back();
+    const TraceResult back =
+        trace_taut(hourglass(), end.at, -end.tangent, {}, {.max_length_mm = end.s_mm});
+    EXPECT_LT((back.path.back().position_mm - there.path.front().position_mm).norm(), 2e-3);
+}
+
+TEST(TraceTaut, IsTheTraceItselfWhereNothingIsHollow) {
+    const Surface tube = test::frozen(make_cylinder({.radius_mm = 40.0, .length_mm = 200.0},
+                                                    {.edge_mm = 6.0, .irregular = true}));
+    const TraceOptions options{.max_length_mm = 150.0, .method = TraceMethod::Patches};
+    const Vector3d direction(0.2, 0.5, 0.4);
+    const TraceResult taut = trace_taut(tube, {100}, direction, {0.1, 0.0}, options);
+    const TraceResult plain = trace(tube, {100}, direction, {0.1, 0.0}, options);
+    ASSERT_EQ(taut.path.size(), plain.path.size());
+    EXPECT_EQ(taut.path.back().position_mm, plain.path.back().position_mm);
+}
+
+}  // namespace
+}  // namespace meshwind

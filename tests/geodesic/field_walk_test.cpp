@@ -1,0 +1,1 @@
+#include "geodesic/field_walk.h"
