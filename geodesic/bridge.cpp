@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-
-#include <boost/math/tools/toms748_solve.hpp>
 
 #include "geodesic/measure.h"
 
@@ -16,18 +13,14 @@ using Eigen::Vector3d;
 // Step over the wall in mean edges.
 constexpr double kStepEdges = 0.5;
 
-// The first step is shorter, as a hollow may begin where the fibre leaves the wall; each doubles.
-constexpr double kFirstStep = 0.125;
-
 // Least angle by which the wall must stand over the fibre: 1 um at 10 mm.
 constexpr double kTouch_rad = 1e-7;
 
 // The wall under a step of the fibre is no longer than so many steps.
 constexpr double kMaxDetour = 4.0;
 
-// Of the way to where the fibre touches, and rounds in which that is found.
-constexpr int kOutlineBits = 40;
-constexpr std::uintmax_t kOutlineRounds = 60;
+// The place of contact is found to so many halvings of two steps.
+constexpr int kContactHalvings = 30;
 
 // Where a path leaves the wall is found to so many halvings of the way between two stations.
 constexpr int kHalvings = 14;
@@ -65,46 +58,46 @@ private:
     FieldWalker scout_;
 };
 
-// Between two places at `low_mm` and `high_mm`, the first of which faces the sight and the second
-// turns away from it: where the wall's outline is seen.
-Lookout outline(const Lookout& facing, double low_mm, double high_mm) {
-    Lookout place = facing;
-    const auto away = [&](double ahead_mm) {
-        place = facing;
-        return place.go(ahead_mm) ? place.away_mm() : 0.0;
-    };
-    std::uintmax_t rounds = kOutlineRounds;
-    const auto [low, high] = boost::math::tools::toms748_solve(
-        away, low_mm, high_mm, boost::math::tools::eps_tolerance<double>(kOutlineBits), rounds);
-    away(0.5 * (low + high));
-    return place;
-}
-
 // How far ahead a fibre from `from` touches the wall that stands over it; 0 where none does.
 double contact_ahead(const FieldWalker& from, const Vector3d& along, double reach_mm,
                      double step_mm) {
     Lookout last(from, along);
-    double last_mm = 0.0;
-    double highest_rad = kTouch_rad;
-    double contact_mm = 0.0;
-    for (double ahead = kFirstStep * step_mm; ahead < reach_mm;) {
+    std::optional<Lookout> before;  // a step before the highest place
+    double highest = kTouch_rad;
+    double highest_at = 0.0;
+    double beyond = 0.0;  // a step beyond the highest place, where the wall turns away there
+    for (double ahead = step_mm; ahead < reach_mm; ahead += step_mm) {
         Lookout here = last;
         if (!here.go(ahead)) {
             break;
         }
-        if (here.away_mm() >= 0.0) {
-            // Of a stretch along which the fibre lies on the wall, the end.
-            const Lookout touch = last.away_mm() < 0.0 ? outline(last, last_mm, ahead) : here;
-            if (touch.over_rad() > std::max(kTouch_rad, highest_rad - kTouch_rad)) {
-                highest_rad = std::max(highest_rad, touch.over_rad());
-                contact_mm = touch.ahead_mm();
-            }
+        const double over = here.over_rad();
+        // Of a stretch along which the fibre lies on the wall, the end.
+        if (over > kTouch_rad && over >= highest - kTouch_rad) {
+            highest = std::max(highest, over);
+            highest_at = ahead;
+            before = last;
+            beyond = 0.0;
+        }
+        if (highest_at > 0.0 && beyond == 0.0 && here.away_mm() > 0.0) {
+            beyond = ahead;
         }
         last = here;
-        last_mm = ahead;
-        ahead += std::min(ahead, step_mm);
     }
-    return contact_mm;
+    if (beyond == 0.0) {
+        return 0.0;  // none, or a wall that rises on
+    }
+    double low = highest_at - step_mm;
+    double high = beyond;
+    if (low <= 0.0 || before->away_mm() >= 0.0) {
+        return highest_at;
+    }
+    for (int i = 0; i < kContactHalvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        last = *before;
+        (last.go(middle) && last.away_mm() < 0.0 ? low : high) = middle;
+    }
+    return last.ahead_mm();
 }
 
 // Leads along under the straight fibre through `target`.
