@@ -22,6 +22,7 @@
 #include "cli/report_study.h"
 #include "cli/study_command.h"
 #include "cli/trace_command.h"
+#include "cli/verify_command.h"
 #include "cli/wind.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -109,6 +110,19 @@ Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
     return v;
 }
 
+// A line on stderr for each check that failed.
+int exit_code(const std::string& file, const std::vector<Check>& checks) {
+    int code = kDone;
+    for (const Check& check : checks) {
+        if (!check.ok) {
+            code = kCheckFailed;
+            std::cerr << "meshwind: " << file << ": check failed: " << check.name << ": "
+                      << check.words << '\n';
+        }
+    }
+    return code;
+}
+
 struct WindOptions {
     std::string mandrel;
     std::string machine = "six_axis.json";
@@ -145,13 +159,55 @@ int run_wind(const WindOptions& options, const Common& common) {
     } else if (!common.quiet) {
         print_summary(std::cout, result, request.out);
     }
-    for (const Check& check : result.checks) {
-        if (!check.ok) {
-            std::cerr << "meshwind: " << options.mandrel << ": check failed: " << check.name << ": "
-                      << check.words << '\n';
-        }
+    return exit_code(options.mandrel, result.checks);
+}
+
+constexpr const char* kVerifyHelp =
+    "Wind a program again from its code.\n"
+    "Nothing but the program, the machine and the mandrel says where the fibre goes. It is then\n"
+    "checked for slip, bridging, collisions, free length, axis limits and pay-out, and with "
+    "--plan\n"
+    "compared with what was planned: exit code 1 and the first wrong block where anything fails.\n"
+    "  meshwind verify meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json "
+    "--plan meshwind-out";
+
+struct VerifyOptions {
+    std::string program, mandrel, machine, job, plan, out, tie_on;
+};
+
+void add_verify(CLI::App& app, VerifyOptions& options) {
+    app.add_option("program", options.program, "NC program, of meshwind or of anybody")->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->required();
+    app.add_option("--machine", options.machine, "machine file")->required();
+    app.add_option("--job", options.job,
+                   "job file: tow, friction, extensions, tolerances; without it the defaults hold");
+    app.add_option("--plan", options.plan,
+                   "folder with path.csv and motion.csv, to compare with at the end");
+    app.add_option("--tie-on", options.tie_on,
+                   "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
+                   "say it");
+    app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv");
+}
+
+int run_verify_command(const VerifyOptions& options, const Common& common) {
+    VerifyRequest request;
+    request.program = options.program;
+    request.setup.mandrel = find_input(options.mandrel);
+    request.setup.machine = find_input(options.machine);
+    request.setup.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
+    request.setup.unit_mm = unit_mm(common.units);
+    request.plan = options.plan;
+    request.out = options.out;
+    if (!options.tie_on.empty()) {
+        request.tie_on_mm = vector_of("--tie-on", options.tie_on);
     }
-    return result.passed() ? kDone : kCheckFailed;
+    const VerifyOutcome outcome = run_verify(request);
+    if (common.json) {
+        std::cout << verify_json(outcome);
+    } else if (!common.quiet) {
+        print_verify(std::cout, outcome);
+    }
+    return exit_code(options.program, outcome.checks);
 }
 
 struct InspectOptions {
@@ -390,6 +446,9 @@ int run(int argc, char** argv) {
     WindOptions named_wind_options;
     CLI::App* wind_command = app.add_subcommand("wind", "the main job");
     add_wind_options(*wind_command, named_wind_options, true);
+    VerifyOptions verify_options;
+    CLI::App* verify_command = app.add_subcommand("verify", kVerifyHelp);
+    add_verify(*verify_command, verify_options);
     InspectOptions inspect_options;
     CLI::App* inspect = app.add_subcommand("inspect", "what is read from a mandrel file");
     add_inspect(*inspect, inspect_options);
@@ -409,7 +468,7 @@ int run(int argc, char** argv) {
     CLI::App* mesh_size = study->add_subcommand("mesh-size", kMeshSizeHelp);
     add_mesh_size(*mesh_size, study_request);
     for (CLI::App* command :
-         {wind_command, inspect, make, trace_command, validate, study, mesh_size}) {
+         {wind_command, verify_command, inspect, make, trace_command, validate, study, mesh_size}) {
         command->fallthrough();
     }
 
@@ -430,6 +489,9 @@ int run(int argc, char** argv) {
     }
     if (wind_command->parsed()) {
         return run_wind(named_wind_options, common);
+    }
+    if (verify_command->parsed()) {
+        return run_verify_command(verify_options, common);
     }
     if (inspect->parsed()) {
         return run_inspect(inspect_options, common);

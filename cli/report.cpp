@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/report_checks.h"
 #include "cli/report_mandrel.h"
 #include "core/text_number.h"
 #include "core/units.h"
@@ -15,18 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-// Numbers of the report: finer than any tolerance, free of rounding noise in the last digits.
-double rounded(double value) {
-    constexpr double kDigits = 1e9;
-    const double result = std::round(value * kDigits) / kDigits;
-    return result == 0.0 ? 0.0 : result;
-}
-
 json plan_report(const Plan& plan) {
     json uncovered = json::array();
     for (const Uncovered& u : plan.uncovered) {
         uncovered.push_back(
-            {{"region", u.region}, {"area_mm2", rounded(u.area_mm2)}, {"reason", u.reason}});
+            {{"region", u.region}, {"area_mm2", report_number(u.area_mm2)}, {"reason", u.reason}});
     }
     json refusals = json::object();
     for (std::size_t r = 0; r < kRefusals; ++r) {
@@ -41,13 +35,13 @@ json plan_report(const Plan& plan) {
         {"courses", plan.courses},
         {"transitions", std::max(0, static_cast<int>(plan.pieces.size()) - plan.courses)},
         {"fibres", plan.fibres},
-        {"fibre_length_mm", rounded(plan.fibre_length_mm)},
+        {"fibre_length_mm", report_number(plan.fibre_length_mm)},
         {"coverage",
-         {{"fraction", rounded(plan.coverage.fraction)},
-          {"reachable", rounded(plan.coverage.reachable)},
-          {"mean_layers", rounded(plan.coverage.mean_layers)},
+         {{"fraction", report_number(plan.coverage.fraction)},
+          {"reachable", report_number(plan.coverage.reachable)},
+          {"mean_layers", report_number(plan.coverage.mean_layers)},
           {"max_layers", plan.coverage.max_layers},
-          {"cv", rounded(plan.coverage.cv)}}},
+          {"cv", report_number(plan.coverage.cv)}}},
         {"uncovered", uncovered},
         {"library",
          {{"candidates", plan.effort.candidates},
@@ -56,22 +50,6 @@ json plan_report(const Plan& plan) {
           {"rejections", rejections}}}};
     if (!plan.failure.empty()) {
         report["failure"] = plan.failure;
-    }
-    return report;
-}
-
-json checks_report(const std::vector<Check>& checks) {
-    json report = json::object();
-    for (const Check& check : checks) {
-        json entry = {{"ok", check.ok}};
-        for (const auto& [name, value] : check.numbers) {
-            const bool whole = value == std::floor(value) && name.find("_mm") == std::string::npos;
-            entry[name] = whole ? json(static_cast<std::int64_t>(value)) : json(rounded(value));
-        }
-        if (!check.ok) {
-            entry["words"] = check.words;
-        }
-        report[check.name] = entry;
     }
     return report;
 }
@@ -85,7 +63,7 @@ double drift_of(const WindResult& result, std::size_t axis) {
 json repeats_report(const WindResult& result) {
     json drift = json::object();
     for (std::size_t a = 0; a < result.blocks.axes.size(); ++a) {
-        drift[std::string(1, result.blocks.axes[a].letter)] = rounded(drift_of(result, a));
+        drift[std::string(1, result.blocks.axes[a].letter)] = report_number(drift_of(result, a));
     }
     return {{"subprograms", result.layout.subprograms.size()},
             {"calls", result.layout.calls()},
@@ -106,8 +84,8 @@ json axes_report(const WindResult& result) {
             static_cast<double>(list.axes[a].resolution_nano) / static_cast<double>(kNanoPerUnit);
         axes[std::string(1, list.axes[a].letter)] = {
             {"unit", list.axes[a].type == AxisType::Rotary ? "deg" : "mm"},
-            {"min", rounded(low)},
-            {"max", rounded(high)},
+            {"min", report_number(low)},
+            {"max", report_number(high)},
             {"resolution", step},
             {"max_rounding_error", 0.5 * step + drift_of(result, a)}};
     }
@@ -115,27 +93,28 @@ json axes_report(const WindResult& result) {
 }
 
 json choice_report(const BlockChoice& choice) {
-    return {{"worst_sideways_mm", rounded(choice.worst_sideways_mm)},
-            {"worst_angle_deg", rounded(deg_from_rad(choice.worst_angle_rad))},
-            {"worst_pull_mm", rounded(choice.worst_pull_mm)},
-            {"worst_eye_mm", rounded(choice.worst_eye_mm)},
-            {"worst_twist_deg", rounded(deg_from_rad(choice.worst_twist_rad))},
+    return {{"worst_sideways_mm", report_number(choice.worst_sideways_mm)},
+            {"worst_angle_deg", report_number(deg_from_rad(choice.worst_angle_rad))},
+            {"worst_pull_mm", report_number(choice.worst_pull_mm)},
+            {"worst_eye_mm", report_number(choice.worst_eye_mm)},
+            {"worst_twist_deg", report_number(deg_from_rad(choice.worst_twist_rad))},
             {"steps_beyond", choice.beyond}};
 }
 
 json program_report(const WindResult& result) {
     json binding = json::array();
     for (const BindingLimit& limit : result.binding) {
-        binding.push_back({{"limit", limit.name}, {"time_s", rounded(limit.time_s)}});
+        binding.push_back({{"limit", limit.name}, {"time_s", report_number(limit.time_s)}});
     }
     return {{"file", result.program_written ? json(result.program_file) : json(nullptr)},
             {"dialect", result.setup.machine.controller.dialect},
             {"path_points", result.path_points},
             {"blocks", result.blocks.blocks.size()},
             {"choice", choice_report(result.choice)},
-            {"duration_s", rounded(result.duration_s)},
+            {"duration_s", report_number(result.duration_s)},
             {"free_length_mm",
-             {{"min", rounded(result.eyes.shortest_mm)}, {"max", rounded(result.eyes.longest_mm)}}},
+             {{"min", report_number(result.eyes.shortest_mm)},
+              {"max", report_number(result.eyes.longest_mm)}}},
             {"binding_limits", binding},
             {"repeats", repeats_report(result)},
             {"axes", axes_report(result)}};
@@ -145,21 +124,6 @@ std::string percent(double share) {
     return fixed(100.0 * share, 2) + " %";
 }
 
-void print_checks(std::ostream& out, const WindResult& result) {
-    for (const Check& check : result.checks) {
-        out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name;
-        for (const auto& [name, value] : check.numbers) {
-            std::string text;
-            append_shortest(text, std::round(value * 1e4) / 1e4);
-            out << "  " << name << ' ' << text;
-        }
-        out << '\n';
-        if (!check.ok) {
-            out << "          " << check.words << '\n';
-        }
-    }
-}
-
 }  // namespace
 
 std::string report_json(const WindResult& result) {
@@ -167,14 +131,17 @@ std::string report_json(const WindResult& result) {
     for (const auto& [stage, seconds] : result.timing_s) {
         timing[stage] = seconds;
     }
-    const json report = {{"meshwind", kVersion},
-                         {"machine", result.setup.machine.name},
-                         {"mandrel", mandrel_report(result.setup.mandrel)},
-                         {"plan", plan_report(result.plan)},
-                         {"checks", checks_report(result.checks)},
-                         {"program", program_report(result)},
-                         {"ok", result.passed()},
-                         {"timing_s", timing}};
+    json report = {{"meshwind", kVersion},
+                   {"machine", result.setup.machine.name},
+                   {"mandrel", mandrel_report(result.setup.mandrel)},
+                   {"plan", plan_report(result.plan)},
+                   {"checks", checks_report(result.checks)},
+                   {"program", program_report(result)},
+                   {"ok", result.passed()},
+                   {"timing_s", timing}};
+    if (!result.verification.checks.empty()) {
+        report["verification"] = verification_report(result.verification, result.blocks);
+    }
     return report.dump(1) + "\n";
 }
 
@@ -194,7 +161,7 @@ void print_summary(std::ostream& out, const WindResult& result,
         out << "  bare: " << fixed(bare.area_mm2 / 100.0, 2) << " cm2 of region " << bare.region
             << ": " << bare.reason << '\n';
     }
-    print_checks(out, result);
+    print_checks(out, result.checks);
     out << (result.program_written ? "program: " + (folder / result.program_file).string()
                                    : std::string("no program written"))
         << "\nreport:  " << (folder / "report.json").string() << '\n';

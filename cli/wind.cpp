@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
-#include <sstream>
 
 #include "cli/digest.h"
 #include "cli/layup_vtu.h"
 #include "cli/output_files.h"
 #include "cli/report.h"
 #include "core/error.h"
+#include "core/text_file.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "machines/kinematics.h"
@@ -76,13 +75,6 @@ private:
     std::chrono::steady_clock::time_point first_ = std::chrono::steady_clock::now();
     std::chrono::steady_clock::time_point last_ = first_;
 };
-
-std::string read_bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    return bytes.str();
-}
 
 [[noreturn]] void not_offered(const fs::path& job, const std::string& pointer,
                               const std::string& value, const std::string& mend) {
@@ -261,8 +253,7 @@ private:
         result_.duration_s = timed.time.duration_s;
         result_.binding = std::move(timed.time.binding);
         // What the program runs, repeated circuits included.
-        FoldedProgram folded =
-            setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
+        FoldedProgram folded = setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
         result_.blocks = std::move(folded.list);
         result_.layout = std::move(folded.layout);
         write_program();
@@ -422,7 +413,7 @@ private:
         ProgramHeader header;
         header.version = kVersion;
         header.mandrel = setup_.mandrel.file;
-        header.mandrel_digest = "sha256 " + sha256_hex(read_bytes(request_.mandrel));
+        header.mandrel_digest = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
         header.job_digest = "sha256 " + sha256_hex(job_text(setup_.job));
         header.fibre_length_mm = result_.plan.fibre_length_mm;
         header.tie_on_mm = result_.eyes.path.front().landing_mm;

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text_file.h"
 #include "core/text_number.h"
 
 namespace meshwind {
@@ -320,15 +318,7 @@ JsonDocument JsonDocument::parse(std::string_view text, const std::string& file)
 }
 
 JsonDocument JsonDocument::load(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    // Streaming an empty file would set the fail bit of `text`.
-    const bool readable = stream && !std::filesystem::is_directory(file);
-    if (!readable ||
-        (stream.peek() != std::ifstream::traits_type::eof() && !(text << stream.rdbuf()))) {
-        throw IoError("io.cannot_read", file, "cannot be read; check the name and the rights");
-    }
-    return parse(text.str(), file);
+    return parse(read_text_file(file), file);
 }
 
 JsonValue JsonDocument::root() const {

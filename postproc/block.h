@@ -64,6 +64,9 @@ struct BlockList {
 /// The positions of all blocks.
 [[nodiscard]] JointPath joint_path(const BlockList& list);
 
+/// "block 17 (line 40)"; without the line where it is unknown.
+[[nodiscard]] std::string block_words(const BlockList& list, std::size_t block);
+
 /// A program's blocks and what their durations come from.
 struct TimedBlocks {
     BlockList list;
@@ -74,8 +77,8 @@ struct TimedBlocks {
 /// within half a step of the plan over any number of blocks. Steps that move no axis by a whole
 /// step are merged into the next one that does, with their fibre; at the end into the last. The
 /// time law is that of the rounded positions, which are what the machine runs. \param fibre_mm per
-/// point, what the fibre's speed counts (time_path) \pre path, joints and fibre_mm have equal length
-/// \throws InputError block.too_far beyond +-4e9 mm or deg; what time_path throws
+/// point, what the fibre's speed counts (time_path) \pre path, joints and fibre_mm have equal
+/// length \throws InputError block.too_far beyond +-4e9 mm or deg; what time_path throws
 [[nodiscard]] TimedBlocks make_blocks(const Machine& machine, const EyePath& path,
                                       const JointPath& joints, std::span<const double> fibre_mm,
                                       const TimeLawOptions& options = {});

@@ -55,6 +55,12 @@ JointPath joint_path(const BlockList& list) {
     return joints;
 }
 
+std::string block_words(const BlockList& list, std::size_t block) {
+    const std::int32_t line = list.blocks[block].line;
+    return "block " + std::to_string(block) +
+           (line > 0 ? " (line " + std::to_string(line) + ")" : std::string());
+}
+
 int decimals_of(std::int64_t resolution_nano) {
     int decimals = 9;
     while (decimals > 0 && resolution_nano % 10 == 0) {

@@ -54,10 +54,8 @@ public:
     }
 
 private:
-    [[nodiscard]] std::string block_words(std::size_t block) const {
-        const std::int32_t line = task_.program.blocks[block].line;
-        return "block " + std::to_string(block) +
-               (line > 0 ? " (line " + std::to_string(line) + ")" : std::string());
+    [[nodiscard]] std::string words_of(std::size_t block) const {
+        return block_words(task_.program, block);
     }
 
     [[nodiscard]] static std::string place_words(const Eigen::Vector3d& p) {
@@ -65,7 +63,7 @@ private:
     }
 
     [[nodiscard]] std::string station_words(std::size_t station) const {
-        return block_words(found_.laid.at[station].block) +
+        return words_of(found_.laid.at[station].block) +
                place_words(found_.laid.path[station].position_mm);
     }
 
@@ -118,7 +116,7 @@ private:
             }
         }
         if (!laid.failure.empty()) {
-            fail(check, laid.failed_block, laid.failure + " in " + block_words(laid.failed_block));
+            fail(check, laid.failed_block, laid.failure + " in " + words_of(laid.failed_block));
         }
         found_.checks.push_back(check);
     }
@@ -204,7 +202,7 @@ private:
             if (!hits.empty() && check.ok) {
                 const std::size_t sample = hits.front();
                 fail(check, laid.block[sample],
-                     words + " in " + block_words(laid.block[sample]) +
+                     words + " in " + words_of(laid.block[sample]) +
                          place_words(laid.samples[sample].landing_mm));
             }
         };
@@ -242,7 +240,7 @@ private:
         if (first) {
             fail(check, laid.block[*first],
                  "the free length is " + fixed(laid.samples[*first].free_length_mm, 1) + " mm in " +
-                     block_words(laid.block[*first]) + ", outside the " + fixed(rule.min_mm, 1) +
+                     words_of(laid.block[*first]) + ", outside the " + fixed(rule.min_mm, 1) +
                      " to " + fixed(rule.max_mm, 1) + " mm of the machine");
         }
         found_.checks.push_back(check);
@@ -275,7 +273,7 @@ private:
             fail(check, first.first,
                  std::string("axis ") + first.axis + " goes to " + shown(joint, first.value) +
                      ", past its end at " + shown(joint, first.limit) + ", from " +
-                     block_words(first.first) + " on");
+                     words_of(first.first) + " on");
         }
         say_load(check, velocity, "velocity");
         say_load(check, acceleration, "acceleration");
@@ -286,7 +284,7 @@ private:
         if (load.ratio > 1.0 + kLimitSlack && check.ok) {
             fail(check, load.step,
                  std::string("axis ") + task_.machine.axis(load.joint).letter + " needs " +
-                     fixed(load.ratio, 3) + " times its " + what + " in " + block_words(load.step));
+                     fixed(load.ratio, 3) + " times its " + what + " in " + words_of(load.step));
         }
     }
 
@@ -326,12 +324,12 @@ private:
                  "the fibre goes slack: " + fixed(back, 1) +
                      " mm would have to be taken back, more than the " +
                      fixed(fibre.take_up_mm, 1) + " mm of the tensioner, first in " +
-                     block_words(laid.block[*slack]));
+                     words_of(laid.block[*slack]));
         } else if (too_fast) {
             fail(check, laid.block[*too_fast],
                  "the fibre runs at " + fixed(fastest, 0) + " mm/s, faster than the machine's " +
                      fixed(fibre.max_speed_mm_s, 0) + " mm/s, first in " +
-                     block_words(laid.block[*too_fast]));
+                     words_of(laid.block[*too_fast]));
         }
         found_.checks.push_back(check);
     }

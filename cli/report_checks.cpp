@@ -1,0 +1,65 @@
+#include "cli/report_checks.h"
+
+#include <cmath>
+
+#include "core/text_number.h"
+
+namespace meshwind {
+
+using nlohmann::json;
+
+double report_number(double value) {
+    constexpr double kDigits = 1e9;
+    const double result = std::round(value * kDigits) / kDigits;
+    return result == 0.0 ? 0.0 : result;
+}
+
+json checks_report(const std::vector<Check>& checks) {
+    json report = json::object();
+    for (const Check& check : checks) {
+        json entry = {{"ok", check.ok}};
+        for (const auto& [name, value] : check.numbers) {
+            const bool whole = value == std::floor(value) && name.find("_mm") == std::string::npos;
+            entry[name] =
+                whole ? json(static_cast<std::int64_t>(value)) : json(report_number(value));
+        }
+        if (!check.ok) {
+            entry["words"] = check.words;
+        }
+        report[check.name] = entry;
+    }
+    return report;
+}
+
+json verification_report(const Verification& verification, const BlockList& program) {
+    json report = {{"blocks", program.blocks.size()},
+                   {"fibre_length_mm", report_number(verification.fibre_length_mm)},
+                   {"duration_s", report_number(verification.duration_s)},
+                   {"free_length_mm",
+                    {{"min", report_number(verification.shortest_free_mm)},
+                     {"max", report_number(verification.longest_free_mm)}}},
+                   {"peeled_mm", report_number(verification.laid.peeled_mm)},
+                   {"first_wrong", nullptr}};
+    if (verification.first_wrong_block) {
+        const std::size_t block = *verification.first_wrong_block;
+        report["first_wrong"] = {{"block", block}, {"line", program.blocks[block].line}};
+    }
+    return report;
+}
+
+void print_checks(std::ostream& out, const std::vector<Check>& checks) {
+    for (const Check& check : checks) {
+        out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name;
+        for (const auto& [name, value] : check.numbers) {
+            std::string text;
+            append_shortest(text, std::round(value * 1e4) / 1e4);
+            out << "  " << name << ' ' << text;
+        }
+        out << '\n';
+        if (!check.ok) {
+            out << "          " << check.words << '\n';
+        }
+    }
+}
+
+}  // namespace meshwind

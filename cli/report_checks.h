@@ -1,0 +1,27 @@
+/// The objects "checks" and "verification" of report.json and verify.json.
+#pragma once
+
+#include <ostream>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "postproc/block.h"
+#include "postproc/verify.h"
+
+namespace meshwind {
+
+/// By name: ok, the numbers of the check, and words where it failed.
+[[nodiscard]] nlohmann::json checks_report(const std::vector<Check>& checks);
+
+/// What was laid and in what time, and the first wrong block where there is one.
+[[nodiscard]] nlohmann::json verification_report(const Verification& verification,
+                                                 const BlockList& program);
+
+/// A line for each check, a second one with the words of a failed one.
+void print_checks(std::ostream& out, const std::vector<Check>& checks);
+
+/// Numbers of a report: finer than any tolerance, free of rounding noise in the last digits.
+[[nodiscard]] double report_number(double value);
+
+}  // namespace meshwind

@@ -1,0 +1,119 @@
+#include "cli/verify_command.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/output_files.h"
+#include "cli/report_checks.h"
+#include "core/error.h"
+#include "core/text_file.h"
+#include "core/text_number.h"
+#include "machines/kinematics.h"
+#include "postproc/plan_tables.h"
+#include "version.h"
+
+namespace meshwind {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::duration duration) {
+    return std::chrono::duration<double>(duration).count();
+}
+
+// The plan's motion, block by block.
+Check program_check(const VerifyRequest& request, const VerifyOutcome& outcome,
+                    std::optional<std::size_t>& wrong) {
+    const fs::path file = request.plan / "motion.csv";
+    const MotionDifference difference = first_difference(
+        outcome.setup.machine, outcome.blocks,
+        read_motion_csv(read_text_file(file), file.string(), outcome.setup.machine));
+    Check check{"program", difference.words.empty(), {}, {}};
+    check.numbers["blocks"] = static_cast<double>(outcome.blocks.blocks.size());
+    if (!check.ok) {
+        // A block that is missing at the end is named by the last one there is.
+        wrong = std::min(difference.block, outcome.blocks.blocks.size() - 1);
+        check.words = "not the planned program from " + block_words(outcome.blocks, *wrong) +
+                      " on: " + difference.words;
+    }
+    return check;
+}
+
+}  // namespace
+
+bool VerifyOutcome::passed() const {
+    return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
+}
+
+VerifyOutcome run_verify(const VerifyRequest& request) {
+    const auto begun = Clock::now();
+    VerifyOutcome outcome;
+    outcome.setup = read_setup(request.setup);
+    const SpindleWristInverse inverse(outcome.setup.machine);  // refuses what is not offered
+    outcome.program = request.program.filename().string();
+    outcome.blocks = outcome.setup.dialect->read(read_text_file(request.program),
+                                                 request.program.string(), outcome.setup.machine);
+    if (request.tie_on_mm) {
+        outcome.blocks.tie_on_mm = request.tie_on_mm;
+    }
+    PlannedFibre plan;
+    std::optional<std::size_t> planned_until;
+    if (!request.plan.empty()) {
+        const fs::path file = request.plan / "path.csv";
+        plan = read_path_csv(read_text_file(file), file.string());
+        outcome.checks.push_back(program_check(request, outcome, planned_until));
+    }
+    std::optional<OutputFolder> folder;
+    if (!request.out.empty()) {
+        folder.emplace(request.out);  // unusable: better known now
+    }
+    const auto read = Clock::now();
+    outcome.verification = verify_program(outcome.setup, outcome.blocks, plan);
+    // Where the program is not the planned one is the cause, what the fibre does the effect.
+    if (planned_until) {
+        outcome.verification.first_wrong_block = planned_until;
+    }
+    const std::vector<Check>& found = outcome.verification.checks;
+    outcome.checks.insert(outcome.checks.end(), found.begin(), found.end());
+    outcome.reading_s = seconds(read - begun);
+    outcome.verifying_s = seconds(Clock::now() - read);
+    if (folder) {
+        folder->add("verify.json", verify_json(outcome));
+        folder->add("laid.csv", laid_csv(outcome.verification, outcome.blocks));
+        folder->publish();
+    }
+    return outcome;
+}
+
+std::string verify_json(const VerifyOutcome& outcome) {
+    const Verification& verification = outcome.verification;
+    nlohmann::json report = {
+        {"meshwind", kVersion},
+        {"program", outcome.program},
+        {"mandrel", outcome.setup.mandrel.file},
+        {"machine", outcome.setup.machine.name},
+        {"dialect", outcome.setup.machine.controller.dialect},
+        {"verification", verification_report(verification, outcome.blocks)},
+        {"checks", checks_report(outcome.checks)},
+        {"ok", outcome.passed()},
+        {"timing_s", {{"import", outcome.reading_s}, {"verify", outcome.verifying_s}}}};
+    return report.dump(1) + "\n";
+}
+
+void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
+    const Verification& verification = outcome.verification;
+    out << outcome.program << " on " << outcome.setup.machine.name << " lays "
+        << fixed(verification.fibre_length_mm / 1000.0, 1) << " m of fibre on "
+        << outcome.setup.mandrel.file << " in " << outcome.blocks.blocks.size() << " blocks, "
+        << fixed(verification.duration_s / 60.0, 1) << " min\n";
+    print_checks(out, outcome.checks);
+    if (verification.first_wrong_block) {
+        out << "first wrong: " << block_words(outcome.blocks, *verification.first_wrong_block)
+            << '\n';
+    }
+}
+
+}  // namespace meshwind

@@ -1,0 +1,50 @@
+/// meshwind verify: winds a program again from its text alone.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "cli/setup.h"
+#include "postproc/block.h"
+#include "postproc/verify.h"
+
+namespace meshwind {
+
+struct VerifyRequest {
+    std::filesystem::path program;
+    SetupRequest setup;
+    std::filesystem::path plan;  ///< folder with path.csv and motion.csv; empty: nothing to compare
+    std::filesystem::path out;   ///< folder for verify.json and laid.csv; empty: none is written
+    std::optional<Eigen::Vector3d> tie_on_mm;  ///< mandrel frame; overrides the program's own
+};
+
+struct VerifyOutcome {
+    std::string program;  ///< file name
+    Setup setup;
+    BlockList blocks;
+    Verification verification;  ///< its first wrong block is that of "program" where this fails
+    std::vector<Check> checks;  ///< "program" where a plan was given, then the verification's
+    double reading_s = 0.0;     ///< all input
+    double verifying_s = 0.0;   ///< winding again and the checks
+
+    [[nodiscard]] bool passed() const;
+};
+
+/// Reads everything, winds the program again (postproc/verify.h) and writes the output folder,
+/// where one is named. With a plan the first check is "program": block by block its positions and
+/// times are those of motion.csv, and the eye is where the plan's machine had it.
+/// \throws InputError, IoError for input that cannot be used; nothing is written then
+[[nodiscard]] VerifyOutcome run_verify(const VerifyRequest& request);
+
+/// Text of verify.json; keys as in docs/files.md.
+[[nodiscard]] std::string verify_json(const VerifyOutcome& outcome);
+
+/// What was wound, the checks, and where the program first goes wrong.
+void print_verify(std::ostream& out, const VerifyOutcome& outcome);
+
+}  // namespace meshwind
