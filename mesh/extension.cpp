@@ -42,6 +42,20 @@ struct Circle {
         return std::atan2((p - centre_mm).dot(y), (p - centre_mm).dot(x));
     }
     [[nodiscard]] double height(const Vector3d& p) const { return (p - centre_mm).dot(axis); }
+
+    // Of the cylinder through a point: z = sqrt(R^2 - x^2) - R, to the fourth order.
+    [[nodiscard]] Jet jet(const Vector3d& p) const {
+        const Vector3d out = p - centre_mm - height(p) * axis;
+        const double radius = out.norm();
+        Jet jet;
+        jet.normal = out / radius;
+        const Vector3d around = axis.cross(jet.normal);
+        jet.height.frame << around, axis, jet.normal;
+        jet.height.coefficient[kJetX2] = -0.5 / radius;
+        jet.height.coefficient[kJetX4] = -0.125 / (radius * radius * radius);
+        jet.shape_operator_per_mm = around * around.transpose() / radius;
+        return jet;
+    }
 };
 
 // The rim's vertices once around, azimuth rising.
@@ -86,6 +100,7 @@ public:
     void add(const Rim& rim, double length_mm) {
         const Circle circle(rim);
         const Loop loop = rising_loop(circle, rim, wall_);
+        circle_.push_back(circle);
         const int around = std::max(kLeastAround, static_cast<int>(loop.vertex.size()));
         const double edge = 2.0 * kPi * circle.radius_mm / around;
         const int rows = std::max(3, static_cast<int>(std::ceil(length_mm / edge)));
@@ -119,12 +134,22 @@ public:
                 }
             }
         }
-        return freeze_surface(soup_, {.feature = feature_, .region = region_, .rim = rim_});
+        Surface surface =
+            freeze_surface(soup_, {.feature = feature_, .region = region_, .rim = rim_});
+        for (std::size_t f = wall_.face.size(); f < surface.face.size(); ++f) {
+            const Circle& circle = circle_[circle_of_[f - wall_.face.size()]];
+            for (std::size_t c = 0; c < 3; ++c) {
+                set_jet(surface, at(surface.corner[f][c]),
+                        circle.jet(surface.position_mm[at(surface.face[f][c])]));
+            }
+        }
+        return surface;
     }
 
 private:
     void add_face(const std::array<Index, 3>& face) {
         soup_.faces.push_back(face);
+        circle_of_.push_back(circle_.size() - 1);
         feature_.push_back({0, 0, 0});
         region_.push_back(kExtensionRegion);
         rim_.push_back({-1, -1, -1});
@@ -165,6 +190,8 @@ private:
     std::vector<std::array<std::uint8_t, 3>> feature_;
     std::vector<Index> region_;
     std::vector<std::array<Index, 3>> rim_;
+    std::vector<Circle> circle_;          // per extension
+    std::vector<std::size_t> circle_of_;  // per face of an extension
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace meshwind {
 
 /// The winding surface continued by the extensions of all its rims, each joined to the rim's own
 /// vertices and cylindrical from its highest vertex on. The former rims are feature edges, so the
-/// patches of the wall stay what they were; the far ends carry the rims' ids. Faces of the wall
+/// patches of the wall stay what they were; those of the extensions come from the cylinder through
+/// each vertex. The far ends carry the rims' ids. Faces of the wall
 /// keep their numbers; those of extensions follow, with region kExtensionRegion.
 /// \param length_mm beyond the rim; 0: the surface as it is
 [[nodiscard]] Surface extended_surface(const Mandrel& mandrel, double length_mm);

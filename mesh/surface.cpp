@@ -58,10 +58,9 @@ void fit_all(Surface& surface, std::size_t corners) {
     surface.normal.resize(corners);
     surface.shape_operator_per_mm.resize(corners);
     surface.jet.resize(corners);
+    surface.walk_corner.resize(corners);
     for (std::size_t i = 0; i < corners; ++i) {
-        surface.normal[i] = jets[i].normal;
-        surface.shape_operator_per_mm[i] = jets[i].shape_operator_per_mm;
-        surface.jet[i] = jets[i].height;
+        set_jet(surface, i, jets[i]);
     }
     const auto count = [&](JetTerms kind) {
         return static_cast<int>(std::count_if(
@@ -86,13 +85,8 @@ void pack_for_walks(Surface& surface, std::span<const Index> corner_vertex) {
                     : 4 * next + static_cast<Index>(corner_of_vertex(surface, next, start));
         }
     }
-    surface.walk_corner.resize(corner_vertex.size());
     for (std::size_t i = 0; i < corner_vertex.size(); ++i) {
-        const Eigen::Matrix3d& s = surface.shape_operator_per_mm[i];
-        WalkCorner& packed = surface.walk_corner[i];
-        packed.position_mm = surface.position_mm[at(corner_vertex[i])];
-        packed.normal = surface.normal[i];
-        packed.shape_operator_per_mm << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2);
+        surface.walk_corner[i].position_mm = surface.position_mm[at(corner_vertex[i])];
     }
 }
 
@@ -122,6 +116,16 @@ Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input) {
     pack_for_walks(surface, corner_vertex);
     surface.mean_edge_mm = mean_edge(surface);
     return surface;
+}
+
+void set_jet(Surface& surface, std::size_t corner, const Jet& jet) {
+    surface.normal[corner] = jet.normal;
+    surface.shape_operator_per_mm[corner] = jet.shape_operator_per_mm;
+    surface.jet[corner] = jet.height;
+    const Eigen::Matrix3d& s = jet.shape_operator_per_mm;
+    WalkCorner& packed = surface.walk_corner[corner];
+    packed.normal = jet.normal;
+    packed.shape_operator_per_mm << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2);
 }
 
 }  // namespace meshwind

@@ -75,4 +75,8 @@ struct FreezeInput {
 /// Accuracy: tests/mesh/surface_test.cpp (normals fourth order, curvature third in edge length).
 [[nodiscard]] Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input);
 
+/// Replaces the fit about a corner index, where the surface is known. \param jet passes through the
+/// corner's vertex
+void set_jet(Surface& surface, std::size_t corner, const Jet& jet);
+
 }  // namespace meshwind
