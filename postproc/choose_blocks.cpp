@@ -377,9 +377,18 @@ EyePath without_repeats(const EyePath& path) {
     return kept;
 }
 
+// From the last point of a piece to one that is not the next piece's first: that was left out.
+bool over_joint(const EyePoint& from, const EyePoint& to) {
+    return from.piece != to.piece && to.point > 0;
+}
+
 EyePoint point_between(const EyePoint& from, const EyePoint& to, double share) {
     const FibreFrame at = fibre_between(from, to, share);
     EyePoint point = from;
+    if (over_joint(from, to)) {
+        point.piece = to.piece;
+        point.point = 0;
+    }
     point.s_mm += share * (to.s_mm - from.s_mm);
     point.landing_mm = at.landing_mm;
     point.tangent = at.tangent;
@@ -419,7 +428,10 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
 EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolicy policy,
                     const BlockTolerance& tolerance) {
     EyePath fine = without_repeats(path);
-    std::vector<char> open(fine.size(), 1);  // per step: not yet known to be fine enough
+    std::vector<char> open(fine.size(), 0);  // per step: not yet known to be fine enough
+    for (std::size_t i = 0; i + 1 < fine.size(); ++i) {
+        open[i] = fine[i].piece == fine[i + 1].piece || over_joint(fine[i], fine[i + 1]) ? 1 : 0;
+    }
     for (int round = 0; round < kRefineRounds; ++round) {
         const JointPath joints = solve_joints(machine, fine, policy);
         const BlockTask task{.path = fine, .joints = joints};
@@ -427,8 +439,7 @@ EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolic
         std::vector<int> parts(fine.size(), 1);
         parallel_for(fine.size(), kChunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                const bool inside = i + 1 < fine.size() && fine[i].piece == fine[i + 1].piece;
-                parts[i] = inside && open[i] != 0 ? check.parts(i) : 1;
+                parts[i] = open[i] != 0 ? check.parts(i) : 1;
             }
         });
         EyePath finer;

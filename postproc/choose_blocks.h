@@ -77,9 +77,10 @@ struct BlockChoice {
 
 /// The path with further points (fibre_curve.h) where a single step, moved linearly by the joints
 /// of the policy, would pull sideways by more than `sideways_mm` or not keep the rest of the
-/// tolerance. Points between two stations bear the number of the first. Steps in which the eye
-/// moves less than kFinestStep_mm are left as they are: a wrist that flips does not get better by
-/// cutting. The first point of a piece is left out where it repeats the last of the piece before.
+/// tolerance. Points between two stations bear the number of the first; behind a joint of two
+/// pieces that of the next piece's first. Steps in which the eye moves less than kFinestStep_mm are
+/// left as they are: a wrist that flips does not get better by cutting. The first point of a piece
+/// is left out where it repeats the last of the piece before.
 [[nodiscard]] EyePath refine_path(const Machine& machine, const EyePath& path,
                                   RedundancyPolicy policy, const BlockTolerance& tolerance);
 

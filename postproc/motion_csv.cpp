@@ -20,10 +20,13 @@ void append_row(std::string& text, const Machine& machine, const BlockList& list
         text += ',';
         append_nano(text, list.row(i)[a], decimals_of(list.axes[a].resolution_nano));
     }
-    const Eigen::Vector3d eye_mm = mandrel_from_eye(machine, joints_at(list, i)).translation();
-    for (const double coordinate : eye_mm) {
-        text += ',';
-        append_fixed(text, coordinate, kEyeDecimals);
+    const Eigen::Isometry3d pose = mandrel_from_eye(machine, joints_at(list, i));
+    for (const Eigen::Vector3d& v : {Eigen::Vector3d(pose.translation()),
+                                     Eigen::Vector3d(pose.linear() * machine.eye.roller)}) {
+        for (const double coordinate : v) {
+            text += ',';
+            append_fixed(text, coordinate, kEyeDecimals);
+        }
     }
     const Block& block = list.blocks[i];
     text += ',' + (block.piece < 0 ? std::string() : std::to_string(block.piece));
@@ -38,7 +41,7 @@ std::string motion_csv(const Machine& machine, const BlockList& list) {
     for (const BlockAxis& axis : list.axes) {
         text += std::string(",") + axis.letter;
     }
-    text += ",ex_mm,ey_mm,ez_mm,course,point\n";
+    text += ",ex_mm,ey_mm,ez_mm,rx,ry,rz,course,point\n";
     double time_s = 0.0;
     for (std::size_t i = 0; i < list.blocks.size(); ++i) {
         time_s += list.blocks[i].duration_s;

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text_number.h"
+#include "core/units.h"
 #include "machines/kinematics.h"
 
 namespace meshwind {
@@ -110,10 +111,13 @@ std::optional<std::string> block_difference(const Machine& machine, const BlockL
             return words;
         }
     }
-    const Eigen::Vector3d eye = mandrel_from_eye(machine, joints_at(list, block)).translation();
-    if ((eye - planned.eye_mm).norm() > kSameEye_mm) {
-        return "the eye is " + fixed((eye - planned.eye_mm).norm(), 4) +
-               " mm from where it was planned; is it the machine of the plan?";
+    const Eigen::Isometry3d pose = mandrel_from_eye(machine, joints_at(list, block));
+    const double off_mm = (pose.translation() - planned.eye_mm).norm();
+    const double turned = (pose.linear() * machine.eye.roller - planned.roller).norm();
+    if (off_mm > kSameEye_mm || turned > kSameRoller) {
+        return "the eye is " + fixed(off_mm, 4) + " mm and its roller " +
+               fixed(deg_from_rad(2.0 * std::asin(std::min(0.5 * turned, 1.0))), 3) +
+               " deg from where the same axes were planned; is it the machine of the plan?";
     }
     return differing("its duration", list.blocks[block].duration_s, duration_s,
                      kSameTime_s + kSameTimeShare * duration_s, " s", 6);
@@ -147,13 +151,14 @@ std::vector<PlannedMotion> read_motion_csv(std::string_view text, const std::str
     Table table(text, file);
     const std::size_t time = table.column("time_s");
     const std::array eye = {table.column("ex_mm"), table.column("ey_mm"), table.column("ez_mm")};
+    const std::array roller = {table.column("rx"), table.column("ry"), table.column("rz")};
     std::vector<std::size_t> letter;
     for (std::size_t a = 0; a < machine.axis_count(); ++a) {
         letter.push_back(table.column(std::string(1, machine.axis(a).letter)));
     }
     std::vector<PlannedMotion> motion;
     while (table.next()) {
-        PlannedMotion row{table.number(time), {}, table.vector(eye)};
+        PlannedMotion row{table.number(time), {}, table.vector(eye), table.vector(roller)};
         for (const std::size_t column : letter) {
             row.value.push_back(table.number(column));
         }

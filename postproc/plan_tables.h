@@ -23,7 +23,8 @@ namespace meshwind {
 struct PlannedMotion {
     double time_s = 0.0;        ///< from the program's start, at the end of the block
     std::vector<double> value;  ///< per axis of the machine, absolute, mm or **deg**
-    Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();  ///< mandrel frame
+    Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();   ///< mandrel frame
+    Eigen::Vector3d roller = Eigen::Vector3d::UnitZ();  ///< its direction, mandrel frame
 };
 
 /// \throws InputError as read_path_csv
@@ -37,13 +38,15 @@ struct MotionDifference {
     std::string words;  ///< e.g. "X is 101.000 mm, planned 100.000 mm"; empty: no difference
 };
 
-/// Positions must agree to half a step of each axis, the eye to kSameEye_mm, the time to
+/// Positions must agree to half a step of each axis, the eye to kSameEye_mm and its roller to
+/// kSameRoller, the time to
 /// kSameTime_s and its millionth part per block, and there must be as many blocks.
 [[nodiscard]] MotionDifference first_difference(const Machine& machine, const BlockList& list,
                                                 const std::vector<PlannedMotion>& planned);
 
 /// The table carries six decimals; another machine is off by more.
 inline constexpr double kSameEye_mm = 1e-4;
+inline constexpr double kSameRoller = 1e-5;  ///< between unit vectors
 
 /// The table carries microseconds, F six digits.
 inline constexpr double kSameTime_s = 2e-6;

@@ -1,6 +1,7 @@
 """The main job on a small tee: the files of the contract, the program, and the same bytes again."""
 import csv
 import json
+import random
 import re
 import subprocess
 import sys
@@ -12,12 +13,19 @@ JOB = """{"mandrel": {"extension": 120}, "tow": {"width": 10, "friction": 0.25},
           "tolerance": {"clearance": 2}}"""
 PATH_HEADER = ("course,kind,point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,"
                "bridge_mm,free_length_mm")
-MOTION_HEADER = "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,course,point"
+MOTION_HEADER = "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz,course,point"
 PLAN_KEYS = {"planner", "courses", "fibre_length_mm", "coverage", "uncovered"}
-CHECK_KEYS = {"slip": {"limit", "worst"}, "bridging": {"limit_mm", "worst_mm"},
-              "collision": {"fibre_hits", "head_hits", "min_clearance_mm"}, "limits": set(),
-              "payout": set()}
-TIMES = {"import", "plan", "post", "write", "total"}
+CHECK_KEYS = {"continuity": {"fibres"}, "coverage": {"limit", "fraction"},
+              "eye": {"blocked_points"}, "rounding": {"blocks"},
+              "laydown": {"limit_mm", "max_deviation_mm", "limit_deg", "max_angle_deg",
+                          "end_gap_mm"},
+              "slip": {"limit", "worst"}, "bridging": {"limit_mm", "worst_mm"},
+              "collision": {"fibre_hits", "head_hits", "min_clearance_mm"},
+              "free_length": {"min_mm", "max_mm", "limit_min_mm", "limit_max_mm"},
+              "limits": {"violations", "velocity_ratio", "acceleration_ratio"},
+              "payout": {"limit_mm", "worst_mm", "max_speed_mm_s", "limit_mm_s"}}
+VERIFIED = ["laydown", "slip", "bridging", "collision", "free_length", "limits", "payout"]
+TIMES = {"import", "plan", "post", "verify", "write", "total"}
 
 
 def axis_words(line):
@@ -33,9 +41,7 @@ class MainJob(program.ProgramTest):
         if not mandrel.exists():
             self.make("tee", "--edge", "8", "--run-length", "240", "--branch-length", "140")
             self.write("job.json", JOB)
-        result = self.run_program(mandrel, "--job", "job.json", "-o", out, "--json", "--force",
-                                  timeout_s=600)
-        self.assertIn(result.returncode, (0, 1), result.stderr)
+        result = self.done(mandrel, "--job", "job.json", "-o", out, "--json", timeout_s=600)
         for line in result.stderr.splitlines():
             self.assertTrue(line.endswith(" ...") or line.startswith("meshwind: "), line)
         return result
@@ -54,6 +60,11 @@ class MainJob(program.ProgramTest):
             self.assertLessEqual({"region", "area_mm2", "reason"}, set(bare))
         for name, keys in CHECK_KEYS.items():
             self.assertLessEqual(keys | {"ok"}, set(report["checks"][name]), name)
+        laydown = report["checks"]["laydown"]
+        self.assertLessEqual(laydown["max_deviation_mm"], 0.2)
+        self.assertLessEqual(laydown["max_angle_deg"], 0.3)
+        self.assertLessEqual(3 * report["program"]["blocks"], report["program"]["path_points"])
+        self.assertIsNone(report["verification"]["first_wrong"])
         part = report["program"]
         self.assertLessEqual({"file", "dialect", "blocks", "duration_s", "axes"}, set(part))
         self.assertEqual(part["repeats"], {"subprograms": 0, "calls": 0,
@@ -92,6 +103,80 @@ class MainJob(program.ProgramTest):
                                  capture_output=True, text=True, check=False)
         self.assertIn(verdict.returncode, (0, 77), verdict.stdout)
 
+    def verify(self, text, machine="six_axis.json"):
+        """Exit code and verify.json of a program text, against the plan in folder "one"."""
+        result = self.run_program("verify", self.write("broken.ngc", text), "--mandrel", "tee.stl",
+                                  "--machine", machine, "--job", "job.json", "--plan", "one",
+                                  "--json")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        return result.returncode, json.loads(result.stdout)
+
+    def check_verify(self, out):
+        """The program alone gives what the main job found, and the laid fibre as a table."""
+        result = self.done("verify", out / "program.ngc", "--mandrel", "tee.stl", "--machine",
+                           "six_axis.json", "--job", "job.json", "--plan", out, "-o", "verified")
+        self.assertRegex(result.stdout, r"lays \d+\.\d m of fibre on tee\.stl in \d+ blocks")
+        verified = json.loads((self.folder / "verified/verify.json").read_text())
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual(list(verified["checks"]), sorted(["program", *VERIFIED]))
+        for name in VERIFIED:
+            for key, value in report["checks"][name].items():
+                # The plan comes from path.csv now, with four decimals.
+                self.assertAlmostEqual(verified["checks"][name][key], value, delta=2e-3, msg=name)
+        with open(self.folder / "verified/laid.csv", newline="") as file:
+            laid = list(csv.DictReader(file))
+        self.assertEqual(int(laid[-1]["block"]), report["program"]["blocks"] - 1)
+        self.assertAlmostEqual(float(laid[-1]["s_mm"]),
+                               verified["verification"]["fibre_length_mm"], 3)
+
+    def check_broken_programs(self, out):
+        """Whatever is changed in a program is found, at the block where it was changed."""
+        lines = (out / "program.ngc").read_text().splitlines()
+        start = next(i for i, line in enumerate(lines) if "G91" in line)
+        moves = [i for i in range(start, len(lines)) if axis_words(lines[i]) and "G1" in lines[i]]
+        self.assertEqual(len(moves) + 1,
+                         json.loads((out / "report.json").read_text())["program"]["blocks"])
+        chance = random.Random(4)
+
+        def check(name, broken, block):
+            with self.subTest(f"{name}, block {block}"):
+                code, report = self.verify("\n".join(broken) + "\n")
+                self.assertEqual(code, 1)
+                self.assertEqual(report["verification"]["first_wrong"]["block"], block)
+
+        for _ in range(3):
+            move = chance.randrange(len(moves))
+            words = axis_words(lines[moves[move]])
+            letter, number = chance.choice([w for w in words if w[0] in "CZYXAB"])
+            changed = list(lines)
+            changed[moves[move]] = re.sub(rf"\b{letter}[-+.\d]+", f"{letter}{number + 1}",
+                                          lines[moves[move]])
+            check(f"1 mm more of {letter}", changed, move + 1)
+
+            first, second = sorted(chance.sample(range(len(moves)), 2))
+            changed = list(lines)
+            changed[moves[first]], changed[moves[second]] = (changed[moves[second]],
+                                                             changed[moves[first]])
+            check("two swapped", changed, first + 1)
+
+            move = chance.randrange(len(moves) - 1)
+            check("one deleted", lines[:moves[move]] + lines[moves[move] + 1:], move + 1)
+
+        mirrored = [re.sub(r"\bC-?([.\d]+)", lambda m: ("C" if "C-" in m[0] else "C-") + m[1], line)
+                    if i in moves else line for i, line in enumerate(lines)]
+        check("C mirrored", mirrored,
+              next(n for n, i in enumerate(moves, 1) if "C" in dict(axis_words(lines[i]))))
+
+        for chain, axis in ("mandrel_chain", 0), ("eye_chain", 2), ("eye_chain", 3):
+            machine = json.loads((program.SOURCE / "machines/six_axis.json").read_text())
+            turned = machine[chain][axis]
+            turned["direction"] = [-x for x in turned["direction"]]
+            with self.subTest(f"another machine: {turned['letter']} mirrored"):
+                code, report = self.verify("\n".join(lines) + "\n",
+                                           self.write("other.json", json.dumps(machine)))
+                self.assertEqual(code, 1)
+                self.assertEqual(report["verification"]["first_wrong"]["block"], 0)
+
     def test_files_program_and_repeat(self):
         first = self.wind(self.folder / "one")
         out = self.folder / "one"
@@ -102,11 +187,12 @@ class MainJob(program.ProgramTest):
         self.assertEqual((out / "motion.csv").read_text().split("\n", 1)[0], MOTION_HEADER)
         self.assertIn("VTKFile", (out / "layup.vtu").read_text()[:200])
         self.check_program(out)
+        self.check_verify(out)
+        self.check_broken_programs(out)
         names = sorted(f.name for f in out.iterdir())
         self.assertFalse([n for n in names if n.startswith(".") or "tmp" in n], names)
 
         second = self.wind(self.folder / "two")
-        self.assertEqual(second.returncode, first.returncode)
         for name in names:
             with self.subTest(name):
                 texts = [(self.folder / run / name).read_text() for run in ("one", "two")]

@@ -113,7 +113,7 @@ TEST(MotionCsv, HasOneRowPerBlockWithTheEyeInTheMandrelFrame) {
     const Machine machine = six_axis();
     const EyePath path = test::helix(70.0, rad_from_deg(45.0), 200.0, 5.0, 3);
     const std::string text = motion_csv(machine, blocks_of(machine, path));
-    EXPECT_EQ(text.find("block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,course,point\n"
+    EXPECT_EQ(text.find("block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz,course,point\n"
                         "0,0.000000,-63.666,141.421,0.000,157.797,"),
               0u)
         << text;

@@ -271,9 +271,9 @@ TEST_F(LinuxCncOracle, SubprogramsAndRepeatsRunAsWeReadThem) {
 TEST_F(LinuxCncOracle, ComparisonFindsWrongPrograms) {
     const std::string start = "G21 G90\nG0 A0 B0 C0\nG0 X100 Y0 Z0\nG91 G93\n";
     save(folder_ / "motion.csv",
-         "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,course,point\n"
-         "0,0.0,0,0,0,100,0,0,0,0,0,0,0\n1,1.0,360,0,0,100.001,0,0,0,0,0,0,1\n"
-         "2,2.0,360,1,0,100.001,0,0,0,0,0,0,2\n");
+         "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz,course,point\n"
+         "0,0.0,0,0,0,100,0,0,0,0,0,0,0,1,0,0\n1,1.0,360,0,0,100.001,0,0,0,0,0,0,0,1,0,1\n"
+         "2,2.0,360,1,0,100.001,0,0,0,0,0,0,0,1,0,2\n");
     const auto verdict = [&](const std::string& moves) {
         save(folder_ / "program.ngc", start + moves);
         return run(kSource + "/tests/tools/check_program.py " + (folder_ / "program.ngc").string() +
