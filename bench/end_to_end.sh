@@ -28,4 +28,8 @@ if library:
     rate = library["candidates"] / report["timing_s"]["plan"]
     print(f"{library['candidates']} candidates, {rate:.0f} a second of planning; "
           f"covered {100 * report['plan']['coverage']['fraction']:.2f} %")
+if "verification" in report:
+    verify = report["timing_s"]["verify"]
+    print(f"{report['program']['blocks']} blocks wound again, {verify / report['timing_s']['plan']:.2f} of the "
+          f"time of planning, coarse ones made finer included")
 EOF
