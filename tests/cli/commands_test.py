@@ -18,7 +18,7 @@ class Commands(program.ProgramTest):
         self.assertRegex(self.done("--version").stdout, r"^meshwind \d+\.\d+\.\d+\n$")
         for arguments in (["--help"], ["wind", "--help"], ["inspect", "--help"],
                           ["make", "--help"], ["make", "tee", "--help"], ["trace", "--help"],
-                          ["study", "--help"], ["study", "mesh-size", "--help"],
+                          ["study", "--help"], ["study", "mesh-size", "--help"], ["verify", "--help"],
                           ["validate", "--help"]):
             result = self.done(*arguments)
             self.assertIn("--help", result.stdout)
