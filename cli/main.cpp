@@ -20,6 +20,7 @@
 #include "cli/report.h"
 #include "cli/report_mandrel.h"
 #include "cli/report_study.h"
+#include "cli/report_verify.h"
 #include "cli/study_command.h"
 #include "cli/trace_command.h"
 #include "cli/verify_command.h"

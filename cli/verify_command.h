@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -40,11 +39,5 @@ struct VerifyOutcome {
 /// times are those of motion.csv, and the eye is where the plan's machine had it.
 /// \throws InputError, IoError for input that cannot be used; nothing is written then
 [[nodiscard]] VerifyOutcome run_verify(const VerifyRequest& request);
-
-/// Text of verify.json; keys as in docs/files.md.
-[[nodiscard]] std::string verify_json(const VerifyOutcome& outcome);
-
-/// What was wound, the checks, and where the program first goes wrong.
-void print_verify(std::ostream& out, const VerifyOutcome& outcome);
 
 }  // namespace meshwind

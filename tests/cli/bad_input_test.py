@@ -290,6 +290,52 @@ class BadInput(program.ProgramTest):
         self.refused("study", word="subcommand")
         self.refused("study", "mesh-shape", word="subcommand")
 
+    def test_verify(self):
+        self.make("cylinder", "--radius", "50", "--length", "200", "--edge", "8")
+        out = self.folder / "out"
+        world = ["--mandrel", "cylinder.stl", "--machine", "six_axis.json"]
+        helix = program.HELIX
+        for text, word in (("", "no M2"), ("\0\1\2", "broken.ngc:1"), ("G91 G93\nG1 C5 F20\nM2\n", "axis"),
+                           (helix.replace("M2\n", ""), ":6"),
+                           (helix.replace("F20", ""), "broken.ngc:6"),
+                           (helix.replace("C-90", "C#5"), "broken.ngc:6"),
+                           (helix.replace("C-90", "C-9e99"), "broken.ngc:6"),
+                           (helix.replace("C-90", "Cnan"), "broken.ngc:6"),
+                           (helix.replace("(tie on", "(no tie"), "--tie-on"),
+                           (helix.replace("X50.000", "X90.000"), "tie"),
+                           (helix.replace("tie on at X50.000", "tie on at Xhere"), "broken.ngc:1")):
+            with self.subTest(text[:60]):
+                file = self.write("broken.ngc", text.encode())
+                self.refused("verify", file, *world, "-o", out, word=word)
+                self.assertFalse(out.exists())
+        file = self.write("helix.ngc", helix)
+        plan = self.folder / "plan"
+        plan.mkdir()
+        for arguments, word in (([file, *world, "--tie-on", "1,2"], "--tie-on"),
+                                ([file, *world, "--plan", "nowhere"], "path.csv"),
+                                ([file, *world, "--plan", plan], "path.csv"),
+                                (["nothing.ngc", *world], "nothing.ngc"),
+                                ([self.folder, *world], "cannot be read"),
+                                ([file, *world[:2]], "--machine"), ([file, *world[2:]], "--mandrel")):
+            with self.subTest(" ".join(map(str, arguments))):
+                self.refused("verify", *arguments, "-o", out, word=word)
+                self.assertFalse(out.exists())
+        path = ("course,point,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,bridge_mm\n"
+                "0,0,50,0,-60,1,0,0,0,0.70711,0.70711,0\n0,1,0,50,18.54,0,1,0,-0.70711,0,0.70711,0\n")
+        motion = "time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz\n0,0,0,0,0,0,0,0,0,0,1,0,0\n"
+        for name, text, word in (("path.csv", "", "column"), ("path.csv", path[:30], "column"),
+                                 ("path.csv", path.replace("18.54", "1e999"), "path.csv:3"),
+                                 ("path.csv", path + "0,2,1\n", "path.csv:4"),
+                                 ("path.csv", path.split("\n")[0] + "\n", "no landing points"),
+                                 ("motion.csv", motion.replace("time_s,", "t,"), "time_s"),
+                                 ("motion.csv", motion + "1,x,0,0,0,0,0,0,0,0,1,0,0\n", "motion.csv:3")):
+            with self.subTest(f"{name}: {word}"):
+                (plan / "path.csv").write_text(path)
+                (plan / "motion.csv").write_text(motion)
+                (plan / name).write_text(text)
+                self.refused("verify", file, *world, "--plan", plan, "-o", out, word=word)
+                self.assertFalse(out.exists())
+
 
 if __name__ == "__main__":
     program.main(sys.modules[__name__])

@@ -65,7 +65,7 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "  \"layers\":[{\"kind\":\"auto\", \"angle\":45, \"target_layers\":1}],\n"
               "  \"eye\":{\"rule\":\"equal-free-length\", \"free_length\":200},\n"
               "  \"redundancy\":\"central-angle\",\n"
-              "  \"tolerance\":{\"laydown\":0.2, \"clearance\":5},\n"
+              "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5},\n"
               "  \"speed\":{\"fibre\":30} }\n");
 }
 
@@ -90,6 +90,7 @@ TEST(Job, EveryKeyReachesItsField) {
     EXPECT_EQ(job.eye.free_length_mm, 180.0);
     EXPECT_EQ(job.redundancy, RedundancyRule::Optimal);
     EXPECT_EQ(job.tolerance.laydown_mm, 0.1);
+    EXPECT_EQ(job.tolerance.laydown_angle_deg, 0.5);
     EXPECT_EQ(job.tolerance.clearance_mm, 0.0);
     EXPECT_EQ(job.speed.fibre_m_min, 45.0);
 }

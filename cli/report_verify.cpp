@@ -1,0 +1,39 @@
+#include "cli/report_verify.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/report_checks.h"
+#include "core/text_number.h"
+#include "version.h"
+
+namespace meshwind {
+
+std::string verify_json(const VerifyOutcome& outcome) {
+    const Verification& verification = outcome.verification;
+    nlohmann::json report = {
+        {"meshwind", kVersion},
+        {"program", outcome.program},
+        {"mandrel", outcome.setup.mandrel.file},
+        {"machine", outcome.setup.machine.name},
+        {"dialect", outcome.setup.machine.controller.dialect},
+        {"verification", verification_report(verification, outcome.blocks)},
+        {"checks", checks_report(outcome.checks)},
+        {"ok", outcome.passed()},
+        {"timing_s", {{"import", outcome.reading_s}, {"verify", outcome.verifying_s}}}};
+    return report.dump(1) + "\n";
+}
+
+void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
+    const Verification& verification = outcome.verification;
+    out << outcome.program << " on " << outcome.setup.machine.name << " lays "
+        << fixed(verification.fibre_length_mm / 1000.0, 1) << " m of fibre on "
+        << outcome.setup.mandrel.file << " in " << outcome.blocks.blocks.size() << " blocks, "
+        << fixed(verification.duration_s / 60.0, 1) << " min\n";
+    print_checks(out, outcome.checks);
+    if (verification.first_wrong_block) {
+        out << "first wrong: " << block_words(outcome.blocks, *verification.first_wrong_block)
+            << '\n';
+    }
+}
+
+}  // namespace meshwind
