@@ -65,7 +65,7 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "  \"layers\":[{\"kind\":\"auto\", \"angle\":45, \"target_layers\":1}],\n"
               "  \"eye\":{\"rule\":\"equal-free-length\", \"free_length\":200},\n"
               "  \"redundancy\":\"central-angle\",\n"
-              "  \"tolerance\":{\"laydown\":0.2, \"clearance\":5},\n"
+              "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5},\n"
               "  \"speed\":{\"fibre\":30} }\n");
 }
 
