@@ -10,6 +10,7 @@
 #include "../geodesic/reference.h"
 #include "machines/machine_json.h"
 #include "postproc/block.h"
+#include "postproc/deviation.h"
 #include "postproc/joint_path.h"
 #include "postproc/laydown.h"
 #include "postproc/time_law.h"
@@ -95,6 +96,16 @@ ExactCurve exact_curve(const Shape& shape, const CurveState& start, double slip_
         state = follow(shape, state, step_mm, slip_ratio);
     }
     return curve;
+}
+
+/// The stations as a plan.
+inline PlannedFibre planned_fibre(const ExactCurve& curve) {
+    PlannedFibre fibre;
+    for (std::size_t i = 0; i < curve.states.size(); ++i) {
+        fibre.push_back({0, static_cast<std::int32_t>(i), curve.states[i].position_mm,
+                         curve.normals[i], curve.states[i].tangent, false});
+    }
+    return fibre;
 }
 
 /// The eye a free length ahead of every station.
