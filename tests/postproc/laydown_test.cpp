@@ -238,35 +238,10 @@ TEST(LayDown, CrossesACreaseAtTheSameAngle) {
     EXPECT_NEAR(laid.path.back().s_mm, 64.0, kFineDeviation_mm);
 }
 
-// Up a meridian of the hourglass, with the straight fibre between the shoulders.
-ExactCurve meridian(double step_mm) {
-    const test::Hourglass shape;
-    ExactCurve curve{step_mm, {}, {}};
-    const auto add = [&](double z, double height_mm) {
-        const Vector3d p(shape.point(height_mm).x(), 0.0, height_mm);
-        const Vector3d n = shape.normal(p);
-        curve.add({Vector3d(p.x(), 0.0, z), n.cross(Vector3d::UnitY())}, n);
-    };
-    const double turn = step_mm / shape.shoulder_mm;
-    const int steps = static_cast<int>(rad_from_deg(30.0) / turn);
-    const auto z_at = [&](int i) { return shape.shoulder_mm * std::sin(i * turn); };
-    for (int i = -steps; i <= 0; ++i) {
-        add(-shape.height_mm + z_at(i), -shape.height_mm + z_at(i));
-    }
-    const int over = static_cast<int>(2.0 * shape.height_mm / step_mm);
-    for (int i = 1; i < over; ++i) {
-        add(-shape.height_mm + i * step_mm, -shape.height_mm);
-    }
-    for (int i = 0; i <= steps; ++i) {
-        add(shape.height_mm + z_at(i), shape.height_mm + z_at(i));
-    }
-    return curve;
-}
-
 TEST(LayDown, BridgesTheHourglassBetweenItsShoulders) {
     constexpr double kStep_mm = 0.25;
     const test::Hourglass shape;
-    const ExactCurve curve = meridian(kStep_mm);
+    const ExactCurve curve = test::meridian(shape, kStep_mm);
     const LaidPath laid = lay(hourglass(), curve);
     EXPECT_EQ(laid.failure, "");
     double gap_mm = 0.0;
@@ -293,8 +268,8 @@ TEST(LayDown, BridgesTheHourglassBetweenItsShoulders) {
 
 // A reach that ends before the far shoulder: the fibre is not seen to touch it.
 TEST(LayDown, WithoutReachDoesNotBridge) {
-    const LaidPath laid =
-        lay(hourglass(), meridian(0.5), RedundancyPolicy::CentralAngle, {.bridge_reach_mm = 15.0});
+    const LaidPath laid = lay(hourglass(), test::meridian({}, 0.5), RedundancyPolicy::CentralAngle,
+                              {.bridge_reach_mm = 15.0});
     for (const LaidAt& at : laid.at) {
         ASSERT_FALSE(at.lifted && at.gap_mm > 1.0);
     }
