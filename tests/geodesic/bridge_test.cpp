@@ -25,8 +25,8 @@ constexpr double kUnseen_rad = 1.2e-4;
 constexpr double kLeaving_mm = 25.0 * kUnseen_rad + kTouch_mm;
 
 const Surface& hourglass() {
-    static const Surface surface = Hourglass{}.surface(1.5);
-    return surface;
+    static const Surface kSurface = Hourglass{}.surface(1.5);
+    return kSurface;
 }
 
 // On the lower shoulder, `angle` from the meridian.

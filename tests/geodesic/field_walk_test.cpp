@@ -26,9 +26,9 @@ Surface torus(double edge_mm) {
 }
 
 const Surface& cylinder() {
-    static const Surface surface = test::frozen(make_cylinder(
+    static const Surface kSurface = test::frozen(make_cylinder(
         {.radius_mm = 50.0, .length_mm = 300.0}, {.edge_mm = 5.0, .irregular = true}));
-    return surface;
+    return kSurface;
 }
 
 // Flat squares of 5 mm over 100 x 100 mm; beyond x = 0 the plate is tilted by `slope`.
@@ -282,14 +282,14 @@ TEST(FieldWalk, ShowsBothSidesOfAFeatureEdge) {
 // Distance to the foot of a random point up to 15 mm off the wall, `way_mm` from the start; the
 // largest of 500.
 double worst_foot_mm(double way_mm) {
-    static const Surface surface = torus(5.0);
+    static const Surface kSurface = torus(5.0);
     const test::ExactTorus shape;
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> height_mm(-15.0, 15.0);
     double worst = 0.0;
     for (int k = 0; k < 500; ++k) {
-        const test::Start start = test::random_start(surface, random);
-        FieldWalker walker(surface, start.at);
+        const test::Start start = test::random_start(kSurface, random);
+        FieldWalker walker(kSurface, start.at);
         const Vector3d there = shape.foot(walker.position_mm() + way_mm * start.direction);
         EXPECT_TRUE(walker.move_under(there + height_mm(random) * shape.normal(there))) << k;
         worst = std::max(worst, (walker.position_mm() - there).norm());

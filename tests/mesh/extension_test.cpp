@@ -26,16 +26,16 @@ std::size_t at(std::int32_t i) {
 }
 
 const Mandrel& pipe_mandrel() {
-    static const Mandrel mandrel =
+    static const Mandrel kMandrel =
         build_mandrel(make_cylinder({.radius_mm = kRadius_mm, .length_mm = kLength_mm},
                                     {.edge_mm = 5.0, .irregular = true}),
                       "cylinder", {.unit_mm = 1.0});
-    return mandrel;
+    return kMandrel;
 }
 
 const Surface& extended_pipe() {
-    static const Surface surface = extended_surface(pipe_mandrel(), kExtension_mm);
-    return surface;
+    static const Surface kSurface = extended_surface(pipe_mandrel(), kExtension_mm);
+    return kSurface;
 }
 
 TriangleSoup soup_of(const Surface& surface) {

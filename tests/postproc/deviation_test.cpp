@@ -32,6 +32,7 @@ PathPoint rolled(const Flat& flat) {
 // n stations `step_mm` apart.
 std::vector<Flat> straight(double heading_rad, double step_mm, int n) {
     std::vector<Flat> line;
+    line.reserve(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) {
         line.push_back({i * step_mm * std::cos(heading_rad), i * step_mm * std::sin(heading_rad),
                         heading_rad});

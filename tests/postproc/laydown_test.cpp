@@ -30,20 +30,20 @@ constexpr double kFine_mm = 0.5;
 constexpr double kFineDeviation_mm = 1e-3;
 
 const Surface& torus() {
-    static const Surface surface = test::frozen(make_torus(
+    static const Surface kSurface = test::frozen(make_torus(
         {.ring_radius_mm = 200.0, .tube_radius_mm = 50.0}, {.edge_mm = 5.0, .irregular = true}));
-    return surface;
+    return kSurface;
 }
 
 const Surface& cylinder() {
-    static const Surface surface =
+    static const Surface kSurface =
         test::made_cylinder(test::ExactCylinder{}.radius_mm, 400.0, 5.0).surface;
-    return surface;
+    return kSurface;
 }
 
 const Surface& hourglass() {
-    static const Surface surface = test::Hourglass{}.surface(1.5);
-    return surface;
+    static const Surface kSurface = test::Hourglass{}.surface(1.5);
+    return kSurface;
 }
 
 // On the outside of the tube, at an angle to the meridian; up to where it is still pressed on.
@@ -192,11 +192,8 @@ struct ExactCone {
 // unfolded surfaces, at the same angle to the ring.
 TEST(LayDown, CrossesACreaseAtTheSameAngle) {
     std::vector<Eigen::Vector2d> profile;
-    for (int i = 0; i < 20; ++i) {
-        profile.emplace_back(60.0, 4.0 * (i - 20));
-    }
-    for (int i = 0; i <= 12; ++i) {
-        profile.emplace_back(60.0 - 2.5 * i, 2.5 * i);
+    for (int i = -20; i <= 12; ++i) {
+        profile.emplace_back(60.0 - 2.5 * std::max(0, i), i < 0 ? 4.0 * i : 2.5 * i);
     }
     const Surface surface = test::frozen(test::revolve(profile, 96));
     const double angle = rad_from_deg(30.0);

@@ -162,10 +162,10 @@ TEST(ReadMotionCsv, RefusesWithFileAndLine) {
 TEST(FirstDifference, NamesTheBlockAndTheAxis) {
     const Motion planned;
     const std::vector<PlannedMotion> table = planned.table();
-    const char letters[] = "CZYXAB";
+    const std::string letters = "CZYXAB";
     for (std::size_t a = 0; a < 6; ++a) {
         Motion other = planned;
-        other.list.nano[9 * 6 + a] += other.list.axes[a].resolution_nano;
+        other.list.nano[other.list.axes.size() * 9 + a] += other.list.axes[a].resolution_nano;
         const MotionDifference difference = other.difference(table);
         EXPECT_EQ(difference.block, 9U);
         EXPECT_EQ(difference.words.substr(0, 5), std::string(1, letters[a]) + " is ");

@@ -28,18 +28,18 @@ constexpr double kHeading_rad = rad_from_deg(50.0);
 constexpr std::int32_t kFirstLine = 10;
 
 const Mandrel& mandrel() {
-    static const Mandrel cylinder = test::made_cylinder(50.0, 300.0, 5.0);
-    return cylinder;
+    static const Mandrel kCylinder = test::made_cylinder(50.0, 300.0, 5.0);
+    return kCylinder;
 }
 
 const Surface& wall() {
-    static const Surface surface = extended_surface(mandrel(), kExtension_mm);
-    return surface;
+    static const Surface kSurface = extended_surface(mandrel(), kExtension_mm);
+    return kSurface;
 }
 
 const RayQuery& cylinder_obstacles() {
-    static const RayQuery query = test::obstacles_of(mandrel(), kExtension_mm);
-    return query;
+    static const RayQuery kQuery = test::obstacles_of(mandrel(), kExtension_mm);
+    return kQuery;
 }
 
 // From (50, 0, -120), at 50 deg to the axis.
@@ -225,8 +225,8 @@ TEST(Verify, SeesSlipBeyondTheFriction) {
 
 // Up the hourglass' meridian: the fibre bridges 1.46 mm.
 TEST(Verify, SeesBridging) {
-    static const test::Hourglass shape;
-    static const Surface surface = shape.surface(1.5);
+    const test::Hourglass shape;
+    const Surface surface = shape.surface(1.5);
     const RayQuery nothing(
         std::vector<TriangleSoup>{test::block({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0})});
     Job job(test::eye_path(test::meridian(shape, 0.5), kFree_mm));
