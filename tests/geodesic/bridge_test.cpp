@@ -14,13 +14,19 @@ using Eigen::Vector3d;
 using test::Hourglass;
 
 // The patches' normals, of fourth order: (1.5 / 25)^4 is 1.3e-5 rad. Over the shoulders' curvature
-// of 0.04 / mm the place of touch is out by 3e-4 mm.
+// of 0.04 / mm the place where the fibre touches is out by 3e-4 mm.
 constexpr double kNormal_rad = 2e-5;
 constexpr double kTouch_mm = 5e-4;
 
+// The wall ahead is looked at every 0.75 mm. Half of that beside its highest place it stands lower
+// by (0.75 / 2)^2 / (2 x 25 mm), 2.8e-3 mm: so far, 1.2e-4 rad over the 24 mm to there, a fibre may
+// point under it before the bridge is seen, which puts off leaving by 25 mm times that.
+constexpr double kUnseen_rad = 1.2e-4;
+constexpr double kLeaving_mm = 25.0 * kUnseen_rad + kTouch_mm;
+
 const Surface& hourglass() {
-    static const Surface surface = Hourglass{}.surface(1.5);
-    return surface;
+    static const Surface kSurface = Hourglass{}.surface(1.5);
+    return kSurface;
 }
 
 // On the lower shoulder, `angle` from the meridian.
@@ -63,10 +69,10 @@ TraceResult taut_path(double angle_deg, double length_mm = 70.0) {
 TEST(BridgeAhead, MeridianTouchesAlongTheCommonTangent) {
     const Hourglass shape;
     const Start start = start_of(-shape.height_mm, 0.0);
-    const auto bridge =
-        bridge_ahead(hourglass(), FieldWalker(hourglass(), start.at),
-                     // Lowered, so that the far shoulder stands over it.
-                     (start.direction - Vector3d(1e-5, 0.0, 0.0)).normalized(), kBridgeReach_mm);
+    const auto bridge = bridge_ahead(
+        hourglass(), FieldWalker(hourglass(), start.at),
+        // Lowered, so that the far shoulder is seen over it.
+        (start.direction - Vector3d(2.0 * kUnseen_rad, 0.0, 0.0)).normalized(), kBridgeReach_mm);
     ASSERT_TRUE(bridge);
     EXPECT_NEAR(bridge->far.position_mm().z(), shape.height_mm, kTouch_mm);
     EXPECT_NEAR(bridge->far.position_mm().x(), shape.line_mm(), 1e-5);
@@ -99,8 +105,8 @@ TEST(TraceTaut, MeridianLeavesAndLandsWhereTheCommonTangentTouches) {
     const TraceResult taut = taut_path(0.0);
     const TautString string = taut_string(taut.path);
     const auto [leaving, landing] = bridge_in(taut.path, string);
-    EXPECT_NEAR(taut.path[leaving].position_mm.z(), -shape.height_mm, kTouch_mm);
-    EXPECT_NEAR(taut.path[landing].position_mm.z(), shape.height_mm, kTouch_mm);
+    EXPECT_NEAR(taut.path[leaving].position_mm.z(), -shape.height_mm, kLeaving_mm);
+    EXPECT_NEAR(taut.path[landing].position_mm.z(), shape.height_mm, kLeaving_mm);
     // theta^2 / 4 of itself for the string that turns by 14 deg (measure.h), and 1e-3 by which the
     // station nearest to the middle may miss it.
     EXPECT_NEAR(string.worst_gap_mm, shape.gap_mm(), 0.016 * shape.gap_mm());
@@ -116,24 +122,29 @@ TEST(TraceTaut, StraightPartIsTangentToTheSurfaceAtBothEnds) {
         const PathPoint& to = taut.path[landing];
         const Vector3d chord = (to.position_mm - from.position_mm).normalized();
         EXPECT_GT((to.position_mm - from.position_mm).norm(), 15.0);
-        EXPECT_NEAR(shape.normal(from.position_mm).dot(chord), 0.0, kNormal_rad) << angle_deg;
+        EXPECT_NEAR(shape.normal(from.position_mm).dot(chord), 0.0, kUnseen_rad) << angle_deg;
         EXPECT_NEAR(shape.normal(to.position_mm).dot(chord), 0.0, kNormal_rad) << angle_deg;
         // It leaves and arrives in its own direction.
-        EXPECT_NEAR(from.tangent.cross(chord).norm(), 0.0, kNormal_rad) << angle_deg;
+        EXPECT_NEAR(from.tangent.cross(chord).norm(), 0.0, kUnseen_rad) << angle_deg;
         EXPECT_NEAR(to.tangent.cross(chord).norm(), 0.0, kNormal_rad) << angle_deg;
     }
 }
 
+// Under a bridge some stations look along the fibre and some along the line below it. That turns
+// aside by the gap times the twist of the wall along the fibre, sin cos of the angle times the
+// difference of curvatures 0.04 + 1 / 63 per mm: 0.026 rad at 20 deg, where the gap is 1.46 mm.
 TEST(TraceTaut, IsContinuousInPlaceAndDirection) {
+    constexpr double kAside_rad = 0.03;
     for (const double angle_deg : {0.0, 20.0, 45.0}) {
         const SurfacePath path = taut_path(angle_deg).path;
+        const TautString string = taut_string(path);
         for (std::size_t i = 1; i < path.size(); ++i) {
             const double ds = path[i].s_mm - path[i - 1].s_mm;
             ASSERT_GE(ds, 0.0);
             ASSERT_LE((path[i].position_mm - path[i - 1].position_mm).norm(), ds + 1e-9);
             // Curvature along the path is at most 0.05 / mm where the fits round the joint off.
             const double turn = path[i].tangent.cross(path[i - 1].tangent).norm();
-            ASSERT_LE(turn, 0.06 * ds + 1e-3) << angle_deg << " " << i;
+            ASSERT_LE(turn, 0.06 * ds + (string.gap_mm[i] > 0.0 ? kAside_rad : 1e-3)) << i;
         }
     }
 }

@@ -67,23 +67,5 @@ TEST(FindRims, SmallHolesInTheWallAreNotRims) {
     EXPECT_EQ(rims.holes, 1);
 }
 
-TEST(ExtensionOf, IsAClosedEndedCylinderOutsideTheRim) {
-    Rim rim;
-    rim.centre_mm = {1, 2, 3};
-    rim.axis = Eigen::Vector3d(1, 2, 2) / 3.0;
-    rim.radius_mm = 5.0;
-    const TriangleSoup soup = extension_of(rim, 20.0, 1000);
-    // Lateral area 2 pi r l plus the end disc, to the chord error of 1000 segments (2e-5).
-    EXPECT_NEAR(area_mm2(soup), 2.0 * kPi * 5.0 * 20.0 + kPi * 25.0, 1e-2);
-    for (const auto& [a, b, c] : soup.faces) {
-        const Eigen::Vector3d& p = soup.points_mm[static_cast<std::size_t>(a)];
-        const Eigen::Vector3d& q = soup.points_mm[static_cast<std::size_t>(b)];
-        const Eigen::Vector3d& r = soup.points_mm[static_cast<std::size_t>(c)];
-        const Eigen::Vector3d middle = (p + q + r) / 3.0;
-        const Eigen::Vector3d inside = rim.centre_mm + 10.0 * rim.axis;
-        EXPECT_GT((q - p).cross(r - p).dot(middle - inside), 0.0);
-    }
-}
-
 }  // namespace
 }  // namespace meshwind

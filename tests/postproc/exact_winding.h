@@ -7,9 +7,11 @@
 
 #include <Eigen/Geometry>
 
+#include "../geodesic/hourglass.h"
 #include "../geodesic/reference.h"
 #include "machines/machine_json.h"
 #include "postproc/block.h"
+#include "postproc/deviation.h"
 #include "postproc/joint_path.h"
 #include "postproc/laydown.h"
 #include "postproc/time_law.h"
@@ -95,6 +97,41 @@ ExactCurve exact_curve(const Shape& shape, const CurveState& start, double slip_
         state = follow(shape, state, step_mm, slip_ratio);
     }
     return curve;
+}
+
+/// Up a meridian of the hourglass, with the straight fibre between the shoulders.
+inline ExactCurve meridian(const Hourglass& shape, double step_mm) {
+    ExactCurve curve{step_mm, {}, {}};
+    // The fibre at height z, in the direction that it has where it leaves the wall.
+    const auto add = [&](double z, double wall_z) {
+        const Eigen::Vector3d p(shape.point(wall_z).x(), 0.0, wall_z);
+        const Eigen::Vector3d n = shape.normal(p);
+        curve.add({{p.x(), 0.0, z}, n.cross(Eigen::Vector3d::UnitY())}, n);
+    };
+    const double turn = step_mm / shape.shoulder_mm;
+    const int steps = static_cast<int>(rad_from_deg(30.0) / turn);
+    const auto rise_mm = [&](int i) { return shape.shoulder_mm * std::sin(i * turn); };
+    for (int i = -steps; i <= 0; ++i) {
+        add(-shape.height_mm + rise_mm(i), -shape.height_mm + rise_mm(i));
+    }
+    const int over = static_cast<int>(2.0 * shape.height_mm / step_mm);
+    for (int i = 1; i < over; ++i) {
+        add(-shape.height_mm + i * step_mm, -shape.height_mm);
+    }
+    for (int i = 0; i <= steps; ++i) {
+        add(shape.height_mm + rise_mm(i), shape.height_mm + rise_mm(i));
+    }
+    return curve;
+}
+
+/// The stations as a plan.
+inline PlannedFibre planned_fibre(const ExactCurve& curve) {
+    PlannedFibre fibre;
+    for (std::size_t i = 0; i < curve.states.size(); ++i) {
+        fibre.push_back({0, static_cast<std::int32_t>(i), curve.states[i].position_mm,
+                         curve.normals[i], curve.states[i].tangent, false});
+    }
+    return fibre;
 }
 
 /// The eye a free length ahead of every station.

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 constexpr double kRadius_mm = 40.0;
 
-// A 45 degree helix on a cylinder about Z, as a finished piece; `gap_mm` of bridge under it.
-Piece helix(double length_mm, double gap_mm = 0.0, double slope = 0.0) {
+// A 45 degree helix on a cylinder about Z, as a finished piece.
+Piece helix(double length_mm) {
     Piece piece;
     const double c = std::sqrt(0.5);
     for (double s = 0.0; s <= length_mm + 1e-9; s += 4.0) {
@@ -28,8 +28,8 @@ Piece helix(double length_mm, double gap_mm = 0.0, double slope = 0.0) {
         p.kn_per_mm = 0.5 / kRadius_mm;
         piece.path.push_back(p);
         piece.slip.push_back(0.0);
-        piece.string.gap_mm.push_back(gap_mm);
-        piece.string.slope.push_back(slope);
+        piece.string.gap_mm.push_back(0.0);
+        piece.string.slope.push_back(0.0);
     }
     return piece;
 }
@@ -80,18 +80,26 @@ TEST(EqualFreeLength, KeepsThePreferredLengthWhereNothingIsInTheWay) {
     EXPECT_NEAR(eyes.path[5].binormal.dot(pieces[0].path[5].normal), 0.0, 1e-12);
 }
 
-TEST(EqualFreeLength, TakesStationsUnderABridgeOnTheString) {
-    const std::vector<Piece> pieces{helix(20.0, 0.4, 0.02)};
-    const EyePathResult eyes = equal_free_length(pieces, nothing_near(), rule_of(200.0));
-    for (std::size_t i = 0; i < eyes.path.size(); ++i) {
-        const PathPoint& station = pieces[0].path[i];
-        EXPECT_LT((eyes.path[i].landing_mm - station.position_mm - 0.4 * station.normal).norm(),
-                  1e-12);
-        EXPECT_NEAR(
-            eyes.path[i].tangent.dot(station.normal) / eyes.path[i].tangent.dot(station.tangent),
-            0.02, 1e-12);
+// From the station before a bridge to the one after it the fibre is one straight line.
+TEST(EqualFreeLength, TakesStationsUnderABridgeOnTheStraightFibre) {
+    std::vector<Piece> pieces{helix(20.0)};
+    for (const std::size_t i : {2U, 3U}) {
+        pieces[0].string.gap_mm[i] = 0.4;
     }
-    expect_eye_on_the_free_fibre(eyes.path);
+    const SurfacePath& wall = pieces[0].path;
+    const EyePath path = equal_free_length(pieces, nothing_near(), rule_of(200.0)).path;
+    const Vector3d chord = wall[4].position_mm - wall[1].position_mm;
+    for (const std::size_t i : {2U, 3U}) {
+        const Vector3d place = wall[1].position_mm + static_cast<double>(i - 1) / 3.0 * chord;
+        EXPECT_LT((path[i].landing_mm - place).norm(), 1e-12);
+        EXPECT_LT((path[i].tangent - chord.normalized()).norm(), 1e-12);
+        EXPECT_NEAR(path[i].binormal.dot(wall[i].normal), 0.0, 1e-12);
+    }
+    for (const std::size_t i : {1U, 4U}) {
+        EXPECT_EQ(path[i].landing_mm, wall[i].position_mm);
+        EXPECT_EQ(path[i].tangent, wall[i].tangent);
+    }
+    expect_eye_on_the_free_fibre(path);
 }
 
 TEST(EqualFreeLength, KeepsWithinTheMachinesRange) {
