@@ -14,6 +14,7 @@ namespace meshwind {
 namespace {
 
 constexpr double kExtension_mm = 120.0;
+constexpr double kTable_mm = 60.0;
 
 Plan cover(const Mandrel& mandrel, int candidates) {
     CoverOptions options;
@@ -25,7 +26,7 @@ Plan cover(const Mandrel& mandrel, int candidates) {
     options.candidates = candidates;
     options.rounds = 2;
     options.aimed_candidates = candidates / 4;
-    return plan_cover(mandrel, test::obstacles_of(mandrel, kExtension_mm), options);
+    return plan_cover(mandrel, test::obstacles_of(mandrel, kExtension_mm, kTable_mm), options);
 }
 
 const Mandrel& cylinder() {
@@ -108,10 +109,11 @@ TEST(PlanCover, CoversASmallTee) {
 }
 
 TEST(PlanCover, IsTheSameForAnyNumberOfThreads) {
+    const Mandrel tee = test::small_tee(6.0);
     set_thread_count(1);
-    const Plan one = cover(tee(), 1500);
+    const Plan one = cover(tee, 1500);
     set_thread_count(2);
-    const Plan two = cover(tee(), 1500);
+    const Plan two = cover(tee, 1500);
     set_thread_count(0);
     EXPECT_EQ(one.coverage.fraction, two.coverage.fraction);
     ASSERT_EQ(one.pieces.size(), two.pieces.size());
@@ -138,7 +140,8 @@ TEST(PlanCover, SaysWhyNothingIsAdmissible) {
     options.tow.friction = 0.0;  // nothing can be turned
     options.candidates = 50;
     options.rounds = 0;
-    const Plan plan = plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0), options);
+    const Plan plan =
+        plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0, kTable_mm), options);
     EXPECT_NE(plan.failure.find("no admissible course"), std::string::npos) << plan.failure;
     EXPECT_TRUE(plan.pieces.empty());
 }
@@ -149,7 +152,8 @@ TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
     options.candidates = 200;
     options.rounds = 0;
     options.accept = [](const Piece&) { return Rejection::AxisTravel; };
-    const Plan plan = plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0), options);
+    const Plan plan =
+        plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0, kTable_mm), options);
     const std::string reason = name_of(Rejection::AxisTravel);
     EXPECT_NE(plan.failure.find(reason), std::string::npos) << plan.failure;
     EXPECT_EQ(plan.effort.rejections[static_cast<std::size_t>(Rejection::AxisTravel)],

@@ -55,13 +55,14 @@ inline Mandrel small_tee(double edge_mm) {
                 edge_mm);
 }
 
-/// The mandrel with closed extensions on its rims: what a free fibre may not hit.
-inline RayQuery obstacles_of(const Mandrel& mandrel, double extension_mm) {
+/// The mandrel with closed extensions on its rims: what a free fibre may not hit. Clearances are
+/// tabulated up to `table_mm`, as plans use them.
+inline RayQuery obstacles_of(const Mandrel& mandrel, double extension_mm, double table_mm = 0.0) {
     std::vector<TriangleSoup> parts{mandrel.whole};
     for (const Rim& rim : mandrel.rims) {
         parts.push_back(extension_of(rim, extension_mm));
     }
-    return RayQuery(parts);
+    return RayQuery(parts, table_mm);
 }
 
 inline double wall_area_mm2(const Surface& surface) {
