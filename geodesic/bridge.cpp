@@ -232,7 +232,7 @@ std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& fr
         return std::nullopt;
     }
     Bridge bridge{{}, {}, from};
-    const Vector3d start = from.position_mm();
+    const Vector3d& start = from.position_mm();
     double length_mm = 0.0;
     for (double ahead = 0.0; ahead < contact_mm;) {
         ahead = std::min(ahead + step, contact_mm);
