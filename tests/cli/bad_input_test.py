@@ -294,16 +294,16 @@ class BadInput(program.ProgramTest):
         self.make("cylinder", "--radius", "50", "--length", "200", "--edge", "8")
         out = self.folder / "out"
         world = ["--mandrel", "cylinder.stl", "--machine", "six_axis.json"]
-        helix = program.HELIX
+        helix = (program.SOURCE / "data/programs/pipe_helix.ngc").read_text()
         for text, word in (("", "no M2"), ("\0\1\2", "broken.ngc:1"), ("G91 G93\nG1 C5 F20\nM2\n", "axis"),
-                           (helix.replace("M2\n", ""), ":6"),
-                           (helix.replace("F20", ""), "broken.ngc:6"),
-                           (helix.replace("C-90", "C#5"), "broken.ngc:6"),
-                           (helix.replace("C-90", "C-9e99"), "broken.ngc:6"),
-                           (helix.replace("C-90", "Cnan"), "broken.ngc:6"),
+                           (helix.replace("M2\n", ""), ":8"),
+                           (helix.replace("F20", ""), "broken.ngc:8"),
+                           (helix.replace("C-90", "C#5"), "broken.ngc:8"),
+                           (helix.replace("C-90", "C-9e99"), "broken.ngc:8"),
+                           (helix.replace("C-90", "Cnan"), "broken.ngc:8"),
                            (helix.replace("(tie on", "(no tie"), "--tie-on"),
                            (helix.replace("X50.000", "X90.000"), "tie"),
-                           (helix.replace("tie on at X50.000", "tie on at Xhere"), "broken.ngc:1")):
+                           (helix.replace("tie on at X50.000", "tie on at Xhere"), "broken.ngc:3")):
             with self.subTest(text[:60]):
                 file = self.write("broken.ngc", text.encode())
                 self.refused("verify", file, *world, "-o", out, word=word)

@@ -213,7 +213,8 @@ class Commands(program.ProgramTest):
     def test_verify_of_a_program_from_elsewhere(self):
         """The laid length is that of the helix, pi / 2 * 50 mm / sin 45 deg."""
         self.make("cylinder", "--radius", "50", "--length", "200")
-        file = self.write("helix.ngc", program.HELIX)
+        helix = (program.SOURCE / "data/programs/pipe_helix.ngc").read_text()
+        file = self.write("helix.ngc", helix)
         command = ["verify", file, "--mandrel", "cylinder.stl", "--machine", "six_axis.json"]
         report = json.loads(self.done(*command, "--json", "-o", "out").stdout)
         self.assertEqual(report, json.loads((self.folder / "out/verify.json").read_text()))
@@ -230,18 +231,18 @@ class Commands(program.ProgramTest):
             self.assertAlmostEqual(50 * math.atan2(y, x), s / math.sqrt(2), 2)
 
         # The same a quarter of a turn further and 40 mm on, tied on there by option.
-        shifted = program.HELIX.replace("(tie on", "(no tie").replace("C-70.529", "C-160.529")
+        shifted = helix.replace("(tie on", "(no tie").replace("C-70.529", "C-160.529")
         file.write_text(shifted.replace("Z81.421", "Z121.421"))
         again = json.loads(self.done(*command, "--tie-on", "0,50,-20", "--json").stdout)
         self.assertAlmostEqual(again["verification"]["fibre_length_mm"],
                                report["verification"]["fibre_length_mm"], 3)
 
         # Off the end of the extension.
-        file.write_text(program.HELIX.replace("C-90 Z78.540", "C-900 Z785.40"))
+        file.write_text(helix.replace("C-90 Z78.540", "C-900 Z785.40"))
         result = self.run_program(*command)
         self.assertEqual(result.returncode, 1)
         self.assertIn("check failed: laydown", result.stderr)
-        self.assertIn("line 6", result.stderr)
+        self.assertIn("line 8", result.stderr)
 
 
 if __name__ == "__main__":

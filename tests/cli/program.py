@@ -10,18 +10,6 @@ PROGRAM = ""
 SOURCE = Path()
 
 
-# A helix at 45 degrees on a pipe of 50 mm radius, a quarter of a turn in one block; the eye is
-# 200 mm ahead along the fibre, at (50, 141.421) from the spindle, 141.421 mm further along it.
-HELIX = """(tie on at X50.000 Y0.000 Z-60.000 on the mandrel)
-G21 G90 G94
-G90 G0 A-75.964 B0 C-70.529
-G90 G0 X150 Y0 Z81.421
-G91 G93
-G1 C-90 Z78.540 F20
-M2
-"""
-
-
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="meshwind-test-")

@@ -65,7 +65,7 @@ struct Scene {
     CollisionRule rule;
 };
 
-const TriangleSoup kThinWall = test::block({-50.0, -50.0, -0.05}, {300.0, 50.0, 0.05});
+const TriangleSoup kThinWall = test::box({-50.0, -50.0, -0.05}, {300.0, 50.0, 0.05});
 
 using Steps = std::vector<std::size_t>;
 
@@ -93,7 +93,7 @@ TEST(CheckCollisions, CountsTheClearanceAndNotMore) {
 
 // The spindle carries a small post past the standing head, which is met in the middle of the step.
 TEST(CheckCollisions, FollowsTheTurningMandrel) {
-    const TriangleSoup post = test::block({-101.0, -1.0, -1.0}, {-99.0, 1.0, 1.0});
+    const TriangleSoup post = test::box({-101.0, -1.0, -1.0}, {-99.0, 1.0, 1.0});
     Scene scene({{.c = rad_from_deg(120.0), .x = 100.0}, {.c = rad_from_deg(240.0), .x = 100.0}});
     scene.add_capsule('X', {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 4.0);
     EXPECT_EQ(scene.check(post).head_hits, (Steps{1}));
@@ -104,7 +104,7 @@ TEST(CheckCollisions, FollowsTheTurningMandrel) {
 
 // A long part on the wrist swings its far end through a post while both ends of the step are clear.
 TEST(CheckCollisions, FollowsTheSwingingWrist) {
-    const TriangleSoup post = test::block({299.0, -1.0, -1.0}, {301.0, 1.0, 1.0});
+    const TriangleSoup post = test::box({299.0, -1.0, -1.0}, {301.0, 1.0, 1.0});
     Scene scene({{.x = 100.0, .b = rad_from_deg(-20.0)}, {.x = 100.0, .b = rad_from_deg(20.0)}});
     scene.add_capsule('B', {0.0, 0.0, 0.0}, {220.0, 0.0, 0.0}, 4.0);
     EXPECT_EQ(scene.check(post).head_hits, (Steps{1}));
@@ -117,7 +117,7 @@ TEST(CheckCollisions, SweepsTrianglesAsWell) {
     Scene scene({{.z = -60.0, .x = 100.0}, {.z = 60.0, .x = 100.0}});
     HeadEnvelope::Part part;
     part.link = 'X';
-    part.triangles = test::block({0.0, -5.0, -5.0}, {20.0, 5.0, 5.0});
+    part.triangles = test::box({0.0, -5.0, -5.0}, {20.0, 5.0, 5.0});
     scene.envelope.parts.push_back(part);
     const CollisionReport report = scene.check(kThinWall);
     EXPECT_EQ(report.head_hits, (Steps{1}));

@@ -43,7 +43,7 @@ FreeFibreRule rule_of(double preferred_mm) {
 }
 
 RayQuery nothing_near() {
-    const TriangleSoup far = test::block({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0});
+    const TriangleSoup far = test::box({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0});
     return RayQuery({&far, 1});
 }
 
@@ -114,7 +114,7 @@ TEST(EqualFreeLength, LeavesThePreferredLengthByTheRatesAndComesBack) {
     const PathPoint& station = pieces[0].path[90];
     const Vector3d post = station.position_mm + 200.0 * station.tangent + 12.0 * station.normal;
     const Vector3d half(4.0, 4.0, 4.0);
-    const TriangleSoup soup = test::block(post - half, post + half);
+    const TriangleSoup soup = test::box(post - half, post + half);
     const RayQuery obstacles({&soup, 1});
     const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
     EXPECT_TRUE(eyes.blocked.empty());
@@ -134,7 +134,7 @@ TEST(EqualFreeLength, NamesThePointsWhereNoLengthIsPossible) {
     const PathPoint& station = pieces[0].path[10];
     const Vector3d wall = station.position_mm + 30.0 * station.tangent;
     const Vector3d half(2.0, 2.0, 2.0);
-    const TriangleSoup soup = test::block(wall - half, wall + half);
+    const TriangleSoup soup = test::box(wall - half, wall + half);
     const RayQuery obstacles({&soup, 1});
     const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
     EXPECT_NE(std::find(eyes.blocked.begin(), eyes.blocked.end(), 10U), eyes.blocked.end());
@@ -151,7 +151,7 @@ TEST(EqualFreeLength, StartsAFibreWithALengthOfItsOwn) {
     }
     pieces[1].starts_fibre = true;
     const PathPoint& last = pieces[0].path.back();
-    const TriangleSoup soup = test::block({-500.0, 110.0, -500.0}, {500.0, 120.0, 500.0});
+    const TriangleSoup soup = test::box({-500.0, 110.0, -500.0}, {500.0, 120.0, 500.0});
     ASSERT_LT(last.position_mm.y(), 100.0);
     const RayQuery obstacles({&soup, 1});
     const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));

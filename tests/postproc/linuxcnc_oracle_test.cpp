@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/text_file.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "machines/machine_json.h"
@@ -105,6 +106,10 @@ protected:
     std::string five_axis_ = kSource + "/data/conformance/machine/valid/five_axis_roll_only.json";
     std::filesystem::path folder_;
 };
+
+TEST_F(LinuxCncOracle, ProgramWrittenByHand) {
+    compare(six_axis_, read_text_file(kSource + "/data/programs/pipe_helix.ngc"));
+}
 
 TEST_F(LinuxCncOracle, HelixForwardAndReturn) {
     const EyePath path = test::strokes(70.0, 200.0, 2.0, 600.0, 8);

@@ -228,7 +228,7 @@ TEST(Verify, SeesBridging) {
     const test::Hourglass shape;
     const Surface surface = shape.surface(1.5);
     const RayQuery nothing(
-        std::vector<TriangleSoup>{test::block({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0})});
+        std::vector<TriangleSoup>{test::box({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0})});
     Job job(test::eye_path(test::meridian(shape, 0.5), kFree_mm));
     job.surface = &surface;
     job.obstacles = &nothing;
@@ -262,7 +262,7 @@ TEST(Verify, SeesTheFreeFibreHit) {
     Job job(curve);
     const Vector3d post = curve.states[60].position_mm + 100.0 * curve.states[60].tangent;
     const Vector3d half(1.0, 1.0, 1.0);
-    std::vector<TriangleSoup> parts{mandrel().whole, test::block(post - half, post + half)};
+    std::vector<TriangleSoup> parts{mandrel().whole, test::box(post - half, post + half)};
     const RayQuery obstacles(parts);
     job.obstacles = &obstacles;
     const std::size_t block =

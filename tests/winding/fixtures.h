@@ -12,6 +12,7 @@
 #include "mesh/make_kinds.h"
 #include "mesh/mandrel.h"
 #include "mesh/ray_query.h"
+#include "tests/mesh/shapes.h"
 #include "winding/library.h"
 #include "winding/random.h"
 
@@ -67,19 +68,6 @@ inline RayQuery obstacles_of(const Mandrel& mandrel, double extension_mm, double
 
 inline double wall_area_mm2(const Surface& surface) {
     return area_mm2({surface.position_mm, surface.face});
-}
-
-/// Axis-parallel box, outside in front.
-inline TriangleSoup block(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-    TriangleSoup soup;
-    for (int i = 0; i < 8; ++i) {
-        soup.points_mm.emplace_back(i % 2 == 0 ? low.x() : high.x(),
-                                    i / 2 % 2 == 0 ? low.y() : high.y(),
-                                    i / 4 == 0 ? low.z() : high.z());
-    }
-    soup.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                  {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return soup;
 }
 
 /// Rims that stand apart, for libraries without a surface.

@@ -38,7 +38,7 @@ std::vector<FreeFibreWindow> along_x(const RayQuery& obstacles, const FreeFibreR
 
 TEST(FreeFibreWindows, WithNothingInTheWayIsEverythingUpToThePreferredLength) {
     const auto windows =
-        along_x(query_of(test::block({0.0, 900.0, 0.0}, {1.0, 901.0, 1.0})), ball_rule());
+        along_x(query_of(test::box({0.0, 900.0, 0.0}, {1.0, 901.0, 1.0})), ball_rule());
     ASSERT_EQ(windows.size(), 1U);
     EXPECT_EQ(windows[0].low_mm, 30.0);
     EXPECT_EQ(windows[0].high_mm, 200.0);
@@ -46,7 +46,7 @@ TEST(FreeFibreWindows, WithNothingInTheWayIsEverythingUpToThePreferredLength) {
 
 TEST(FreeFibreWindows, EndsBeforeAWallAcrossTheFibre) {
     const auto windows =
-        along_x(query_of(test::block({150.0, -90.0, -90.0}, {160.0, 90.0, 90.0})), ball_rule());
+        along_x(query_of(test::box({150.0, -90.0, -90.0}, {160.0, 90.0, 90.0})), ball_rule());
     ASSERT_EQ(windows.size(), 1U);
     EXPECT_EQ(windows[0].low_mm, 30.0);
     EXPECT_LE(windows[0].high_mm, 135.0 + kExact_mm);
@@ -55,14 +55,14 @@ TEST(FreeFibreWindows, EndsBeforeAWallAcrossTheFibre) {
 
 TEST(FreeFibreWindows, OfAWallTooNearIsNone) {
     EXPECT_TRUE(
-        along_x(query_of(test::block({25.0, -9.0, -9.0}, {30.0, 9.0, 9.0})), ball_rule()).empty());
+        along_x(query_of(test::box({25.0, -9.0, -9.0}, {30.0, 9.0, 9.0})), ball_rule()).empty());
 }
 
 // Beside a post 8 mm away the ball of 15 mm does not pass; before and behind it does.
 TEST(FreeFibreWindows, AreSeparateBeforeAndBehindAPost) {
     const double reach = std::sqrt(15.0 * 15.0 - 8.0 * 8.0);
     const auto windows =
-        along_x(query_of(test::block({100.0, -30.0, -50.0}, {110.0, -8.0, 50.0})), ball_rule());
+        along_x(query_of(test::box({100.0, -30.0, -50.0}, {110.0, -8.0, 50.0})), ball_rule());
     ASSERT_EQ(windows.size(), 2U);
     EXPECT_LE(windows[0].high_mm, 100.0 - reach + kExact_mm);
     EXPECT_GE(windows[0].high_mm, 100.0 - reach - kSearch_mm);
@@ -74,7 +74,7 @@ TEST(FreeFibreWindows, AreSeparateBeforeAndBehindAPost) {
 TEST(FreeFibreWindows, GoBeyondThePreferredLengthOnlyWhereNothingElseIsPossible) {
     const double reach = std::sqrt(15.0 * 15.0 - 8.0 * 8.0);
     const auto windows =
-        along_x(query_of(test::block({20.0, -30.0, -50.0}, {210.0, -8.0, 50.0})), ball_rule());
+        along_x(query_of(test::box({20.0, -30.0, -50.0}, {210.0, -8.0, 50.0})), ball_rule());
     ASSERT_EQ(windows.size(), 1U);
     EXPECT_GE(windows[0].low_mm, 210.0 + reach - kExact_mm);
     EXPECT_LE(windows[0].low_mm, 210.0 + reach + kSearch_mm);
@@ -106,7 +106,7 @@ TEST(FreeFibreWindows, KeepTheArmClearToo) {
     // Outward of the eye, at x = 300 .. 320 for an eye near x = 100, stands a wall.
     rule.arm = {{100.0, 150.0, 10.0}};
     const auto windows =
-        along_x(query_of(test::block({300.0, -90.0, -90.0}, {301.0, 90.0, 90.0})), rule);
+        along_x(query_of(test::box({300.0, -90.0, -90.0}, {301.0, 90.0, 90.0})), rule);
     ASSERT_EQ(windows.size(), 1U);
     EXPECT_LE(windows[0].high_mm, 300.0 - 15.0 - 150.0 + 0.2);
     EXPECT_GE(windows[0].high_mm, 300.0 - 15.0 - 150.0 - 12.0);
