@@ -12,14 +12,14 @@ root=${self%/*}
 what=${1:-all}
 jobs=$(nproc)
 
-# build_tests FOLDER OPTION...
+# build_tests FOLDER TARGET OPTION...
 build_tests() {
-    local folder=$1
-    shift
+    local folder=$1 target=$2
+    shift 2
     install_packages build test
     configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON "$@"
     echo "building the tests in build/$folder ..." >&2
-    run_logged "$root/build/$folder/build.log" ninja -C "$root/build/$folder"
+    run_logged "$root/build/$folder/build.log" ninja -C "$root/build/$folder" "$target"
 }
 
 # run_tests FOLDER CTEST_OPTION...: an empty selection is a failure, not a success.
@@ -39,16 +39,16 @@ run_tests() {
 
 case $what in
 all)
-    with_lock build_tests tests
+    with_lock build_tests tests all
     run_tests tests
     ;;
 sanitize)
-    with_lock build_tests asan -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
+    with_lock build_tests asan fast_tests -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
         -DMESHWIND_SANITIZE=address,undefined
     run_tests asan -L '^fast$'
     ;;
 fast | slow | oracle | golden)
-    with_lock build_tests tests
+    with_lock build_tests tests all
     run_tests tests -L "^$what\$"
     ;;
 *)
