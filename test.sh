@@ -12,7 +12,7 @@ root=${self%/*}
 what=${1:-all}
 jobs=$(nproc)
 
-# build_tests FOLDER TARGET OPTION...
+# build_tests FOLDER TARGET OPTION...: ./meshwind goes on in the folder "release".
 build_tests() {
     local folder=$1 target=$2
     shift 2
@@ -39,8 +39,8 @@ run_tests() {
 
 case $what in
 all)
-    with_lock build_tests tests all
-    run_tests tests
+    with_lock build_tests release all
+    run_tests release
     ;;
 sanitize)
     with_lock build_tests asan fast_tests -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
@@ -48,8 +48,8 @@ sanitize)
     run_tests asan -L '^fast$'
     ;;
 fast | slow | oracle | golden)
-    with_lock build_tests tests all
-    run_tests tests -L "^$what\$"
+    with_lock build_tests release all
+    run_tests release -L "^$what\$"
     ;;
 *)
     sed -n '2,5s/^# //p' "$self"
