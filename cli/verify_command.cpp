@@ -7,7 +7,6 @@
 #include "cli/report_verify.h"
 #include "core/error.h"
 #include "core/text_file.h"
-#include "machines/kinematics.h"
 #include "postproc/plan_tables.h"
 
 namespace meshwind {
@@ -48,7 +47,6 @@ VerifyOutcome run_verify(const VerifyRequest& request) {
     const auto begun = Clock::now();
     VerifyOutcome outcome;
     outcome.setup = read_setup(request.setup);
-    const SpindleWristInverse inverse(outcome.setup.machine);  // refuses what is not offered
     outcome.program = request.program.filename().string();
     outcome.blocks = outcome.setup.dialect->read(read_text_file(request.program),
                                                  request.program.string(), outcome.setup.machine);

@@ -130,7 +130,7 @@ private:
         tell("import", 0.0);
         setup_ = read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
         refuse_what_is_not_offered(setup_.job, request_.job);
-        inverse_ = std::make_unique<SpindleWristInverse>(setup_.machine);
+        const SpindleWristInverse inverse(setup_.machine);       // refuses what cannot be solved
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         watch_.stage("import");
     }
@@ -223,13 +223,11 @@ private:
         result_.eyes = motion_.eyes;
         result_.path_points = motion_.path.size();
         tell("collisions", 0.5);
-        collisions_ = collisions_of(motion_);
-        std::vector<double> room_mm = collisions_.clearance_mm;
-        for (double& room : room_mm) {
+        room_mm_ = collisions_of(motion_).clearance_mm;
+        for (double& room : room_mm_) {
             room = std::clamp(kUsedRoom * (room - setup_.rule.clearance_mm), kLeastBetweenBlocks_mm,
                               kMostBetweenBlocks_mm);
         }
-        room_mm_ = std::move(room_mm);
         share_.assign(motion_.path.size(), 1.0);
         make_program();
     }
@@ -471,10 +469,8 @@ private:
     WindResult result_;
     Setup& setup_ = result_.setup;
     Stopwatch watch_;
-    std::unique_ptr<SpindleWristInverse> inverse_;
     std::unique_ptr<OutputFolder> folder_;
     Motion motion_;
-    CollisionReport collisions_;
     std::vector<double> room_mm_;  // per point of the motion: how far the eye may be off
     std::vector<double> share_;    // per point: of the tolerance, for blocks
 };

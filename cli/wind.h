@@ -43,7 +43,6 @@ struct WindResult {
     std::string program_file;  ///< name, e.g. "program.ngc"
     double duration_s = 0.0;
     std::vector<BindingLimit> binding;
-    std::vector<std::string> notes;
     Verification verification;  ///< of the program, where it winds one fibre
     std::vector<Check> checks;
     std::map<std::string, double> timing_s;

@@ -268,15 +268,4 @@ AxisLoads axis_loads(const Machine& machine, const JointPath& joints,
     return TimeLaw(machine, joints, step_s).loads();
 }
 
-double largest_take_back_mm(const EyePath& path) {
-    double most = path.empty() ? 0.0 : path.front().s_mm + path.front().free_length_mm;
-    double largest = 0.0;
-    for (const EyePoint& point : path) {
-        const double paid = point.s_mm + point.free_length_mm;
-        most = std::max(most, paid);
-        largest = std::max(largest, most - paid);
-    }
-    return largest;
-}
-
 }  // namespace meshwind

@@ -74,8 +74,4 @@ struct AxisLoads {
 [[nodiscard]] AxisLoads axis_loads(const Machine& machine, const JointPath& joints,
                                    std::span<const double> step_s);
 
-/// Longest fibre that the tensioner must take back: the largest fall of s + L behind its running
-/// maximum, in mm; compare with FibreLimits::take_up_mm.
-[[nodiscard]] double largest_take_back_mm(const EyePath& path);
-
 }  // namespace meshwind

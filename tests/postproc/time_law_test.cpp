@@ -164,16 +164,5 @@ TEST(TimeLaw, RefusesAFibreSpeedOfZero) {
     EXPECT_THROW((void)timed(six_axis(), {}, {.fibre_speed_mm_s = 0.0}), InputError);
 }
 
-TEST(TakeBack, IsTheLargestFallOfThePaidLength) {
-    EyePath path(4);
-    const double paid[] = {200.0, 300.0, 250.0, 280.0};
-    for (std::size_t i = 0; i < 4; ++i) {
-        path[i].s_mm = 10.0 * static_cast<double>(i);
-        path[i].free_length_mm = paid[i] - path[i].s_mm;
-    }
-    EXPECT_DOUBLE_EQ(largest_take_back_mm(path), 50.0);
-    EXPECT_EQ(largest_take_back_mm({}), 0.0);
-}
-
 }  // namespace
 }  // namespace meshwind
