@@ -37,8 +37,10 @@ constexpr double kFlatUnder_rad = 1e-5;
 constexpr double kNear_mm = 1e-4;
 constexpr int kMaxNearing = 60;
 
-// So many steps in a row without a way: a patch folded over itself.
+// A walk with so many steps shorter than this share of the mean edge gets nowhere: a patch folded
+// over itself, or faces around a vertex that all lead to it.
 constexpr int kIdleSteps = 500;
+constexpr double kIdleShare = 1e-6;
 
 constexpr std::size_t kNoEdge = 3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -219,7 +221,7 @@ FieldWalk FieldWalker::walk(const AimField& field, double longest_mm, double lon
             next = heading(field);
         }
         walk.length_mm += h;
-        idle = h > kArrival_mm ? 0 : idle + 1;
+        idle += h > kIdleShare * surface_->mean_edge_mm ? 0 : 1;
         if (edge == kNoEdge) {
             if (entry_ != kNoEdge && bary(uv_, entry_, 1.0) > kOutside) {
                 entry_ = kNoEdge;

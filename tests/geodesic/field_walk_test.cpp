@@ -222,6 +222,22 @@ TEST(FieldWalk, HasArrivedWhereItsEndIsBehind) {
     EXPECT_EQ(walk.length_mm, 0.0);
 }
 
+// All faces around a vertex lead to it: the walk must see that it gets nowhere.
+TEST(FieldWalk, EndsAtAVertexThatTheFieldLeadsTo) {
+    const Surface surface = plate();
+    const Vector3d vertex(10.0, 15.0, 0.0);
+    FieldWalker walker(surface, test::patch_point(surface, {-21.0, -13.0, 0.0}));
+    std::size_t crossed = 0;
+    const FieldWalk walk = walker.walk(
+        [&](const Vector3d& x, const Vector3d&) {
+            return Aim{vertex - x, -1.0, 1e-9, 0.0};
+        },
+        1000.0, 5.0, [&](const PathPoint&) { ++crossed; });
+    EXPECT_NE(walk.stop, FieldStop::Arrived);
+    EXPECT_LT((walker.position_mm() - vertex).norm(), 5.0);
+    EXPECT_LT(crossed, 1000U);
+}
+
 // On the inner half of a torus, along the ring, the wall is hollow: as the place moves on, the eye
 // sinks further under its plane.
 TEST(FieldWalk, StallsWhereTheEndGoesAway) {
