@@ -1,8 +1,11 @@
 /// Which coverage samples the band of a path covers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "geodesic/surface_path.h"
 #include "winding/samples.h"
@@ -28,10 +31,23 @@ public:
                                                       Scratch& scratch) const;
 
 private:
+    static constexpr int kLanes = 8;
+    using Lanes = Eigen::Array<float, kLanes, 1>;
+
+    // Samples that are tested at once, as offsets from the face's centre: in single precision they
+    // are good to a few nm. Lanes left over hold places far off.
+    struct Block {
+        std::array<Lanes, 3> offset_mm;
+        std::array<std::int32_t, kLanes> sample;
+    };
+    [[nodiscard]] std::vector<Block> blocks_of(const std::vector<std::int32_t>& near,
+                                               const Eigen::Vector3d& centre_mm) const;
+
     const CoverageSamples& samples_;
     double half_band_mm_;
     std::vector<std::int32_t> begin_;  // per face: rows into near_
-    std::vector<std::int32_t> near_;   // samples within half a band of the face
+    std::vector<Block> near_;          // samples within half a band of the face, on its side
+    std::vector<Eigen::Vector3d> centre_mm_;  // per face
 };
 
 }  // namespace meshwind

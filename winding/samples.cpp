@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -93,6 +95,23 @@ SurfacePoint dart(const std::vector<double>& cumulative, std::uint64_t seed, std
     return {static_cast<std::int32_t>(face - cumulative.begin()), {1.0 - r, r * (1.0 - v), r * v}};
 }
 
+// Samples that a path meets one after the other then lie side by side in memory.
+void sort_by_face(CoverageSamples& samples) {
+    std::vector<std::size_t> order(samples.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return samples.at[a].face < samples.at[b].face;
+    });
+    CoverageSamples sorted;
+    sorted.area_mm2 = samples.area_mm2;
+    for (const std::size_t i : order) {
+        sorted.at.push_back(samples.at[i]);
+        sorted.position_mm.push_back(samples.position_mm[i]);
+        sorted.normal.push_back(samples.normal[i]);
+    }
+    samples = std::move(sorted);
+}
+
 }  // namespace
 
 CoverageSamples sample_surface(const Surface& surface, double spacing_mm, std::uint64_t seed) {
@@ -116,6 +135,7 @@ CoverageSamples sample_surface(const Surface& surface, double spacing_mm, std::u
         }
     }
     samples.area_mm2 = cumulative.back() / static_cast<double>(samples.size());
+    sort_by_face(samples);
     return samples;
 }
 
