@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +18,49 @@ namespace meshwind {
 namespace {
 
 using nlohmann::json;
+
+const char* name_of(WhatIf::Rule rule) {
+    switch (rule) {
+        case WhatIf::Rule::Friction:
+            return "friction";
+        case WhatIf::Rule::Bridging:
+            return "bridging tolerance";
+        case WhatIf::Rule::Extension:
+            return "extension";
+    }
+    return "";
+}
+
+json what_if_report(const Plan& plan) {
+    json all = json::array();
+    for (const WhatIf& what_if : plan.what_if) {
+        all.push_back({{"rule", name_of(what_if.rule)},
+                       {"factor", what_if.factor},
+                       {"reachable", report_number(what_if.reachable)}});
+    }
+    return all;
+}
+
+json turns_report(const Plan& plan) {
+    json rims = json::array();
+    for (std::size_t rim = 0; rim < plan.turns.size(); ++rim) {
+        rims.push_back({{"rim", rim},
+                        {"turns", plan.turns[rim].turns},
+                        {"extension_mm", report_number(plan.turns[rim].extension_mm)},
+                        {"dwell_deg", report_number(deg_from_rad(plan.turns[rim].dwell_rad))}});
+    }
+    return rims;
+}
+
+json families_report(const Plan& plan) {
+    const auto in_families = std::count_if(plan.family.begin(), plan.family.end(),
+                                           [](std::int32_t family) { return family >= 0; });
+    std::int32_t families = 0;
+    for (const std::int32_t family : plan.family) {
+        families = std::max(families, family + 1);
+    }
+    return {{"families", families}, {"courses", in_families}, {"of_course", plan.family}};
+}
 
 json plan_report(const Plan& plan) {
     json uncovered = json::array();
@@ -43,6 +89,9 @@ json plan_report(const Plan& plan) {
           {"max_layers", plan.coverage.max_layers},
           {"cv", report_number(plan.coverage.cv)}}},
         {"uncovered", uncovered},
+        {"what_if", what_if_report(plan)},
+        {"turns", turns_report(plan)},
+        {"families", families_report(plan)},
         {"library",
          {{"candidates", plan.effort.candidates},
           {"outcomes", refusals},
@@ -124,6 +173,32 @@ std::string percent(double share) {
     return fixed(100.0 * share, 2) + " %";
 }
 
+// Bare wall by reason, the largest first, and what looser rules would reach.
+void print_bare_wall(std::ostream& out, const WindResult& result) {
+    std::map<std::string, double> area_mm2;
+    for (const Uncovered& bare : result.plan.uncovered) {
+        area_mm2[bare.reason] += bare.area_mm2;
+    }
+    std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
+    std::stable_sort(reasons.begin(), reasons.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    for (const auto& [reason, mm2] : reasons) {
+        out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
+    }
+    const Job& job = result.setup.job;
+    for (const WhatIf& what_if : result.plan.what_if) {
+        const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
+            {WhatIf::Rule::Friction, {job.tow.friction, ""}},
+            {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
+            {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
+        const auto [value, unit] = now.at(what_if.rule);
+        out << "  with a" << (what_if.rule == WhatIf::Rule::Extension ? "n " : " ")
+            << name_of(what_if.rule) << " of " << fixed(what_if.factor * value, 2) << unit
+            << " instead of " << fixed(value, 2) << unit << " courses would reach "
+            << percent(what_if.reachable) << " of the wall\n";
+    }
+}
+
 }  // namespace
 
 std::string report_json(const WindResult& result) {
@@ -157,10 +232,7 @@ void print_summary(std::ostream& out, const WindResult& result,
             << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
             << " layers on average, at most " << plan.coverage.max_layers << '\n';
     }
-    for (const Uncovered& bare : plan.uncovered) {
-        out << "  bare: " << fixed(bare.area_mm2 / 100.0, 2) << " cm2 of region " << bare.region
-            << ": " << bare.reason << '\n';
-    }
+    print_bare_wall(out, result);
     print_checks(out, result.checks);
     out << (result.program_written ? "program: " + (folder / result.program_file).string()
                                    : std::string("no program written"))

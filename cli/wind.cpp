@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "cli/digest.h"
 #include "cli/layup_vtu.h"
@@ -53,6 +54,9 @@ constexpr double kUsedRoom = 0.5;
 constexpr double kTighter = 0.5;
 constexpr int kTighterRounds = 4;
 
+// After so many rounds the same pieces still found too coarse are taken for beyond mending.
+constexpr int kRoundsInVain = 1;
+
 // Turns of less than this per mm (radius 100 m) are none.
 constexpr double kStraight_per_mm = 1e-5;
 
@@ -63,9 +67,10 @@ class Stopwatch {
 public:
     explicit Stopwatch(std::map<std::string, double>& timing) : timing_(timing) {}
 
+    // Adds the time since the last call to a stage.
     void stage(const std::string& name) {
         const auto now = std::chrono::steady_clock::now();
-        timing_[name] = std::chrono::duration<double>(now - last_).count();
+        timing_[name] += std::chrono::duration<double>(now - last_).count();
         timing_["total"] = std::chrono::duration<double>(now - first_).count();
         last_ = now;
     }
@@ -110,7 +115,9 @@ public:
         read();
         plan();
         if (result_.plan.failure.empty()) {
-            post_process();
+            if (!holds_) {
+                (void)wind_through(result_.plan.pieces);
+            }
             check();
         } else {
             result_.checks.push_back({"plan", false, result_.plan.failure, {}});
@@ -159,9 +166,10 @@ private:
         return tolerance;
     }
 
-    [[nodiscard]] CollisionReport collisions_of(const Motion& motion) const {
+    [[nodiscard]] CollisionReport collisions_of(const Motion& motion,
+                                                const CollisionRule& rule) const {
         return check_collisions(setup_.machine, setup_.envelope, *setup_.obstacles, motion.path,
-                                motion.joints, setup_.rule);
+                                motion.joints, rule);
     }
 
     // Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason:
@@ -180,7 +188,9 @@ private:
             refuse(motion.path[violation.point], Rejection::AxisTravel);
         }
         if (refused.empty()) {
-            const CollisionReport report = collisions_of(motion);
+            CollisionRule rule = setup_.rule;
+            rule.told_mm = rule.clearance_mm;
+            const CollisionReport report = collisions_of(motion, rule);
             for (const std::size_t point : report.fibre_hits) {
                 refuse(motion.path[point], Rejection::FibreHit);
             }
@@ -206,24 +216,60 @@ private:
             return refused.empty() ? Rejection::None : refused.begin()->second;
         };
         options.refused = [this](std::span<const Piece> pieces) {
-            std::vector<std::size_t> indices;
+            std::vector<std::size_t> refused;
             for (const auto& [piece, reason] : refused_pieces(pieces)) {
-                indices.push_back(piece);
+                refused.push_back(piece);
             }
-            return indices;
+            if (refused.empty()) {
+                refused = wind_through(pieces);
+                holds_ = refused.empty();
+            }
+            return refused;
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         result_.plan = plan_cover(setup_.mandrel, *setup_.obstacles, options);
+        pieces_ = result_.plan.pieces;
         watch_.stage("plan");
+    }
+
+    // The way from a plan to its program, and back: the program is read from its text and wound
+    // again, a few times where its blocks turn out too coarse. Returns the pieces that it does not
+    // lay as they are planned.
+    std::vector<std::size_t> wind_through(std::span<const Piece> pieces) {
+        watch_.stage("plan");
+        pieces_ = pieces;
+        post_process();
+        watch_.stage("post");
+        std::set<std::size_t> refused;
+        const bool one_fibre = std::count_if(pieces.begin(), pieces.end(), [](const Piece& piece) {
+                                   return piece.starts_fibre;
+                               }) == 1;
+        for (int round = 0; one_fibre; ++round) {
+            tell("verify", static_cast<double>(round) / kTighterRounds);
+            read_ = setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
+            result_.verification = verify_program(setup_, read_, planned_fibre(pieces_));
+            std::set<std::size_t> coarse;
+            for (const std::size_t block : result_.verification.coarse_blocks) {
+                coarse.insert(static_cast<std::size_t>(result_.blocks.blocks[block].piece));
+            }
+            const bool in_vain = round > kRoundsInVain && coarse == refused;
+            refused = std::move(coarse);
+            if (round == kTighterRounds || in_vain || !tighten()) {
+                break;
+            }
+            make_program();
+        }
+        watch_.stage("verify");
+        return {refused.begin(), refused.end()};
     }
 
     void post_process() {
         tell("post", 0.0);
-        motion_ = motion_for(result_.plan.pieces);
+        motion_ = motion_for(pieces_);
         result_.eyes = motion_.eyes;
         result_.path_points = motion_.path.size();
         tell("collisions", 0.5);
-        room_mm_ = collisions_of(motion_).clearance_mm;
+        room_mm_ = collisions_of(motion_, setup_.rule).clearance_mm;
         for (double& room : room_mm_) {
             room = std::clamp(kUsedRoom * (room - setup_.rule.clearance_mm), kLeastBetweenBlocks_mm,
                               kMostBetweenBlocks_mm);
@@ -281,7 +327,7 @@ private:
     [[nodiscard]] std::vector<double> turn_room_per_mm() const {
         std::vector<double> room;
         for (const EyePoint& point : motion_.path) {
-            const Piece& piece = result_.plan.pieces[static_cast<std::size_t>(point.piece)];
+            const Piece& piece = pieces_[static_cast<std::size_t>(point.piece)];
             const auto i = static_cast<std::size_t>(point.point);
             const double spare = kUsedFriction * setup_.job.tow.friction - piece.slip[i];
             room.push_back(piece.string.gap_mm[i] > 0.0
@@ -377,30 +423,16 @@ private:
         result_.checks.insert(result_.checks.end(), {slip, bridging, laydown});
     }
 
-    // The program is read back from its text and wound again, a few times where its blocks turn out
-    // too coarse.
     void check_program() {
-        watch_.stage("post");
-        for (int round = 0;; ++round) {
-            tell("verify", static_cast<double>(round) / kTighterRounds);
-            const BlockList read =
-                setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
-            result_.verification = verify_program(setup_, read, planned_fibre(result_.plan.pieces));
-            if (round == kTighterRounds || !tighten()) {
-                check_rounding(read);
-                break;
-            }
-            make_program();
-        }
+        check_rounding();
         const std::vector<Check>& found = result_.verification.checks;
         result_.checks.insert(result_.checks.end(), found.begin(), found.end());
-        watch_.stage("verify");
         write_program();  // with what failed, for --force
     }
 
-    void check_rounding(const BlockList& read) {
-        Check check{"rounding", read.nano == result_.blocks.nano, {}, {}};
-        check.numbers["blocks"] = static_cast<double>(read.blocks.size());
+    void check_rounding() {
+        Check check{"rounding", read_.nano == result_.blocks.nano, {}, {}};
+        check.numbers["blocks"] = static_cast<double>(read_.blocks.size());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";
         }
@@ -470,7 +502,10 @@ private:
     Setup& setup_ = result_.setup;
     Stopwatch watch_;
     std::unique_ptr<OutputFolder> folder_;
+    std::span<const Piece> pieces_;  // of the plan that is wound
+    bool holds_ = false;             // the last plan that was wound is laid as it is planned
     Motion motion_;
+    BlockList read_;               // the program as read back
     std::vector<double> room_mm_;  // per point of the motion: how far the eye may be off
     std::vector<double> share_;    // per point: of the tolerance, for blocks
 };

@@ -226,7 +226,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
     const std::vector<LinkedChunk> chunks = chunks_of(envelope);
     std::vector<char> fibre(path.size(), 0);
     std::vector<char> head(path.size(), 0);
-    std::vector<double> clearance(path.size(), kClearanceCap_mm);
+    std::vector<double> clearance(path.size(), rule.told_mm);
     parallel_for(path.size(), kStepChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const bool checked = i > 0 && !std::binary_search(tied_on.begin(), tied_on.end(), i);
@@ -243,7 +243,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
         }
     });
     CollisionReport report;
-    report.min_clearance_mm = kClearanceCap_mm;
+    report.min_clearance_mm = rule.told_mm;
     for (std::size_t i = 0; i < path.size(); ++i) {
         if (fibre[i] != 0) {
             report.fibre_hits.push_back(i);

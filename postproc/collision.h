@@ -28,10 +28,14 @@ struct HeadEnvelope {
 [[nodiscard]] HeadEnvelope head_envelope(const Machine& machine,
                                          TriangleSoup (*load_mesh)(const std::string& file));
 
+/// Clearances beyond this are of no interest.
+inline constexpr double kClearanceCap_mm = 100.0;
+
 struct CollisionRule {
     double clearance_mm = 5.0;   ///< kept between the head and anything
     FreeFibreRule free_fibre;    ///< of which stand-off and start concern the ray
     double fibre_step_mm = 2.0;  ///< the eye moves no further than this between two fibre rays
+    double told_mm = kClearanceCap_mm;  ///< clearances of the head beyond this are not told apart
 };
 
 /// What the motion touches. A step leads from eye point i - 1 to eye point i.
@@ -39,13 +43,10 @@ struct CollisionReport {
     std::vector<std::size_t> fibre_hits;  ///< steps in which the free fibre meets the mandrel
     std::vector<std::size_t>
         head_hits;                     ///< steps in which the head comes nearer than the clearance
-    std::vector<double> clearance_mm;  ///< of the head at each eye point, up to kClearanceCap_mm
+    std::vector<double> clearance_mm;  ///< of the head at each eye point, up to told_mm
     double min_clearance_mm = 0.0;     ///< least of them
     std::size_t min_clearance_point = 0;
 };
-
-/// Clearances beyond this are not told apart.
-inline constexpr double kClearanceCap_mm = 100.0;
 
 /// Checks every eye point and every step with linear joint interpolation in between.
 /// The head: pieces of the envelope are split, and the step halved, until a ball around each piece,

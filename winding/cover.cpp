@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
+#include "core/text_number.h"
 #include "core/units.h"
+#include "winding/anneal.h"
 #include "winding/coverage.h"
+#include "winding/families.h"
 #include "winding/grow.h"
 #include "winding/one_fibre.h"
 #include "winding/random.h"
@@ -25,11 +32,29 @@ constexpr double kMaxSamples = 6e5;
 // A candidate whose half is longer than this many bounding boxes circles without meeting a rim.
 constexpr double kMaxHalfLengthBoxes = 8.0;
 
-// Times that rejected courses are replaced by others before the plan does without. Most plans need
-// under ten; each round fills only what the one before left open.
-constexpr int kMaxReplacements = 30;
+// Proposals of the annealing, and of each that follows where courses had to be given up.
+constexpr std::int64_t kProposals = 100'000;
+constexpr std::int64_t kMendingProposals = 4'000;
 
-constexpr std::size_t kHardRatio = 2;  // a way is hard when less than one in two can be wound
+// Times that courses are added to join the others, each time some that the machine refuses.
+constexpr int kMaxJoins = 200;
+
+// Of the courses between two nodes so many are proven to know whether the way is open; where fewer
+// lie there than abound, so many.
+constexpr std::size_t kProvenForWay = 6;
+constexpr std::size_t kProvenForScarceWay = 24;
+
+// Courses lead from a node to another in plenty where the library has so many, and so large a share
+// of those tried holds.
+constexpr std::size_t kAbound = 8;
+constexpr double kAboundShare = 0.15;
+
+// Where courses reach less of the wall nothing is planned: what comes of it is no part.
+constexpr double kWorthPlanning = 0.5;
+
+// By how much rules are loosened to see what that would bring, and what is worth telling.
+constexpr double kLooser = 1.5;
+constexpr double kWorthAWord = 0.001;
 
 // Added to the clearance while candidates are judged at a few stations, so that a course still
 // fits when every station is tried.
@@ -38,10 +63,6 @@ constexpr double kHeadMargin_mm = 0.3;
 // Plans that are tried until the machine can wind the whole.
 constexpr int kMaxAttempts = 8;
 
-// Rounds after which a plan of several fibres is narrowed to one although courses in it are still
-// being replaced: narrowing cannot be undone.
-constexpr int kSettling = 20;
-
 // Distance of the stations of a plan: what the machine is told of the curve between them is below
 // its own following error.
 constexpr double kStation_mm = 4.0;
@@ -49,8 +70,6 @@ constexpr double kStation_mm = 4.0;
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
-
-enum class Verdict : char { Unknown, Accepted, Rejected };
 
 class CoverPlanner {
 public:
@@ -83,20 +102,29 @@ public:
             describe_uncovered();
             return std::move(plan_);
         }
-        verdict_.assign(members_.size(), Verdict::Unknown);
+        ask_what_if();
+        if (reachable() < kWorthPlanning) {
+            plan_.failure = hardly_reachable();
+            describe_uncovered();
+            return std::move(plan_);
+        }
+        ground_.emplace(rules_, samples_, members_, seed_of(Stream::Ground, options_.seed));
+        library_size_ = members_.size();
+        allowed_.assign(members_.size(), 1);
         rejection_.assign(members_.size(), Rejection::None);
-        verify_hard_ways();
-        for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-            choose();
-            if (order_.empty()) {
-                plan_.failure = "every course was refused, " + commonest_rejection();
-                describe_uncovered();
-                return std::move(plan_);
-            }
+        find_route();
+        choose();
+        for (int attempt = 0; attempt < kMaxAttempts && !courses_.empty(); ++attempt) {
+            join_to_one_fibre(attempt > 0);
             lay_out();
-            if (!reject_pieces(attempt + 1 == kMaxAttempts)) {
+            if (order_.empty() || !drop_refused_pieces(attempt + 1 == kMaxAttempts)) {
                 break;
             }
+        }
+        if (order_.empty()) {
+            plan_.failure = "every course was refused, " + commonest_rejection();
+            describe_uncovered();
+            return std::move(plan_);
         }
         measure();
         return std::move(plan_);
@@ -129,225 +157,382 @@ private:
                " candidates: " + name_of(static_cast<Refusal>(most - refusals.begin()));
     }
 
+    [[nodiscard]] double reachable() const {
+        return static_cast<double>(
+                   std::count(library_.reached.begin(), library_.reached.end(), 1)) /
+               static_cast<double>(samples_.size());
+    }
+
+    // What courses would reach if one rule were looser, for all that are worth a word.
+    void ask_what_if() {
+        const double now = reachable();
+        for (const WhatIf::Rule rule :
+             {WhatIf::Rule::Friction, WhatIf::Rule::Bridging, WhatIf::Rule::Extension}) {
+            CourseRules rules = rules_;
+            switch (rule) {
+                case WhatIf::Rule::Friction:
+                    rules.tow.friction *= kLooser;
+                    rules.turn.friction *= kLooser;
+                    break;
+                case WhatIf::Rule::Bridging:
+                    rules.tow.bridging_tolerance_mm *= kLooser;
+                    break;
+                case WhatIf::Rule::Extension:
+                    rules.turn.extension_mm *= kLooser;
+                    break;
+            }
+            const double then = reach_with(rules, samples_, library_.reached,
+                                           seed_of(Stream::Otherwise, options_.seed));
+            if (then - now > kWorthAWord) {
+                plan_.what_if.push_back({rule, kLooser, then});
+            }
+        }
+        std::stable_sort(
+            plan_.what_if.begin(), plan_.what_if.end(),
+            [](const WhatIf& a, const WhatIf& b) { return a.reachable > b.reachable; });
+    }
+
+    [[nodiscard]] std::string hardly_reachable() const {
+        return "courses reach only " + fixed(100.0 * reachable(), 1) + " % of the wall, under " +
+               fixed(100.0 * kWorthPlanning, 0) + " % nothing is planned; refused most often, " +
+               commonest_refusal();
+    }
+
     // "123 of 456: the head would come too near"
     [[nodiscard]] std::string commonest_rejection() const {
         const auto& rejections = plan_.effort.rejections;
         const auto most = std::max_element(rejections.begin() + 1, rejections.end());
-        return std::to_string(*most) + " of " + std::to_string(members_.size()) + ": " +
-               name_of(static_cast<Rejection>(most - rejections.begin()));
+        return std::to_string(*most) + " of " + std::to_string(plan_.effort.rejected_courses) +
+               ": " + name_of(static_cast<Rejection>(most - rejections.begin()));
     }
 
-    // The finished course of a member, wound in one direction, with its measured slip.
-    [[nodiscard]] Piece course_of(const Member& member, bool backward) const {
+    // The course of a proven member.
+    [[nodiscard]] FollowedCourse followed(const Member& member) const {
+        FollowedCourse course;
+        course.path = trace_both_ways(rules_, member.candidate);
+        course.string = taut_string(course.path);
+        course.slip =
+            measure_slip(mandrel_.surface, course.path, course.string,
+                         {.friction = options_.tow.friction, .method = TraceMethod::Patches});
+        return course;
+    }
+
+    // A finished course as it is wound.
+    [[nodiscard]] static Piece piece_of(FollowedCourse course, const Member& member,
+                                        bool backward) {
         Piece piece;
         piece.kind = PieceKind::Course;
-        piece.path = trace_both_ways(rules_, member.candidate);
         if (backward) {
-            piece.path = reversed(piece.path);
+            course.path = reversed(course.path);
+            course.string = taut_string(course.path);
+            std::reverse(course.slip.slip.begin(), course.slip.slip.end());
         }
-        piece.string = taut_string(piece.path);
-        SlipMeasure slip =
-            measure_slip(mandrel_.surface, piece.path, piece.string,
-                         {.friction = options_.tow.friction, .method = TraceMethod::Patches});
-        piece.slip = std::move(slip.slip);
-        piece.worst_slip = slip.worst;
+        piece.path = std::move(course.path);
+        piece.string = std::move(course.string);
+        piece.slip = std::move(course.slip.slip);
+        piece.worst_slip = course.slip.worst;
         piece.start_rim = start_of(member, backward).rim;
         piece.end_rim = end_of(member, backward).rim;
+        thin_out(piece, kStation_mm);
         return piece;
     }
 
-    // Checks the slip of a member as measured and asks the machine; direction by direction. None
-    // when it can be wound at least one way, else what the last direction failed for.
-    Rejection verify(Member& member) const {
-        Rejection rejection = Rejection::None;
-        for (const bool backward : {false, true}) {
-            bool& windable = backward ? member.windable_backward : member.windable_forward;
-            if (!windable) {
+    // Follows a course accurately and asks the machine. Where both agree the member becomes what
+    // was found, windable in this direction alone.
+    Rejection prove(PlacedCourse& course) const {
+        const bool backward = course.backward;
+        Member exact;
+        FollowedCourse followed;
+        switch (follow_course(rules_, course.member.candidate, exact, followed)) {
+            case Refusal::None:
+                break;
+            case Refusal::Slips:
+                return Rejection::Slip;
+            default:
+                return Rejection::Path;
+        }
+        if (way_of(exact, backward) != way_of(course.member, backward)) {
+            return Rejection::Path;
+        }
+        if (!is_windable(rules_, followed, backward)) {
+            return Rejection::FreeLength;
+        }
+        if (options_.accept) {
+            const Rejection rejection = options_.accept(piece_of(followed, exact, backward));
+            if (rejection != Rejection::None) {
+                return rejection;
+            }
+        }
+        FootprintFinder::Scratch scratch = footprints_.make_scratch();
+        exact.footprint = footprints_.footprint(followed.path, scratch);
+        exact.windable_forward = !backward;
+        exact.windable_backward = backward;
+        course.member = std::move(exact);
+        course.path = std::move(followed.path);
+        return Rejection::None;
+    }
+
+    static std::pair<std::size_t, std::size_t> way_of(const Member& member, bool backward) {
+        return {departure_node(start_of(member, backward)), arrival_node(end_of(member, backward))};
+    }
+
+    void note_refused(const Member& member, Rejection reason) {
+        const std::lock_guard lock(refused_mutex_);
+        refused_.emplace_back(member.footprint, reason);
+        ++plan_.effort.rejections[static_cast<std::size_t>(reason)];
+        ++plan_.effort.rejected_courses;
+    }
+
+    // Which ways between nodes are open to the machine, and the route that one fibre takes best.
+    // What lies off it is struck off the library.
+    void find_route() {
+        struct Trial {
+            std::pair<std::size_t, std::size_t> nodes;
+            PlacedCourse course;
+            std::int32_t member;
+            Rejection rejection = Rejection::None;
+        };
+        std::vector<Trial> trials;
+        const Ways ways = ways_between_nodes(members_);
+        for (const auto& [nodes, way] : ways) {
+            const std::size_t most =
+                way.windable.size() < kAbound ? kProvenForScarceWay : kProvenForWay;
+            const std::size_t count = std::min(most, way.windable.size());
+            for (std::size_t k = 0; k < count; ++k) {
+                const std::int32_t i = way.windable[k * way.windable.size() / count];
+                const bool backward = way_of(members_[at(i)], false) != nodes;
+                trials.push_back({nodes, {members_[at(i)], {}, backward, false}, i});
+            }
+        }
+        parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
+            tell("route", static_cast<double>(i) / static_cast<double>(trials.size()));
+            trials[i].rejection = prove(trials[i].course);
+        });
+        std::map<std::pair<std::size_t, std::size_t>, KnownWay> known;
+        std::map<std::pair<std::size_t, std::size_t>, std::size_t> tried;
+        for (const Trial& trial : trials) {
+            ++tried[trial.nodes];
+            if (trial.rejection != Rejection::None) {
+                note_refused(members_[at(trial.member)], trial.rejection);
+            } else {
+                known[trial.nodes].proven.push_back({trial.member, trial.course.backward});
+            }
+        }
+        for (auto& [nodes, way] : known) {
+            way.abounds = ways.at(nodes).windable.size() >= kAbound &&
+                          static_cast<double>(way.proven.size()) >=
+                              kAboundShare * static_cast<double>(tried[nodes]);
+        }
+        route_ = best_route(members_, known, 2 * mandrel_.rims.size(), samples_.size());
+        if (known.empty()) {  // nothing holds, wherever it leads
+            const auto& rejections = plan_.effort.rejections;
+            const auto most = std::max_element(rejections.begin() + 1, rejections.end());
+            for (std::size_t i = 0; i < library_size_; ++i) {
+                strike_off(i, static_cast<Rejection>(most - rejections.begin()));
+            }
+            return;
+        }
+        for (const LaidCourse& link : route_.links) {
+            place(link.member, link.backward);
+            courses_.back().fixed = true;
+        }
+        strike_off_what_is_apart();
+    }
+
+    void strike_off_what_is_apart() {
+        for (std::size_t i = 0; i < library_size_; ++i) {
+            Member& member = members_[i];
+            for (const bool backward : {false, true}) {
+                bool& windable = backward ? member.windable_backward : member.windable_forward;
+                const auto [from, to] = way_of(member, backward);
+                windable = windable && route_.holds(from, to);
+            }
+            if (!member.windable_forward && !member.windable_backward) {
+                strike_off(i, Rejection::Apart);
+            }
+        }
+    }
+
+    // The members of the library that cover best and hold.
+    void choose() {
+        const Selection first =
+            select_courses(members_, allowed_, samples_.size(), options_.select, {});
+        for (const std::int32_t i : first.chosen) {
+            place(i, !members_[at(i)].windable_forward);
+        }
+        keep_proven();
+    }
+
+    void place(std::int32_t member, bool backward) {
+        Sketch sketch;
+        FootprintFinder::Scratch scratch = footprints_.make_scratch();
+        (void)draw_sketch(rules_, members_[at(member)].candidate, scratch, sketch);
+        courses_.push_back({members_[at(member)], std::move(sketch.path), backward, false});
+    }
+
+    void keep_proven() {
+        std::vector<Rejection> found(courses_.size());
+        parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
+            tell("prove", static_cast<double>(i) / static_cast<double>(courses_.size()));
+            found[i] = prove(courses_[i]);
+        });
+        std::vector<PlacedCourse> proven;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            if (found[i] == Rejection::None) {
+                proven.push_back(std::move(courses_[i]));
+            } else {
+                note_refused(courses_[i].member, found[i]);
+            }
+        }
+        courses_ = std::move(proven);
+    }
+
+    void anneal_proven(bool mending) {
+        AnnealOptions annealing;
+        annealing.select = options_.select;
+        annealing.seed = seed_of(Stream::Annealing, options_.seed) + (++annealings_ << 32U);
+        annealing.proposals = mending ? kMendingProposals : kProposals;
+        if (mending) {
+            annealing.hot = annealing.cold;
+            annealing.bare_hot = annealing.bare_cold;
+        }
+        annealing.progress = [this](double share) { tell("anneal", share); };
+        annealing.way = [this](std::size_t from, std::size_t to) { return route_.holds(from, to); };
+        annealing.verify = [this](PlacedCourse& course) {
+            const Rejection rejection = prove(course);
+            if (rejection != Rejection::None) {
+                note_refused(course.member, rejection);
+            }
+            return rejection == Rejection::None;
+        };
+        anneal(rules_, *ground_, members_, allowed_, courses_, annealing);
+    }
+
+    // Anneals, adds what it takes to join the courses, and puts them in order.
+    void join_to_one_fibre(bool mending) {
+        anneal_proven(mending);
+        join();
+        put_in_order();
+        keep_main_fibre();
+    }
+
+    // The courses of the plan behind those of the library.
+    void gather() {
+        members_.resize(library_size_);
+        for (const PlacedCourse& course : courses_) {
+            members_.push_back(course.member);
+        }
+    }
+
+    // Adds proven members of the library until as many courses arrive as depart, wherever there is
+    // a way.
+    void join() {
+        for (int attempt = 0; attempt < kMaxJoins; ++attempt) {
+            gather();
+            std::vector<char> allowed = allowed_;
+            allowed.resize(members_.size(), 0);
+            Selection selection;
+            selection.layers = layers_of(courses_);
+            for (std::size_t i = library_size_; i < members_.size(); ++i) {
+                selection.chosen.push_back(static_cast<std::int32_t>(i));
+            }
+            const std::vector<LaidCourse> laid = balance_courses(
+                members_, allowed, mandrel_.rims.size(), options_.select, selection);
+            if (take_proven(laid)) {
+                return;
+            }
+        }
+    }
+
+    // The courses become what is laid, if all that is new holds; else what does not is struck off
+    // the library.
+    bool take_proven(const std::vector<LaidCourse>& laid) {
+        std::vector<PlacedCourse> taken;
+        bool all = true;
+        for (const LaidCourse& course : laid) {
+            if (at(course.member) >= library_size_) {
+                taken.push_back(courses_[at(course.member) - library_size_]);
                 continue;
             }
-            Piece piece = course_of(member, backward);
-            thin_out(piece, kStation_mm);
-            if (piece.worst_slip > options_.tow.friction) {
-                rejection = Rejection::Slip;
-            } else if (options_.accept) {
-                rejection = options_.accept(piece);
-            } else {
-                rejection = Rejection::None;
+            Member& member = members_[at(course.member)];
+            bool& windable = course.backward ? member.windable_backward : member.windable_forward;
+            if (!windable) {
+                all = false;  // struck off just before
+                continue;
             }
-            windable = rejection == Rejection::None;
-        }
-        return member.windable_forward || member.windable_backward ? Rejection::None : rejection;
-    }
-
-    void reject(std::size_t member, Rejection reason) {
-        verdict_[member] = Verdict::Rejected;
-        rejection_[member] = reason;
-        members_[member].windable_forward = false;
-        members_[member].windable_backward = false;
-        ++plan_.effort.rejections[static_cast<std::size_t>(reason)];
-        plan_.effort.rejected_courses += reason == Rejection::Apart ? 0 : 1;
-    }
-
-    // Verifies what is chosen and not yet known; false when any of it was rejected.
-    bool verify_chosen() {
-        std::vector<std::int32_t> unknown;
-        for (const std::int32_t i : selection_.chosen) {
-            if (verdict_[at(i)] == Verdict::Unknown) {
-                unknown.push_back(i);
-                verdict_[at(i)] = Verdict::Accepted;  // listed once, even where laid twice
+            place(course.member, course.backward);
+            PlacedCourse placed = std::move(courses_.back());
+            courses_.pop_back();
+            const Rejection rejection = prove(placed);
+            if (rejection == Rejection::None) {
+                taken.push_back(std::move(placed));
+                continue;
+            }
+            all = false;
+            windable = false;
+            if (!member.windable_forward && !member.windable_backward) {
+                strike_off(at(course.member), rejection);
             }
         }
-        return verify_all(unknown);
-    }
-
-    // \pre every member is listed once; false when any was rejected
-    bool verify_all(const std::vector<std::int32_t>& unknown) {
-        std::vector<Rejection> found(unknown.size());
-        parallel_for(unknown.size(), 1, [&](std::size_t begin, std::size_t) {
-            found[begin] = verify(members_[at(unknown[begin])]);
-        });
-        bool all = true;
-        for (std::size_t k = 0; k < unknown.size(); ++k) {
-            verdict_[at(unknown[k])] = Verdict::Accepted;
-            if (found[k] != Rejection::None) {
-                reject(at(unknown[k]), found[k]);
-                all = false;
-            }
+        if (all) {
+            courses_ = std::move(taken);
         }
         return all;
     }
 
-    // Verifies the members of hard ways, where few of those that lie there can be wound: the one
-    // fibre depends on them, so it must be known early which the machine accepts.
-    void verify_hard_ways() {
-        std::vector<std::int32_t> hard;
-        for (const auto& [nodes, way] : ways_between_nodes(members_)) {
-            if (way.windable.size() * kHardRatio < way.lying.size()) {
-                hard.insert(hard.end(), way.windable.begin(), way.windable.end());
-            }
-        }
-        std::sort(hard.begin(), hard.end());
-        hard.erase(std::unique(hard.begin(), hard.end()), hard.end());
-        verify_all(hard);
+    void strike_off(std::size_t member, Rejection reason) {
+        allowed_[member] = 0;
+        rejection_[member] = reason;
+        ++plan_.effort.rejections[static_cast<std::size_t>(reason)];
+        plan_.effort.rejected_courses += reason == Rejection::Apart ? 0 : 1;
     }
 
-    void choose() {
-        std::vector<char> allowed(members_.size(), 1);
-        for (int round = 0; round <= kMaxReplacements; ++round) {
-            tell("choose", static_cast<double>(round) / kMaxReplacements);
-            for (std::size_t i = 0; i < members_.size(); ++i) {
-                allowed[i] = static_cast<char>(
-                    verdict_[i] == Verdict::Accepted ||
-                    (verdict_[i] == Verdict::Unknown && round < kMaxReplacements));
-            }
-            exhausted_ = round == kMaxReplacements;
-            // What was verified stays: the next round only fills the holes that rejections left.
-            std::vector<std::int32_t> kept;
-            for (const std::int32_t i : selection_.chosen) {
-                if (allowed[at(i)] != 0 && std::find(kept.begin(), kept.end(), i) == kept.end()) {
-                    kept.push_back(i);
-                }
-            }
-            selection_ = select_courses(members_, allowed, samples_.size(), options_.select, kept);
-            if (entry_ >= 0 && allowed[at(entry_)] != 0 &&
-                std::find(selection_.chosen.begin(), selection_.chosen.end(), entry_) ==
-                    selection_.chosen.end()) {
-                selection_.chosen.push_back(entry_);
-                for (const std::int32_t sample : members_[at(entry_)].footprint) {
-                    ++selection_.layers[at(sample)];
-                }
-            }
-            laid_ = balance_courses(members_, allowed, mandrel_.rims.size(), options_.select,
-                                    selection_);
-            const bool settled = verify_chosen();
-            if (!settled && round < kSettling) {
-                continue;
-            }
-            order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
-            const bool narrower = fibres_in(order_).size() > 1 && narrow_to_main_fibre();
-            if (settled && !narrower) {
-                break;
-            }
-            if (narrower) {
-                selection_.chosen.clear();  // the choice starts anew among what is left
-            }
+    void put_in_order() {
+        gather();
+        std::vector<LaidCourse> laid;
+        for (std::size_t i = 0; i < courses_.size(); ++i) {
+            laid.push_back({static_cast<std::int32_t>(library_size_ + i), courses_[i].backward});
         }
-        order_ = order_courses(mandrel_.rims, members_, laid_, rules_.turn);
-        keep_main_fibre();
-    }
-
-    // From here on only what the main fibre can be extended by: what no single fibre can reach is
-    // better not chosen at all. False when that excludes nothing.
-    bool narrow_to_main_fibre() {
-        FibreReach reach =
-            reach_of(members_, order_, main_fibre(members_, order_), 2 * mandrel_.rims.size());
-        entry_ = -1;
-        if (!reach.last.empty() && !find_entry(reach.last.front())) {
-            reach.last.clear();
-        }
-        bool narrower = false;
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            Member& member = members_[i];
-            for (const bool backward : {false, true}) {
-                bool& windable = backward ? member.windable_backward : member.windable_forward;
-                const bool held = reach.holds(departure_node(start_of(member, backward)),
-                                              arrival_node(end_of(member, backward)),
-                                              static_cast<std::int32_t>(i) == entry_);
-                narrower = narrower || (windable && !held);
-                windable = windable && held;
-            }
-            if (!member.windable_forward && !member.windable_backward) {
-                if (verdict_[i] != Verdict::Rejected) {
-                    reject(i, Rejection::Apart);
-                }
-            }
-        }
-        return narrower;
-    }
-
-    // The first entry of the last node that the machine accepts in that direction.
-    bool find_entry(const LastNode& last) {
-        for (const std::int32_t i : last.entries) {
-            if (verdict_[at(i)] == Verdict::Unknown) {
-                verify_all({i});
-            }
-            const Member& member = members_[at(i)];
-            const bool backward = arrival_node(end_of(member, true)) == last.node;
-            if (backward ? member.windable_backward : member.windable_forward) {
-                entry_ = i;
-                return true;
-            }
-        }
-        return false;
+        order_ = order_courses(mandrel_.rims, members_, laid, rules_.turn);
     }
 
     void keep_main_fibre() {
         const FibreStretch fibre = main_fibre(members_, order_);
-        plan_.effort.courses_out_of_reach = 0;
-        for (std::size_t i = 0; i < order_.size(); ++i) {
-            if (i < fibre.first || i >= fibre.second) {
-                for (const std::int32_t sample : members_[at(order_[i].course.member)].footprint) {
-                    --selection_.layers[at(sample)];
-                }
-                ++plan_.effort.courses_out_of_reach;
-            }
-        }
+        plan_.effort.courses_out_of_reach =
+            static_cast<int>(order_.size() - (fibre.second - fibre.first));
         order_ = {order_.begin() + static_cast<std::ptrdiff_t>(fibre.first),
                   order_.begin() + static_cast<std::ptrdiff_t>(fibre.second)};
     }
 
-    // Asks the machine about the whole; rejects the courses it refuses, or whose turn it refuses.
-    bool reject_pieces(bool last_attempt) {
+    // Asks the machine about the whole; drops the courses it refuses, or whose turn it refuses.
+    bool drop_refused_pieces(bool last_attempt) {
         if (!options_.refused || last_attempt) {
             return false;
         }
-        const std::vector<std::size_t> refused = options_.refused(plan_.pieces);
-        for (const std::size_t piece : refused) {
+        std::vector<std::size_t> dropped;
+        for (const std::size_t piece : options_.refused(plan_.pieces)) {
             const std::size_t course = piece / 2;  // courses and turns alternate
-            const std::int32_t member = order_[course].course.member;
-            reject(at(member), Rejection::InItsPlace);
+            dropped.push_back(at(order_[course].course.member) - library_size_);
         }
-        return !refused.empty();
+        std::sort(dropped.begin(), dropped.end());
+        dropped.erase(std::unique(dropped.begin(), dropped.end()), dropped.end());
+        for (std::size_t k = dropped.size(); k-- > 0;) {
+            const auto course = courses_.begin() + static_cast<std::ptrdiff_t>(dropped[k]);
+            note_refused(course->member, Rejection::InItsPlace);
+            courses_.erase(course);
+        }
+        return !dropped.empty();
+    }
+
+    [[nodiscard]] std::vector<std::int32_t> layers_of(
+        const std::vector<PlacedCourse>& courses) const {
+        std::vector<std::int32_t> layers(samples_.size(), 0);
+        for (const PlacedCourse& course : courses) {
+            for (const std::int32_t sample : course.member.footprint) {
+                ++layers[at(sample)];
+            }
+        }
+        return layers;
     }
 
     void lay_out() {
@@ -357,12 +542,13 @@ private:
         plan_.worst_slip = 0.0;
         plan_.worst_bridge_mm = 0.0;
         plan_.worst_joint_mm = 0.0;
+        plan_.turns.assign(mandrel_.rims.size(), {});
         const std::vector<OrderedCourse>& order = order_;
         bool fresh = true;
         for (std::size_t i = 0; i < order.size(); ++i) {
             const auto [member, backward] = order[i].course;
-            Piece piece = course_of(members_[at(member)], backward);
-            thin_out(piece, kStation_mm);
+            const Member& course = members_[at(member)];
+            Piece piece = piece_of(followed(course), course, backward);
             piece.starts_fibre = fresh;
             plan_.fibres += fresh ? 1 : 0;
             add_piece(std::move(piece));
@@ -376,8 +562,13 @@ private:
         plan_.courses = static_cast<int>(order.size());
     }
 
-    [[nodiscard]] Piece turn_between(const RimCrossing& from, const RimCrossing& to) const {
+    [[nodiscard]] Piece turn_between(const RimCrossing& from, const RimCrossing& to) {
         Turn turn = make_turn(mandrel_.rims[at(from.rim)], from, to, rules_.turn, kStation_mm);
+        TurnsAtRim& turns = plan_.turns[at(from.rim)];
+        ++turns.turns;
+        turns.dwell_rad += turn.dwell_rad;
+        turns.extension_mm =
+            std::max(turns.extension_mm, turn.run_mm + 0.5 * options_.tow.width_mm);
         Piece piece;
         piece.kind = PieceKind::Transition;
         piece.string.gap_mm.assign(turn.path.size(), 0.0);
@@ -406,25 +597,36 @@ private:
     }
 
     void measure() {
-        plan_.coverage = measure_coverage(selection_.layers);
-        plan_.coverage.reachable =
-            static_cast<double>(std::count(library_.reached.begin(), library_.reached.end(), 1)) /
-            static_cast<double>(samples_.size());
+        layers_.assign(samples_.size(), 0);
+        for (const OrderedCourse& laid : order_) {
+            for (const std::int32_t sample : members_[at(laid.course.member)].footprint) {
+                library_.reached[at(sample)] = 1;
+                ++layers_[at(sample)];
+            }
+        }
+        plan_.coverage = measure_coverage(layers_);
+        plan_.coverage.reachable = reachable();
         describe_uncovered();
-        plan_.face_layers = layers_per_face(mandrel_.surface, samples_, selection_.layers);
+        plan_.face_layers = layers_per_face(mandrel_.surface, samples_, layers_);
         plan_.face_angle_rad = angle_per_face(mandrel_.surface, plan_.pieces);
+        std::vector<const SurfacePath*> courses;
+        for (const Piece& piece : plan_.pieces) {
+            if (piece.kind == PieceKind::Course) {
+                courses.push_back(&piece.path);
+            }
+        }
+        plan_.family = families_of(courses, options_.tow.width_mm);
     }
 
     void describe_uncovered() {
-        selection_.layers.resize(samples_.size(), 0);
-        for (std::size_t i = 0; exhausted_ && i < verdict_.size(); ++i) {
-            if (verdict_[i] == Verdict::Unknown) {
-                rejection_[i] = Rejection::Unchecked;
-                ++plan_.effort.rejections[static_cast<std::size_t>(Rejection::Unchecked)];
-            }
+        layers_.resize(samples_.size(), 0);
+        members_.resize(rejection_.size());
+        for (auto& [footprint, reason] : refused_) {
+            members_.emplace_back().footprint = std::move(footprint);
+            rejection_.push_back(reason);
         }
-        plan_.uncovered =
-            uncovered_wall(mandrel_.surface, samples_, library_, rejection_, selection_.layers);
+        refused_.clear();
+        plan_.uncovered = uncovered_wall(mandrel_.surface, samples_, library_, rejection_, layers_);
     }
 
     const Mandrel& mandrel_;
@@ -433,15 +635,19 @@ private:
     FootprintFinder footprints_;
     CourseRules rules_;
     Library library_;
-    std::vector<Member>& members_ = library_.members;
-    std::vector<Verdict> verdict_;
-    std::vector<Rejection> rejection_;  // per member: why it was rejected
-    bool exhausted_ = false;            // the last choice took only what was verified before
-    Selection selection_;
-    std::vector<LaidCourse> laid_;
-    std::vector<OrderedCourse> order_;
-    std::int32_t entry_ =
-        -1;  // the one way into the node where the fibre ends, if that has no way out
+    std::vector<Member>& members_ = library_.members;  // then the courses of the plan
+    std::size_t library_size_ = 0;
+    std::optional<AnnealGround> ground_;
+    std::vector<char> allowed_;          // per member
+    std::vector<Rejection> rejection_;   // per member: why it is not allowed
+    std::vector<PlacedCourse> courses_;  // the plan, not in order
+    FibreRoute route_;
+    std::vector<OrderedCourse> order_;  // of the pool
+    std::vector<std::int32_t> layers_;  // per sample
+    std::uint64_t annealings_ = 0;
+    std::mutex refused_mutex_;
+    std::vector<std::pair<std::vector<std::int32_t>, Rejection>>
+        refused_;  // footprints of courses that did not hold, in any order
     Plan plan_;
 };
 

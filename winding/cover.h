@@ -15,9 +15,9 @@ struct CoverOptions {
     FreeFibreRule free_fibre;
     SelectOptions select;
     std::uint64_t seed = 1;
-    int candidates = 40000;        ///< tried over the whole surface
+    int candidates = 16000;        ///< tried over the whole surface
     int rounds = 3;                ///< of further candidates aimed at what is not reached yet
-    int aimed_candidates = 12000;  ///< in each such round
+    int aimed_candidates = 4000;   ///< in each such round
     int scarce_candidates = 8000;  ///< tried near courses that go where few can be wound
     /// Asked of every course before it enters the plan, in the direction it would be wound: what
     /// the machine says, None where it accepts. Must be pure and thread-safe.

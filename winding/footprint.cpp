@@ -14,10 +14,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kFaceChunk = 256;
+constexpr std::size_t kPatchChunk = 32;
 
-// Cosine between a sample's normal and the face's (60 deg): the wall opposite is never covered.
+// Cosine between the normals of a sample and of the faces about it (60 deg): the wall opposite is
+// never covered. And between those of faces that are taken together (25 deg).
 constexpr double kSameSide = 0.5;
+constexpr double kSameWay = 0.9;
+
+// Between the ends of what is taken for straight (8 deg): half a band bulges by 1 % of it.
+constexpr double kStraight = 0.99;
 
 // Of a lane without a sample: further from any face than a band is wide, mm.
 constexpr float kNowhere = 1e9F;
@@ -31,34 +36,73 @@ std::size_t at(std::int32_t i) {
 FootprintFinder::FootprintFinder(const Surface& surface, const CoverageSamples& samples,
                                  double band_mm)
     : samples_(samples), half_band_mm_(0.5 * band_mm) {
+    const std::vector<Patch> patches = patches_of(surface);
     const NearestPoints index(samples.position_mm);
-    const std::size_t faces = surface.face.size();
-    std::vector<std::vector<Block>> rows(faces);
-    centre_mm_.resize(faces);
-    parallel_for(faces, kFaceChunk, [&](std::size_t first, std::size_t last) {
-        for (std::size_t f = first; f < last; ++f) {
-            const auto& v = surface.face[f];
-            const Vector3d& a = surface.position_mm[at(v[0])];
-            const Vector3d& b = surface.position_mm[at(v[1])];
-            const Vector3d& c = surface.position_mm[at(v[2])];
-            const Vector3d normal = (b - a).cross(c - a).normalized();
-            centre_mm_[f] = (a + b + c) / 3.0;
-            const double reach = std::sqrt(std::max({(a - centre_mm_[f]).squaredNorm(),
-                                                     (b - centre_mm_[f]).squaredNorm(),
-                                                     (c - centre_mm_[f]).squaredNorm()}));
-            std::vector<std::int32_t> near = index.within(centre_mm_[f], reach + half_band_mm_);
+    std::vector<std::vector<Block>> rows(patches.size());
+    centre_mm_.resize(patches.size());
+    parallel_for(patches.size(), kPatchChunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t p = first; p < last; ++p) {
+            centre_mm_[p] = patches[p].centre_mm;
+            double reach = 0.0;
+            for (const std::int32_t face : patches[p].faces) {
+                for (const std::int32_t v : surface.face[at(face)]) {
+                    reach = std::max(reach, (surface.position_mm[at(v)] - centre_mm_[p]).norm());
+                }
+            }
+            std::vector<std::int32_t> near = index.within(centre_mm_[p], reach + half_band_mm_);
             std::erase_if(near, [&](std::int32_t sample) {
-                return samples.normal[at(sample)].dot(normal) < kSameSide;
+                return samples.normal[at(sample)].dot(patches[p].normal) < kSameSide;
             });
-            rows[f] = blocks_of(near, centre_mm_[f]);
+            rows[p] = blocks_of(near, centre_mm_[p]);
         }
     });
-    begin_.reserve(faces + 1);
+    patch_of_.resize(surface.face.size());
     begin_.push_back(0);
-    for (const auto& row : rows) {
-        near_.insert(near_.end(), row.begin(), row.end());
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        for (const std::int32_t face : patches[p].faces) {
+            patch_of_[at(face)] = static_cast<std::int32_t>(p);
+        }
+        near_.insert(near_.end(), rows[p].begin(), rows[p].end());
         begin_.push_back(static_cast<std::int32_t>(near_.size()));
     }
+}
+
+// Faces side by side that look about the same way, up to half a band around the first.
+std::vector<FootprintFinder::Patch> FootprintFinder::patches_of(const Surface& surface) const {
+    const auto centre = [&](std::int32_t face) -> Vector3d {
+        const auto& v = surface.face[at(face)];
+        return (surface.position_mm[at(v[0])] + surface.position_mm[at(v[1])] +
+                surface.position_mm[at(v[2])]) /
+               3.0;
+    };
+    const auto normal = [&](std::int32_t face) -> Vector3d {
+        const auto& v = surface.face[at(face)];
+        const Vector3d& a = surface.position_mm[at(v[0])];
+        return (surface.position_mm[at(v[1])] - a)
+            .cross(surface.position_mm[at(v[2])] - a)
+            .normalized();
+    };
+    std::vector<Patch> patches;
+    std::vector<char> taken(surface.face.size(), 0);
+    for (std::int32_t first = 0; at(first) < surface.face.size(); ++first) {
+        if (taken[at(first)] != 0) {
+            continue;
+        }
+        taken[at(first)] = 1;
+        Patch patch{centre(first), normal(first), {first}};
+        for (std::size_t i = 0; i < patch.faces.size(); ++i) {
+            for (const std::int32_t next : surface.neighbour[at(patch.faces[i])]) {
+                if (next != kNoFace && taken[at(next)] == 0 &&
+                    (centre(next) - patch.centre_mm).norm() < half_band_mm_ &&
+                    normal(next).dot(patch.normal) > kSameWay) {
+                    taken[at(next)] = 1;
+                    patch.faces.push_back(next);
+                }
+            }
+        }
+        patches.push_back(std::move(patch));
+    }
+    return patches;
 }
 
 std::vector<FootprintFinder::Block> FootprintFinder::blocks_of(
@@ -90,20 +134,26 @@ std::vector<std::int32_t> FootprintFinder::footprint(const SurfacePath& path,
     std::vector<std::int32_t> found;
     const double again_mm = 4.0 * half_band_mm_;
     const auto half_band = static_cast<float>(half_band_mm_);
-    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < path.size();) {
         const PathPoint& from = path[i];
-        const Vector3d step = path[i + 1].position_mm - from.position_mm;
+        // The segment lies in the face that both ends share: the one its second end was reached in.
+        const std::int32_t patch_index = patch_of_[at(path[++i].at.face)];
+        while (i + 1 < path.size() && patch_of_[at(path[i + 1].at.face)] == patch_index &&
+               path[i + 1].s_mm - from.s_mm < half_band_mm_ &&
+               path[i + 1].normal.dot(from.normal) > kStraight) {
+            ++i;
+        }
+        const Vector3d step = path[i].position_mm - from.position_mm;
         const double length = step.norm();
         if (length <= 0.0) {
             continue;
         }
-        // The segment lies in the face that both ends share: the one its second end was reached in.
-        const std::size_t face = at(path[i + 1].at.face);
+        const std::size_t patch = at(patch_index);
         const Eigen::Vector3f along = (step / length).cast<float>();
         const Eigen::Vector3f up = from.normal.cast<float>();
         const Eigen::Vector3f across = up.cross(along);
-        const Eigen::Vector3f start = (from.position_mm - centre_mm_[face]).cast<float>();
-        for (std::int32_t k = begin_[face]; k < begin_[face + 1]; ++k) {
+        const Eigen::Vector3f start = (from.position_mm - centre_mm_[patch]).cast<float>();
+        for (std::int32_t k = begin_[patch]; k < begin_[patch + 1]; ++k) {
             const Block& block = near_[at(k)];
             const Lanes x = block.offset_mm[0] - start.x();
             const Lanes y = block.offset_mm[1] - start.y();

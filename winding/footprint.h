@@ -34,7 +34,15 @@ private:
     static constexpr int kLanes = 8;
     using Lanes = Eigen::Array<float, kLanes, 1>;
 
-    // Samples that are tested at once, as offsets from the face's centre: in single precision they
+    // Faces that are taken together: their samples stay at hand while a path crosses them.
+    struct Patch {
+        Eigen::Vector3d centre_mm;
+        Eigen::Vector3d normal;
+        std::vector<std::int32_t> faces;
+    };
+    [[nodiscard]] std::vector<Patch> patches_of(const Surface& surface) const;
+
+    // Samples that are tested at once, as offsets from the patch's centre: in single precision they
     // are good to a few nm. Lanes left over hold places far off.
     struct Block {
         std::array<Lanes, 3> offset_mm;
@@ -45,9 +53,10 @@ private:
 
     const CoverageSamples& samples_;
     double half_band_mm_;
-    std::vector<std::int32_t> begin_;  // per face: rows into near_
-    std::vector<Block> near_;          // samples within half a band of the face, on its side
-    std::vector<Eigen::Vector3d> centre_mm_;  // per face
+    std::vector<std::int32_t> patch_of_;      // per face
+    std::vector<Eigen::Vector3d> centre_mm_;  // per patch
+    std::vector<std::int32_t> begin_;         // per patch: rows into near_
+    std::vector<Block> near_;  // samples within half a band of the patch, on its side
 };
 
 }  // namespace meshwind

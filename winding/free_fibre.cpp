@@ -159,6 +159,16 @@ std::vector<FreeFibreWindow> free_fibre_windows(const RayQuery& obstacles,
     return windows;
 }
 
+bool is_free_length(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
+                    const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,
+                    const FreeFibreRule& rule, double length_mm) {
+    const Eigen::Vector3d origin =
+        landing_mm + rule.stand_off_mm * normal + rule.start_mm * tangent;
+    return length_mm >= rule.min_mm && length_mm <= rule.max_mm &&
+           Window(obstacles, landing_mm, tangent, rule).spare(length_mm) >= 0.0 &&
+           rule.start_mm + obstacles.first_hit_mm(origin, tangent, rule.max_mm) >= length_mm;
+}
+
 FreeLengths choose_free_lengths(std::span<const double> s_mm,
                                 std::span<const std::vector<FreeFibreWindow>> windows,
                                 double preferred_mm) {

@@ -50,6 +50,11 @@ struct FreeFibreWindow {
                                                               const Eigen::Vector3d& tangent,
                                                               const FreeFibreRule& rule);
 
+/// True when `length_mm` is one of the lengths that free_fibre_windows() tells: much cheaper.
+[[nodiscard]] bool is_free_length(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
+                                  const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,
+                                  const FreeFibreRule& rule, double length_mm);
+
 /// Most that the free length may grow per fibre laid (no unit): the fibre then runs through the eye
 /// three times as fast as it is laid.
 inline constexpr double kLengtheningRate = 3.0;

@@ -22,6 +22,9 @@ constexpr std::size_t kEstablished = 8;
 constexpr int kScarceRounds = 4;
 constexpr std::size_t kShare = 240;  // of every scarce way in the draw: all count the same
 
+// Candidates that are tried under other rules.
+constexpr std::uint64_t kOtherwise = 3000;
+
 // How far a candidate near a member is turned at most.
 constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
 
@@ -143,8 +146,10 @@ private:
 
     // A candidate through a station of a member, turned a little, with the same or another
     // steering.
-    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) const {
-        const SurfacePath path = trace_both_ways(rules_, member.candidate);
+    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) {
+        Sketch sketch;
+        (void)draw_sketch(rules_, member.candidate, scratch_, sketch);
+        const SurfacePath& path = sketch.path;
         const auto pick = static_cast<std::size_t>(random_unit(stream(Stream::Sampling), draw) *
                                                    static_cast<double>(path.size()));
         const PathPoint& station = path[pick];
@@ -172,6 +177,7 @@ private:
     const CoverageSamples& samples_;
     const CoverOptions& options_;
     Library library_;
+    FootprintFinder::Scratch scratch_ = rules_.footprints.make_scratch();
     std::uint64_t draws_ = 0;
 };
 
@@ -196,6 +202,31 @@ Ways ways_between_nodes(std::span<const Member> members) {
 Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
                      const CoverOptions& options) {
     return Grower(rules, samples, options).run();
+}
+
+double reach_with(const CourseRules& rules, const CoverageSamples& samples,
+                  std::span<const char> reached, std::uint64_t seed) {
+    std::vector<char> now(reached.begin(), reached.end());
+    std::vector<std::size_t> missed;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        if (now[i] == 0) {
+            missed.push_back(i);
+        }
+    }
+    std::vector<Candidate> candidates;
+    for (std::uint64_t draw = 0; !missed.empty() && draw < kOtherwise; ++draw) {
+        const std::size_t sample = missed[random_bits(seed, 3 * draw) % missed.size()];
+        const double share = kSteering[random_bits(seed, 3 * draw + 1) % kSteering.size()];
+        candidates.push_back({samples.at[sample], kPi * random_unit(seed, 3 * draw + 2),
+                              share * rules.tow.friction});
+    }
+    for (const Member& member : build_library(rules, candidates).members) {
+        for (const std::int32_t sample : member.footprint) {
+            now[at(sample)] = 1;
+        }
+    }
+    return static_cast<double>(std::count(now.begin(), now.end(), 1)) /
+           static_cast<double>(std::max<std::size_t>(1, now.size()));
 }
 
 }  // namespace meshwind

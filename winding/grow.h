@@ -37,4 +37,9 @@ using Ways = std::map<std::pair<std::size_t, std::size_t>, Way>;  ///< by (depar
 [[nodiscard]] Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
                                    const CoverOptions& options);
 
+/// Share of the samples that courses reach under other rules: those reached already, and those that
+/// further candidates through the others reach. \param reached per sample
+[[nodiscard]] double reach_with(const CourseRules& rules, const CoverageSamples& samples,
+                                std::span<const char> reached, std::uint64_t seed);
+
 }  // namespace meshwind

@@ -18,6 +18,9 @@ using Eigen::Vector3d;
 // by.
 constexpr double kWindableStep_mm = 5.0;
 
+// And for members of the library, of which most are never laid.
+constexpr double kLibraryStep_mm = 12.0;
+
 // Share of the bridging tolerance that a course may use: stations are some way apart.
 constexpr double kBridgeShare = 0.98;
 
@@ -41,7 +44,8 @@ TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, dou
                        TraceMethod method) {
     const Surface& surface = rules.mandrel.surface;
     const Vector3d direction = side * direction_of(surface, candidate);
-    const Steering steering{side * candidate.slip_ratio, 0.0};
+    const double slip_ratio = candidate.slip_ratio + (side < 0.0 ? candidate.more_behind : 0.0);
+    const Steering steering{side * slip_ratio, 0.0};
     const TraceOptions options{.max_length_mm = rules.max_half_length_mm, .method = method};
     return method == TraceMethod::Walk
                ? trace(surface, candidate.seed, direction, steering, options)
@@ -130,7 +134,8 @@ std::optional<Candidate> seed_on_the_wall(const Run& run, const Candidate& candi
         station += gap[station + 1] <= 0.0 ? 1 : 0;
     }
     const PathPoint& place = run.path[station];
-    return Candidate{place.at, direction_angle(place.normal, place.tangent), candidate.slip_ratio};
+    return Candidate{place.at, direction_angle(place.normal, place.tangent), candidate.slip_ratio,
+                     candidate.more_behind};
 }
 
 // The walk tells most of what is not admissible, the patches then what is.
@@ -145,27 +150,6 @@ Refusal follow_taut(const CourseRules& rules, Member& course, Run& run) {
         refusal = follow(rules, TraceMethod::Patches, course, run);
     }
     return refusal;
-}
-
-// True when a free length can be found at every station tried, and carried from each to the next.
-bool windable(const CourseRules& rules, const SurfacePath& path, const TautString& string) {
-    std::vector<double> s_mm;
-    std::vector<std::vector<FreeFibreWindow>> windows;
-    double next = 0.0;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        if (path[i].s_mm < next && i + 1 < path.size()) {
-            continue;
-        }
-        next = path[i].s_mm + kWindableStep_mm;
-        const StringPoint fibre = string_point(path[i], string.gap_mm[i], string.slope[i]);
-        s_mm.push_back(path[i].s_mm);
-        windows.push_back(free_fibre_windows(rules.obstacles, fibre.position_mm, path[i].normal,
-                                             fibre.tangent, rules.free_fibre));
-        if (windows.back().empty()) {
-            return false;
-        }
-    }
-    return choose_free_lengths(s_mm, windows, rules.free_fibre.preferred_mm).blocked.empty();
 }
 
 }  // namespace
@@ -203,8 +187,43 @@ SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate
                        trace_half(rules, candidate, 1.0, TraceMethod::Patches).path);
 }
 
-Refusal judge(const CourseRules& rules, const Candidate& candidate,
-              FootprintFinder::Scratch& scratch, Member& member) {
+bool is_windable(const CourseRules& rules, const SurfacePath& path, const TautString& string,
+                 double step_mm) {
+    const FreeFibreRule& rule = rules.free_fibre;
+    std::vector<std::size_t> stations;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (stations.empty() || i + 1 == path.size() ||
+            path[i].s_mm >= path[stations.back()].s_mm + step_mm) {
+            stations.push_back(i);
+        }
+    }
+    const auto fibre_at = [&](std::size_t i) {
+        return string_point(path[i], string.gap_mm[i], string.slope[i]);
+    };
+    const bool at_preferred = std::all_of(stations.begin(), stations.end(), [&](std::size_t i) {
+        const StringPoint fibre = fibre_at(i);
+        return is_free_length(rules.obstacles, fibre.position_mm, path[i].normal, fibre.tangent,
+                              rule, rule.preferred_mm);
+    });
+    if (at_preferred) {
+        return true;
+    }
+    std::vector<double> s_mm;
+    std::vector<std::vector<FreeFibreWindow>> windows;
+    for (const std::size_t i : stations) {
+        const StringPoint fibre = fibre_at(i);
+        s_mm.push_back(path[i].s_mm);
+        windows.push_back(free_fibre_windows(rules.obstacles, fibre.position_mm, path[i].normal,
+                                             fibre.tangent, rule));
+        if (windows.back().empty()) {
+            return false;
+        }
+    }
+    return choose_free_lengths(s_mm, windows, rule.preferred_mm).blocked.empty();
+}
+
+Refusal follow_course(const CourseRules& rules, const Candidate& candidate, Member& member,
+                      FollowedCourse& followed) {
     Member course;
     course.candidate = candidate;
     Run run;
@@ -213,20 +232,57 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
         return refusal;
     }
     course.length_mm = run.path.back().s_mm;
-    const SlipOptions limit{.friction = rules.tow.friction, .method = TraceMethod::Patches};
-    if (measure_slip(rules.mandrel.surface, run.path, run.string, limit).worst >
-        rules.tow.friction) {
+    SlipMeasure slip =
+        measure_slip(rules.mandrel.surface, run.path, run.string,
+                     {.friction = rules.tow.friction, .method = TraceMethod::Patches});
+    if (slip.worst > rules.tow.friction) {
         return Refusal::Slips;
     }
-    course.windable_forward = windable(rules, run.path, run.string);
-    const SurfacePath back = reversed(run.path);
-    course.windable_backward = windable(rules, back, taut_string(back));
+    member = std::move(course);
+    followed = {std::move(run.path), std::move(run.string), std::move(slip)};
+    return Refusal::None;
+}
+
+bool is_windable(const CourseRules& rules, const FollowedCourse& course, bool backward) {
+    if (!backward) {
+        return is_windable(rules, course.path, course.string, kWindableStep_mm);
+    }
+    const SurfacePath back = reversed(course.path);
+    return is_windable(rules, back, taut_string(back), kWindableStep_mm);
+}
+
+Refusal judge(const CourseRules& rules, const Candidate& candidate,
+              FootprintFinder::Scratch& scratch, Member& member) {
+    Member course;
+    FollowedCourse followed;
+    const Refusal refusal = follow_course(rules, candidate, course, followed);
+    if (refusal != Refusal::None) {
+        return refusal;
+    }
+    course.windable_forward = is_windable(rules, followed, false);
+    course.windable_backward = is_windable(rules, followed, true);
     if (!course.windable_forward && !course.windable_backward) {
         return Refusal::NotWindable;
     }
-    course.footprint = rules.footprints.footprint(run.path, scratch);
+    course.footprint = rules.footprints.footprint(followed.path, scratch);
     member = std::move(course);
     return Refusal::None;
+}
+
+Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
+                    FootprintFinder::Scratch& scratch, Sketch& sketch) {
+    Member& course = sketch.course;
+    course.candidate = candidate;
+    course.windable_forward = false;
+    course.windable_backward = false;
+    Run run;
+    const Refusal refusal = follow(rules, TraceMethod::Walk, course, run);
+    if (refusal == Refusal::None) {
+        course.length_mm = run.path.back().s_mm;
+        course.footprint = rules.footprints.footprint(run.path, scratch);
+        sketch.path = std::move(run.path);
+    }
+    return refusal;
 }
 
 LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> candidates) {
@@ -236,11 +292,22 @@ LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> c
         LibraryPart& part = parts[begin / kCandidateChunk];
         FootprintFinder::Scratch scratch = rules.footprints.make_scratch();
         for (std::size_t i = begin; i < end; ++i) {
-            Member member;
-            const Refusal refusal = judge(rules, candidates[i], scratch, member);
+            Sketch sketch;
+            Refusal refusal = draw_sketch(rules, candidates[i], scratch, sketch);
+            Member& course = sketch.course;
+            if (refusal == Refusal::None) {
+                const SurfacePath back = reversed(sketch.path);
+                course.windable_forward =
+                    is_windable(rules, sketch.path, taut_string(sketch.path), kLibraryStep_mm);
+                course.windable_backward =
+                    is_windable(rules, back, taut_string(back), kLibraryStep_mm);
+                if (!course.windable_forward && !course.windable_backward) {
+                    refusal = Refusal::NotWindable;
+                }
+            }
             part.outcome.push_back(refusal);
             if (refusal == Refusal::None) {
-                part.members.push_back(std::move(member));
+                part.members.push_back(std::move(course));
             }
         }
     });

@@ -35,7 +35,8 @@ struct Candidate {
     SurfacePoint seed;
     double angle_rad =
         0.0;  ///< direction in the tangent plane, from a fixed but arbitrary reference
-    double slip_ratio = 0.0;  ///< steering where the surface is convex along the path
+    double slip_ratio = 0.0;   ///< steering where the surface is convex along the path
+    double more_behind = 0.0;  ///< added to it from the seed back to end 0
 };
 
 /// An admissible course: from end 0 to end 1, each over a rim.
@@ -67,11 +68,46 @@ struct CourseRules {
 /// The whole path of a candidate from rim to rim; empty when an end reaches no rim.
 [[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate);
 
-/// Judges a candidate. On Refusal::None `member` is filled, on others it is unchanged.
+/// A finished course, from end 0 to end 1.
+struct FollowedCourse {
+    SurfacePath path;
+    TautString string;
+    SlipMeasure slip;
+};
+
+/// Follows a candidate on the curved patches and measures its slip. On Refusal::None `member` holds
+/// its ends and length, and `followed` the course; on others both are unchanged.
+[[nodiscard]] Refusal follow_course(const CourseRules& rules, const Candidate& candidate,
+                                    Member& member, FollowedCourse& followed);
+
+/// True when a free length can be found all along a course, in one direction of travel.
+[[nodiscard]] bool is_windable(const CourseRules& rules, const FollowedCourse& course,
+                               bool backward);
+
+/// Judges a candidate by all rules. On Refusal::None `member` is filled, on others it is unchanged.
 [[nodiscard]] Refusal judge(const CourseRules& rules, const Candidate& candidate,
                             FootprintFinder::Scratch& scratch, Member& member);
 
-/// Candidates judged in parallel. Members in the order of the candidates, whatever the threads.
+/// A candidate as the walk over the facets sees it: a first opinion, many times as fast as judge().
+struct Sketch {
+    Member course;     ///< windable neither way until that is looked into
+    SurfacePath path;  ///< from end 0 to end 1
+};
+
+/// Judges a candidate by the walk: ends, turns and bridges. On Refusal::None `sketch` is filled, on
+/// others it is of no use. Slip is not measured: the candidate is steered within the friction.
+[[nodiscard]] Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
+                                  FootprintFinder::Scratch& scratch, Sketch& sketch);
+
+/// True when a free length can be found about every `step_mm` of a path, and carried from each
+/// place to the next. \param path in the direction of travel \param string over it
+[[nodiscard]] bool is_windable(const CourseRules& rules, const SurfacePath& path,
+                               const TautString& string, double step_mm);
+
+/// Distance of the places at which a sketch is looked into.
+inline constexpr double kSketchStep_mm = 6.0;
+
+/// Candidates sketched in parallel. Members in the order of the candidates, whatever the threads.
 struct LibraryPart {
     std::vector<Member> members;
     std::vector<Refusal> outcome;  ///< per candidate

@@ -9,63 +9,125 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-// Calls `visit(member index, from node, to node)` for every windable direction of every member.
-template <typename Visit>
-void for_each_windable(std::span<const Member> members, const Visit& visit) {
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        for (const bool backward : {false, true}) {
-            const Member& member = members[i];
-            if (backward ? member.windable_backward : member.windable_forward) {
-                visit(static_cast<std::int32_t>(i), departure_node(start_of(member, backward)),
-                      arrival_node(end_of(member, backward)));
+// Routes that are looked into; so many only a mandrel of many rims has.
+constexpr int kMostRoutes = 2000;
+
+using KnownWays = std::map<std::pair<std::size_t, std::size_t>, KnownWay>;
+
+class RouteSearch {
+public:
+    RouteSearch(std::span<const Member> members, const KnownWays& ways, std::size_t nodes,
+                std::size_t samples)
+        : ways_(ways), nodes_(nodes), group_(nodes, -1) {
+        find_groups();
+        covered_.assign(static_cast<std::size_t>(groups_), std::vector<char>(samples, 0));
+        for (const Member& member : members) {
+            for (const bool backward : {false, true}) {
+                const int from = group_[departure_node(start_of(member, backward))];
+                const int to = group_[arrival_node(end_of(member, backward))];
+                if (from < 0 || from != to ||
+                    !(backward ? member.windable_backward : member.windable_forward)) {
+                    continue;
+                }
+                for (const std::int32_t sample : member.footprint) {
+                    covered_[at(from)][at(sample)] = 1;
+                }
             }
         }
     }
-}
 
-// Unmarks nodes from which no course leads to another marked one: the fibre can only end there.
-void forget_dead_ends(std::span<const Member> members, std::vector<char>& round) {
-    if (std::count(round.begin(), round.end(), 1) < 2) {
-        return;
-    }
-    std::vector<char> leads_on(round.size(), 0);
-    for_each_windable(members, [&](std::int32_t, std::size_t from, std::size_t to) {
-        if (from != to && round[to] != 0) {
-            leads_on[from] = 1;
+    FibreRoute run() {
+        for (int group = 0; group < groups_; ++group) {
+            std::vector<int> route{group};
+            extend(route, covered_[at(group)]);
         }
-    });
-    for (std::size_t node = 0; node < round.size(); ++node) {
-        round[node] = static_cast<char>(round[node] != 0 && leads_on[node] != 0);
+        FibreRoute found{std::vector<int>(nodes_, -1), {}};
+        for (std::size_t node = 0; node < nodes_; ++node) {
+            const auto stage = std::find(best_.begin(), best_.end(), group_[node]);
+            if (group_[node] >= 0 && stage != best_.end()) {
+                found.stage[node] = static_cast<int>(stage - best_.begin());
+            }
+        }
+        for (std::size_t i = 0; i + 1 < best_.size(); ++i) {
+            found.links.push_back(*link(best_[i], best_[i + 1]));
+        }
+        return found;
     }
-}
 
-std::vector<LastNode> find_last_node(std::span<const Member> members,
-                                     const std::vector<char>& round) {
-    std::vector<int> turning(round.size(), 0);
-    std::vector<LastNode> found(round.size());
-    for_each_windable(members, [&](std::int32_t i, std::size_t from, std::size_t to) {
-        turning[to] += from == to ? 1 : 0;
-        if (round[from] != 0 && round[to] == 0) {
-            found[to].entries.push_back(i);
+private:
+    // Nodes that lead to each other by ways that abound, and single ones that lead to themselves.
+    void find_groups() {
+        std::vector<char> leads(nodes_ * nodes_, 0);
+        const bool any = std::any_of(ways_.begin(), ways_.end(),
+                                     [](const auto& way) { return way.second.abounds; });
+        for (const auto& [nodes, way] : ways_) {
+            const bool taken = any ? way.abounds : !way.proven.empty();
+            leads[nodes.first * nodes_ + nodes.second] = taken ? 1 : 0;
         }
-    });
-    std::size_t best = round.size();
-    for (std::size_t node = 0; node < round.size(); ++node) {
-        found[node].node = node;
-        if (!found[node].entries.empty() &&
-            (best == round.size() || turning[node] > turning[best])) {
-            best = node;
+        for (std::size_t k = 0; k < nodes_; ++k) {
+            for (std::size_t i = 0; i < nodes_; ++i) {
+                for (std::size_t j = 0; j < nodes_; ++j) {
+                    if (leads[i * nodes_ + k] != 0 && leads[k * nodes_ + j] != 0) {
+                        leads[i * nodes_ + j] = 1;
+                    }
+                }
+            }
+        }
+        for (std::size_t i = 0; i < nodes_; ++i) {
+            if (leads[i * nodes_ + i] == 0 || group_[i] >= 0) {
+                continue;
+            }
+            for (std::size_t j = i; j < nodes_; ++j) {
+                if (leads[i * nodes_ + j] != 0 && leads[j * nodes_ + i] != 0) {
+                    group_[j] = groups_;
+                }
+            }
+            ++groups_;
         }
     }
-    if (best == round.size()) {
-        return {};
+
+    [[nodiscard]] const LaidCourse* link(int from, int to) const {
+        for (const auto& [nodes, way] : ways_) {
+            if (group_[nodes.first] == from && group_[nodes.second] == to && !way.proven.empty()) {
+                return &way.proven.front();
+            }
+        }
+        return nullptr;
     }
-    auto& entries = found[best].entries;
-    std::stable_sort(entries.begin(), entries.end(), [&](std::int32_t a, std::int32_t b) {
-        return members[at(a)].footprint.size() > members[at(b)].footprint.size();
-    });
-    return {found[best]};
-}
+
+    void extend(std::vector<int>& route, const std::vector<char>& covered) {
+        if (++routes_ > kMostRoutes) {
+            return;
+        }
+        const auto worth = std::count(covered.begin(), covered.end(), 1);
+        if (worth > most_) {
+            most_ = worth;
+            best_ = route;
+        }
+        for (int next = 0; next < groups_; ++next) {
+            if (std::find(route.begin(), route.end(), next) != route.end() ||
+                link(route.back(), next) == nullptr) {
+                continue;
+            }
+            std::vector<char> both = covered;
+            for (std::size_t i = 0; i < both.size(); ++i) {
+                both[i] = static_cast<char>(both[i] | covered_[at(next)][i]);
+            }
+            route.push_back(next);
+            extend(route, both);
+            route.pop_back();
+        }
+    }
+
+    const KnownWays& ways_;
+    std::size_t nodes_;
+    std::vector<int> group_;  // per node; -1 where nothing goes round
+    int groups_ = 0;
+    std::vector<std::vector<char>> covered_;  // per group and sample
+    std::vector<int> best_;                   // groups in the order of the route
+    std::int64_t most_ = -1;
+    int routes_ = 0;
+};
 
 }  // namespace
 
@@ -97,24 +159,9 @@ FibreStretch main_fibre(std::span<const Member> members, std::span<const Ordered
     return best;
 }
 
-bool FibreReach::holds(std::size_t from, std::size_t to, bool is_entry) const {
-    if (round[from] != 0 && round[to] != 0) {
-        return true;
-    }
-    return !last.empty() && to == last.front().node && (from == to || is_entry);
-}
-
-FibreReach reach_of(std::span<const Member> members, std::span<const OrderedCourse> order,
-                    const FibreStretch& stretch, std::size_t nodes) {
-    FibreReach reach{std::vector<char>(nodes, 0), {}};
-    for (std::size_t i = stretch.first; i < stretch.second; ++i) {
-        const auto [member, backward] = order[i].course;
-        reach.round[departure_node(start_of(members[at(member)], backward))] = 1;
-        reach.round[arrival_node(end_of(members[at(member)], backward))] = 1;
-    }
-    forget_dead_ends(members, reach.round);
-    reach.last = find_last_node(members, reach.round);
-    return reach;
+FibreRoute best_route(std::span<const Member> members, const KnownWays& ways, std::size_t nodes,
+                      std::size_t samples) {
+    return RouteSearch(members, ways, nodes, samples).run();
 }
 
 }  // namespace meshwind

@@ -1,7 +1,8 @@
-/// What one continuous fibre can reach among the nodes (see balance.h) of a library.
+/// The way that one continuous fibre takes among the nodes (see balance.h) of a library.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,27 +21,30 @@ using FibreStretch = std::pair<std::size_t, std::size_t>;
 [[nodiscard]] FibreStretch main_fibre(std::span<const Member> members,
                                       std::span<const OrderedCourse> order);
 
-/// A node that the fibre can enter but not leave, such as a branch too slim for the head to pass on
-/// the way back: it may still be where the fibre ends.
-struct LastNode {
-    std::size_t node = 0;
-    std::vector<std::int32_t> entries;  ///< members that lead to it, largest footprint first
+/// Stages of nodes between which the fibre goes round and round, one stage after the other; from
+/// each a single course leads on to the next, and none back. A branch too slim for the head to pass
+/// on the way back makes such a stage: the fibre may end there.
+struct FibreRoute {
+    std::vector<int> stage;         ///< per node; -1 where the fibre never comes
+    std::vector<LaidCourse> links;  ///< links[i] leads from stage i to stage i + 1
+
+    /// True when a course may lead from a node to another, as often as wanted.
+    [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
+        return stage[from] >= 0 && stage[from] == stage[to];
+    }
 };
 
-/// The nodes between which the fibre can go round and round, and the one where it may end.
-struct FibreReach {
-    std::vector<char> round;     ///< per node: 1 where the fibre can come and go
-    std::vector<LastNode> last;  ///< none or one: that at which most courses turn round and round
-
-    /// True when a course may be part of the fibre; `entry` is the only one that may enter the last
-    /// node.
-    [[nodiscard]] bool holds(std::size_t from, std::size_t to, bool is_entry) const;
+/// What is known of the way between two nodes.
+struct KnownWay {
+    bool abounds = false;            ///< many courses lead there
+    std::vector<LaidCourse> proven;  ///< courses that hold, the best link first
 };
 
-/// What the fibre of `stretch` reaches, and can be extended to by courses that are windable.
+/// The route whose stages' courses cover most samples. \param ways by (departure, arrival)
 /// \param nodes their number: two for each rim
-[[nodiscard]] FibreReach reach_of(std::span<const Member> members,
-                                  std::span<const OrderedCourse> order, const FibreStretch& stretch,
-                                  std::size_t nodes);
+[[nodiscard]] FibreRoute best_route(
+    std::span<const Member> members,
+    const std::map<std::pair<std::size_t, std::size_t>, KnownWay>& ways, std::size_t nodes,
+    std::size_t samples);
 
 }  // namespace meshwind

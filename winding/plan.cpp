@@ -6,6 +6,8 @@ const char* name_of(Rejection rejection) {
     switch (rejection) {
         case Rejection::None:
             return "accepted";
+        case Rejection::Path:
+            return "followed accurately the course bridges or cannot be turned";
         case Rejection::Slip:
             return "the slip measured on the finished course exceeds the friction";
         case Rejection::FreeLength:

@@ -33,6 +33,7 @@ void thin_out(Piece& piece, double step_mm);
 /// Why a course that the library admits is not laid after all, or not in one direction.
 enum class Rejection : std::uint8_t {
     None,
+    Path,  ///< followed accurately it bridges, or ends where it cannot be turned
     Slip,
     FreeLength,
     AxisTravel,
@@ -42,7 +43,7 @@ enum class Rejection : std::uint8_t {
     Apart,       ///< no single fibre joins it to the others
     Unchecked,   ///< the rounds of the search ended before it was checked
 };
-inline constexpr std::size_t kRejections = 9;
+inline constexpr std::size_t kRejections = 10;
 
 /// Words for a report: "the free fibre hits something", ...
 [[nodiscard]] const char* name_of(Rejection rejection);
@@ -61,6 +62,20 @@ struct Uncovered {
     std::int32_t region = -1;
     double area_mm2 = 0.0;
     std::string reason;
+};
+
+/// A rule that keeps wall bare, loosened: what courses would reach then.
+struct WhatIf {
+    enum class Rule { Friction, Bridging, Extension } rule = Rule::Friction;
+    double factor = 1.0;     ///< on the rule's number
+    double reachable = 0.0;  ///< share of the wall
+};
+
+/// What the turns of a plan ask of one rim's extension.
+struct TurnsAtRim {
+    int turns = 0;
+    double extension_mm = 0.0;  ///< axial length that they and the band need
+    double dwell_rad = 0.0;     ///< wound along hoops, in all
 };
 
 /// What planning took; for reports.
@@ -86,6 +101,9 @@ struct Plan {
     std::vector<Uncovered> uncovered;
     std::vector<double> face_layers;     ///< per face of the surface: mean layers
     std::vector<double> face_angle_rad;  ///< mean angle between fibre and spindle axis, 0..pi/2
+    std::vector<WhatIf> what_if;         ///< where wall is out of reach, the most useful first
+    std::vector<TurnsAtRim> turns;       ///< per rim
+    std::vector<std::int32_t> family;    ///< per course in winding order (families.h)
     PlanEffort effort;
     std::string failure;  ///< empty, or in words why nothing can be wound
 };

@@ -20,7 +20,15 @@ namespace meshwind {
 }
 
 /// Streams of random numbers of one seed, so that one draw never depends on another.
-enum class Stream : std::uint64_t { Sampling = 1, Seeds = 2, Angles = 3, Steerings = 4 };
+enum class Stream : std::uint64_t {
+    Sampling = 1,
+    Seeds = 2,
+    Angles = 3,
+    Steerings = 4,
+    Ground = 5,
+    Annealing = 6,
+    Otherwise = 7
+};
 
 /// The seed of a stream.
 inline std::uint64_t seed_of(Stream stream, std::uint64_t seed) {

@@ -28,7 +28,7 @@ struct Reason {
     }
 };
 
-// Per sample: what became of most members that pass it; None as soon as one could have been laid.
+// Per sample: what became of most members that pass it; None unless more were refused than not.
 std::vector<Rejection> commonest_rejections(std::size_t samples, std::span<const Member> members,
                                             std::span<const Rejection> rejection) {
     std::vector<std::array<std::int32_t, kRejections>> tally(samples);
@@ -44,8 +44,9 @@ std::vector<Rejection> commonest_rejections(std::size_t samples, std::span<const
         if (std::accumulate(counts.begin(), counts.end(), 0) > unchecked) {
             unchecked = 0;
         }
-        const auto most = std::max_element(counts.begin(), counts.end()) - counts.begin();
-        commonest.push_back(counts[0] > 0 ? Rejection::None : static_cast<Rejection>(most));
+        const auto most = std::max_element(counts.begin() + 1, counts.end()) - counts.begin();
+        const std::int32_t refused = std::accumulate(counts.begin() + 1, counts.end(), 0);
+        commonest.push_back(counts[0] >= refused ? Rejection::None : static_cast<Rejection>(most));
     }
     return commonest;
 }

@@ -1,0 +1,74 @@
+/// Making a choice of courses even: each is moved, turned and steered until all lie side by side.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "winding/grow.h"
+#include "winding/library.h"
+#include "winding/samples.h"
+#include "winding/select.h"
+
+namespace meshwind {
+
+/// A course in its place, with the way it is wound.
+struct PlacedCourse {
+    Member member;
+    SurfacePath path;  ///< from end 0 to end 1
+    bool backward = false;
+    bool fixed = false;  ///< stays as it is
+};
+
+struct AnnealOptions {
+    SelectOptions select;
+    std::uint64_t seed = 1;
+    std::int64_t proposals = 100'000;
+    /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It
+    /// falls from `hot` to `cold`, by the same factor in equal numbers of proposals.
+    double hot = 0.01;
+    double cold = 0.0005;
+    /// What a layer short of the target costs, against 1 for a layer too many or too few; it rises
+    /// as the chance falls: first all is made even, then the last holes are closed.
+    double bare_hot = 30.0;
+    double bare_cold = 120.0;
+    /// True where a course may lead from a node (see balance.h) to another; empty: anywhere.
+    std::function<bool(std::size_t from, std::size_t to)> way;
+    /// The last word on a course that is about to be taken, which it may make exact; false where
+    /// it cannot be wound. Must be pure and thread-safe. Empty: a sketch is enough.
+    std::function<bool(PlacedCourse& course)> verify;
+    std::function<void(double share)> progress;
+};
+
+/// What courses are weighed on: samples of its own, others than those that coverage is measured on,
+/// so that what is found to be even was not made so for the very places that are measured.
+struct AnnealGround {
+    /// \param measured samples of the members' footprints
+    AnnealGround(const CourseRules& rules, const CoverageSamples& measured,
+                 std::span<const Member> library, std::uint64_t seed);
+
+    CoverageSamples samples;
+    FootprintFinder footprints;
+    std::vector<std::vector<std::int32_t>> passing;  ///< per sample: members of the library
+    Ways ways;                                       ///< of the library
+};
+
+/// What it took; for reports.
+struct AnnealEffort {
+    std::int64_t proposals = 0;
+    std::int64_t accepted = 0;
+};
+
+/// Simulated annealing over the courses themselves, not over a fixed library: courses are moved
+/// sideways, turned, steered otherwise, replaced, set one band beside another, added and dropped.
+/// The objective is the square of the layers' distance from one more than the target, summed over
+/// the samples, with `bare` for each layer short of the target, the fibre of the turns, and what
+/// keeps the courses from being joined to one fibre. Bare places are mended by members of the
+/// library, too. \param courses changed in place; footprints are those of `rules` again at the end
+/// Proposals are drawn and judged in parallel, in groups; the same for any number of threads.
+AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
+                    std::span<const Member> library, std::span<const char> allowed,
+                    std::vector<PlacedCourse>& courses, const AnnealOptions& options);
+
+}  // namespace meshwind
