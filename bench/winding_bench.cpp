@@ -14,6 +14,7 @@ namespace {
 using namespace meshwind;
 
 constexpr double kExtension_mm = 100.0;
+constexpr double kTable_mm = 100.0;  // clearances are tabulated, as for a plan
 
 struct Scene {
     Scene()
@@ -31,7 +32,7 @@ struct Scene {
         for (const Rim& rim : mandrel.rims) {
             all.push_back(extension_of(rim, kExtension_mm));
         }
-        return RayQuery(all);
+        return RayQuery(all, kTable_mm);
     }
 
     [[nodiscard]] std::vector<Candidate> candidates(std::size_t count) const {

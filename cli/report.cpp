@@ -177,7 +177,8 @@ std::string percent(double share) {
 void print_bare_wall(std::ostream& out, const WindResult& result) {
     std::map<std::string, double> area_mm2;
     for (const Uncovered& bare : result.plan.uncovered) {
-        area_mm2[bare.reason] += bare.area_mm2;
+        // Without how many courses: that differs from region to region.
+        area_mm2[bare.reason.substr(0, bare.reason.find(" (so with"))] += bare.area_mm2;
     }
     std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
     std::stable_sort(reasons.begin(), reasons.end(),

@@ -188,14 +188,18 @@ public:
           joints_(2 * rules.mandrel.rims.size()),
           scratch_(*this) {
         weigh(options.bare_hot);
-        double covered = 0.0;
         const std::unique_ptr<Scratch> scratch = scratch_.take();
         for (PlacedCourse& course : courses) {
             course.member.footprint = ground.footprints.footprint(course.path, scratch->footprint);
             lay(course, 1);
-            covered += static_cast<double>(course.member.footprint.size());
         }
-        typical_ = courses.empty() ? 1.0 : covered / static_cast<double>(courses.size());
+        // Of the library: at first there may be no course at all.
+        double covered = 0.0;
+        for (const Member& member : library) {
+            covered += member.length_mm * rules.tow.width_mm / samples_.area_mm2;
+        }
+        typical_ =
+            std::max(1.0, covered / std::max<double>(1.0, static_cast<double>(library.size())));
         turn_cost_ = kTurnShare * options.select.turn_mm * rules.tow.width_mm / samples_.area_mm2;
     }
 

@@ -22,23 +22,23 @@ struct PlacedCourse {
 };
 
 struct AnnealOptions {
-    SelectOptions select;
+    SelectOptions select{};
     std::uint64_t seed = 1;
     std::int64_t proposals = 100'000;
     /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It
     /// falls from `hot` to `cold`, by the same factor in equal numbers of proposals.
-    double hot = 0.01;
-    double cold = 0.0005;
+    double hot = 0.03;
+    double cold = 0.002;
     /// What a layer short of the target costs, against 1 for a layer too many or too few; it rises
     /// as the chance falls: first all is made even, then the last holes are closed.
     double bare_hot = 30.0;
     double bare_cold = 120.0;
     /// True where a course may lead from a node (see balance.h) to another; empty: anywhere.
-    std::function<bool(std::size_t from, std::size_t to)> way;
+    std::function<bool(std::size_t from, std::size_t to)> way{};
     /// The last word on a course that is about to be taken, which it may make exact; false where
     /// it cannot be wound. Must be pure and thread-safe. Empty: a sketch is enough.
-    std::function<bool(PlacedCourse& course)> verify;
-    std::function<void(double share)> progress;
+    std::function<bool(PlacedCourse& course)> verify{};
+    std::function<void(double share)> progress{};
 };
 
 /// What courses are weighed on: samples of its own, others than those that coverage is measured on,

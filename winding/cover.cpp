@@ -33,21 +33,19 @@ constexpr double kMaxSamples = 6e5;
 constexpr double kMaxHalfLengthBoxes = 8.0;
 
 // Proposals of the annealing, and of each that follows where courses had to be given up.
-constexpr std::int64_t kProposals = 100'000;
+constexpr std::int64_t kProposals = 60'000;
 constexpr std::int64_t kMendingProposals = 4'000;
 
 // Times that courses are added to join the others, each time some that the machine refuses.
 constexpr int kMaxJoins = 200;
 
-// Of the courses between two nodes so many are proven to know whether the way is open; where fewer
-// lie there than abound, so many.
+// Of the courses between two nodes so many are proven to know whether the way is open, and where
+// none of them holds, so many.
 constexpr std::size_t kProvenForWay = 6;
-constexpr std::size_t kProvenForScarceWay = 24;
+constexpr std::size_t kProvenForScarceWay = 48;
 
-// Courses lead from a node to another in plenty where the library has so many, and so large a share
-// of those tried holds.
+// An open way is taken for one with courses in plenty where the library has so many.
 constexpr std::size_t kAbound = 8;
-constexpr double kAboundShare = 0.15;
 
 // Where courses reach less of the wall nothing is planned: what comes of it is no part.
 constexpr double kWorthPlanning = 0.5;
@@ -181,7 +179,7 @@ private:
                     rules.turn.extension_mm *= kLooser;
                     break;
             }
-            const double then = reach_with(rules, samples_, library_.reached,
+            const double then = reach_with(rules, samples_, library_.reached, library_.judging,
                                            seed_of(Stream::Otherwise, options_.seed));
             if (then - now > kWorthAWord) {
                 plan_.what_if.push_back({rule, kLooser, then});
@@ -292,36 +290,32 @@ private:
             std::int32_t member;
             Rejection rejection = Rejection::None;
         };
-        std::vector<Trial> trials;
         const Ways ways = ways_between_nodes(members_);
-        for (const auto& [nodes, way] : ways) {
-            const std::size_t most =
-                way.windable.size() < kAbound ? kProvenForScarceWay : kProvenForWay;
-            const std::size_t count = std::min(most, way.windable.size());
-            for (std::size_t k = 0; k < count; ++k) {
-                const std::int32_t i = way.windable[k * way.windable.size() / count];
-                const bool backward = way_of(members_[at(i)], false) != nodes;
-                trials.push_back({nodes, {members_[at(i)], {}, backward, false}, i});
-            }
-        }
-        parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
-            tell("route", static_cast<double>(i) / static_cast<double>(trials.size()));
-            trials[i].rejection = prove(trials[i].course);
-        });
         std::map<std::pair<std::size_t, std::size_t>, KnownWay> known;
-        std::map<std::pair<std::size_t, std::size_t>, std::size_t> tried;
-        for (const Trial& trial : trials) {
-            ++tried[trial.nodes];
-            if (trial.rejection != Rejection::None) {
-                note_refused(members_[at(trial.member)], trial.rejection);
-            } else {
-                known[trial.nodes].proven.push_back({trial.member, trial.course.backward});
+        for (const std::size_t most : {kProvenForWay, kProvenForScarceWay}) {
+            std::vector<Trial> trials;
+            for (const auto& [nodes, way] : ways) {
+                const std::size_t count = std::min(most, way.windable.size());
+                for (std::size_t k = 0; !known.contains(nodes) && k < count; ++k) {
+                    const std::int32_t i = way.windable[k * way.windable.size() / count];
+                    const bool backward = way_of(members_[at(i)], false) != nodes;
+                    trials.push_back({nodes, {members_[at(i)], {}, backward, false}, i});
+                }
+            }
+            parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
+                tell("route", static_cast<double>(i) / static_cast<double>(trials.size()));
+                trials[i].rejection = prove(trials[i].course);
+            });
+            for (const Trial& trial : trials) {
+                if (trial.rejection != Rejection::None) {
+                    note_refused(members_[at(trial.member)], trial.rejection);
+                } else {
+                    known[trial.nodes].proven.push_back({trial.member, trial.course.backward});
+                }
             }
         }
         for (auto& [nodes, way] : known) {
-            way.abounds = ways.at(nodes).windable.size() >= kAbound &&
-                          static_cast<double>(way.proven.size()) >=
-                              kAboundShare * static_cast<double>(tried[nodes]);
+            way.abounds = ways.at(nodes).windable.size() >= kAbound;
         }
         route_ = best_route(members_, known, 2 * mandrel_.rims.size(), samples_.size());
         if (known.empty()) {  // nothing holds, wherever it leads
@@ -401,7 +395,10 @@ private:
         annealing.verify = [this](PlacedCourse& course) {
             const Rejection rejection = prove(course);
             if (rejection != Rejection::None) {
-                note_refused(course.member, rejection);
+                FootprintFinder::Scratch scratch = footprints_.make_scratch();
+                Member refused;  // on the samples of the plan, not on those of the annealing
+                refused.footprint = footprints_.footprint(course.path, scratch);
+                note_refused(refused, rejection);
             }
             return rejection == Rejection::None;
         };

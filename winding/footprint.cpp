@@ -168,7 +168,7 @@ std::vector<std::int32_t> FootprintFinder::footprint(const SurfacePath& path,
                 continue;
             }
             for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                if (inside[static_cast<Eigen::Index>(lane)] < 0.0F) {
+                if (!(inside[static_cast<Eigen::Index>(lane)] >= 0.0F)) {
                     continue;
                 }
                 const std::int32_t sample = block.sample[lane];

@@ -22,6 +22,11 @@ constexpr std::size_t kEstablished = 8;
 constexpr int kScarceRounds = 4;
 constexpr std::size_t kShare = 240;  // of every scarce way in the draw: all count the same
 
+// Of so many candidates first, this share of the sketches admitted must hold for sketches to be
+// relied on. On tees of fine meshes nine in ten do.
+constexpr std::size_t kFirstCandidates = 2000;
+constexpr double kTrustedShare = 0.7;
+
 // Candidates that are tried under other rules.
 constexpr std::uint64_t kOtherwise = 3000;
 
@@ -74,9 +79,21 @@ private:
         }
     }
 
+    // True when most of what sketches admit holds by all rules.
+    [[nodiscard]] bool sketches_hold(const std::vector<std::int32_t>& seeds) const {
+        std::vector<Candidate> candidates;
+        for (std::size_t i = 0; i < seeds.size(); ++i) {
+            candidates.push_back(candidate_at(seeds[i], i));
+        }
+        const std::size_t sketched =
+            build_library(rules_, candidates, Judging::Sketches).members.size();
+        const std::size_t hold = build_library(rules_, candidates, Judging::Courses).members.size();
+        return static_cast<double>(hold) >= kTrustedShare * static_cast<double>(sketched);
+    }
+
     // Adds the admissible ones to the library; says what became of each.
     std::vector<Refusal> judge_candidates(const std::vector<Candidate>& candidates) {
-        LibraryPart part = build_library(rules_, candidates);
+        LibraryPart part = build_library(rules_, candidates, library_.judging);
         library_.candidates += static_cast<std::int64_t>(candidates.size());
         for (const Refusal refusal : part.outcome) {
             ++library_.refusals[static_cast<std::size_t>(refusal)];
@@ -99,6 +116,11 @@ private:
                 samples_.size()));
         }
         tell(0.0);
+        const std::size_t first = std::min(kFirstCandidates, seeds.size());
+        library_.judging =
+            sketches_hold({seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(first)})
+                ? Judging::Sketches
+                : Judging::Courses;
         try_candidates(seeds);
         for (int round = 0; round < options_.rounds; ++round) {
             tell((round + 1.0) / (options_.rounds + 1.0));
@@ -205,7 +227,7 @@ Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
 }
 
 double reach_with(const CourseRules& rules, const CoverageSamples& samples,
-                  std::span<const char> reached, std::uint64_t seed) {
+                  std::span<const char> reached, Judging judging, std::uint64_t seed) {
     std::vector<char> now(reached.begin(), reached.end());
     std::vector<std::size_t> missed;
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -220,7 +242,7 @@ double reach_with(const CourseRules& rules, const CoverageSamples& samples,
         candidates.push_back({samples.at[sample], kPi * random_unit(seed, 3 * draw + 2),
                               share * rules.tow.friction});
     }
-    for (const Member& member : build_library(rules, candidates).members) {
+    for (const Member& member : build_library(rules, candidates, judging).members) {
         for (const std::int32_t sample : member.footprint) {
             now[at(sample)] = 1;
         }

@@ -21,6 +21,7 @@ struct Library {
         closest_miss;  ///< per sample: the last check that a candidate there failed
     std::int64_t candidates = 0;
     std::array<std::int64_t, kRefusals> refusals{};
+    Judging judging = Judging::Sketches;  ///< how the members were judged
 };
 
 /// The courses that lead from one node (see balance.h) to another, each member at most once.
@@ -32,14 +33,16 @@ using Ways = std::map<std::pair<std::size_t, std::size_t>, Way>;  ///< by (depar
 
 [[nodiscard]] Ways ways_between_nodes(std::span<const Member> members);
 
-/// Tries candidates over the whole wall, then rounds through samples that no member reaches, then
-/// near members of scarce ways between nodes. The same for any number of threads.
+/// Tries candidates over the whole wall. Where the first show that sketches cannot be relied on, as
+/// on sharp creases or coarse blends, all are judged by every rule from then on. Then come rounds
+/// through samples that no member reaches, then near members of scarce ways between nodes. The same
+/// for any number of threads.
 [[nodiscard]] Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
                                    const CoverOptions& options);
 
 /// Share of the samples that courses reach under other rules: those reached already, and those that
-/// further candidates through the others reach. \param reached per sample
+/// further candidates through the others reach. \param reached per sample \param judging as it was
 [[nodiscard]] double reach_with(const CourseRules& rules, const CoverageSamples& samples,
-                                std::span<const char> reached, std::uint64_t seed);
+                                std::span<const char> reached, Judging judging, std::uint64_t seed);
 
 }  // namespace meshwind

@@ -18,9 +18,6 @@ using Eigen::Vector3d;
 // by.
 constexpr double kWindableStep_mm = 5.0;
 
-// And for members of the library, of which most are never laid.
-constexpr double kLibraryStep_mm = 12.0;
-
 // Share of the bridging tolerance that a course may use: stations are some way apart.
 constexpr double kBridgeShare = 0.98;
 
@@ -285,29 +282,45 @@ Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
     return refusal;
 }
 
-LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> candidates) {
+namespace {
+
+Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
+                        FootprintFinder::Scratch& scratch, Member& member) {
+    Sketch sketch;
+    const Refusal refusal = draw_sketch(rules, candidate, scratch, sketch);
+    if (refusal != Refusal::None) {
+        return refusal;
+    }
+    Member& course = sketch.course;
+    const SurfacePath back = reversed(sketch.path);
+    course.windable_forward =
+        is_windable(rules, sketch.path, taut_string(sketch.path), kSketchStep_mm);
+    course.windable_backward = is_windable(rules, back, taut_string(back), kSketchStep_mm);
+    if (!course.windable_forward && !course.windable_backward) {
+        return Refusal::NotWindable;
+    }
+    member = std::move(course);
+    return Refusal::None;
+}
+
+}  // namespace
+
+LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> candidates,
+                          Judging judging) {
     const std::size_t chunks = (candidates.size() + kCandidateChunk - 1) / kCandidateChunk;
     std::vector<LibraryPart> parts(chunks);
     parallel_for(candidates.size(), kCandidateChunk, [&](std::size_t begin, std::size_t end) {
         LibraryPart& part = parts[begin / kCandidateChunk];
         FootprintFinder::Scratch scratch = rules.footprints.make_scratch();
         for (std::size_t i = begin; i < end; ++i) {
-            Sketch sketch;
-            Refusal refusal = draw_sketch(rules, candidates[i], scratch, sketch);
-            Member& course = sketch.course;
-            if (refusal == Refusal::None) {
-                const SurfacePath back = reversed(sketch.path);
-                course.windable_forward =
-                    is_windable(rules, sketch.path, taut_string(sketch.path), kLibraryStep_mm);
-                course.windable_backward =
-                    is_windable(rules, back, taut_string(back), kLibraryStep_mm);
-                if (!course.windable_forward && !course.windable_backward) {
-                    refusal = Refusal::NotWindable;
-                }
+            Member member;
+            Refusal refusal = sketch_windable(rules, candidates[i], scratch, member);
+            if (refusal == Refusal::None && judging == Judging::Courses) {
+                refusal = judge(rules, candidates[i], scratch, member);
             }
             part.outcome.push_back(refusal);
             if (refusal == Refusal::None) {
-                part.members.push_back(std::move(course));
+                part.members.push_back(std::move(member));
             }
         }
     });

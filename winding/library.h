@@ -105,15 +105,19 @@ struct Sketch {
                                const TautString& string, double step_mm);
 
 /// Distance of the places at which a sketch is looked into.
-inline constexpr double kSketchStep_mm = 6.0;
+inline constexpr double kSketchStep_mm = 12.0;
 
-/// Candidates sketched in parallel. Members in the order of the candidates, whatever the threads.
+/// How candidates are judged: by the walk alone, or where that admits them by all rules as well.
+enum class Judging { Sketches, Courses };
+
+/// Candidates judged in parallel. Members in the order of the candidates, whatever the threads.
 struct LibraryPart {
     std::vector<Member> members;
     std::vector<Refusal> outcome;  ///< per candidate
 };
 [[nodiscard]] LibraryPart build_library(const CourseRules& rules,
-                                        std::span<const Candidate> candidates);
+                                        std::span<const Candidate> candidates,
+                                        Judging judging = Judging::Sketches);
 
 /// Where the fibre of a station really is and leaves to: on the taut string over the path.
 struct StringPoint {

@@ -1,0 +1,186 @@
+#include "winding/anneal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+#include "tests/winding/fixtures.h"
+#include "winding/balance.h"
+#include "winding/coverage.h"
+
+namespace meshwind {
+namespace {
+
+constexpr double kExtension_mm = 120.0;
+
+struct Scene {
+    explicit Scene(Mandrel loaded)
+        : mandrel(std::move(loaded)),
+          obstacles(test::obstacles_of(mandrel, kExtension_mm, 60.0)),
+          samples(sample_surface(mandrel.surface, 2.5, 1)),
+          footprints(mandrel.surface, samples, 10.0),
+          rules{mandrel, obstacles, footprints, {}, {}, {}} {
+        rules.tow.width_mm = 10.0;
+        rules.tow.friction = 0.3;
+        rules.turn = {.friction = rules.tow.friction,
+                      .extension_mm = kExtension_mm,
+                      .band_mm = rules.tow.width_mm};
+        rules.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
+        rules.max_half_length_mm = 2000.0;
+        std::vector<Candidate> candidates;
+        test::Draw draw(5);
+        for (int i = 0; i < 400; ++i) {
+            const auto sample =
+                static_cast<std::size_t>(draw.below(static_cast<std::int32_t>(samples.size())));
+            candidates.push_back({samples.at[sample], draw.between(0.0, kPi), 0.0});
+        }
+        library = build_library(rules, candidates).members;
+        allowed.assign(library.size(), 1);
+    }
+
+    [[nodiscard]] std::vector<PlacedCourse> annealed(const AnnealOptions& options,
+                                                     std::vector<PlacedCourse> courses = {}) const {
+        const AnnealGround ground(rules, samples, library, 3);
+        anneal(rules, ground, library, allowed, courses, options);
+        return courses;
+    }
+
+    [[nodiscard]] PlacedCourse placed(std::size_t member) const {
+        Sketch sketch;
+        FootprintFinder::Scratch scratch = footprints.make_scratch();
+        EXPECT_EQ(draw_sketch(rules, library[member].candidate, scratch, sketch), Refusal::None);
+        return {library[member], sketch.path, !library[member].windable_forward, false};
+    }
+
+    [[nodiscard]] Coverage coverage(const std::vector<PlacedCourse>& courses) const {
+        std::vector<std::int32_t> layers(samples.size(), 0);
+        for (const PlacedCourse& course : courses) {
+            for (const std::int32_t sample : course.member.footprint) {
+                ++layers[static_cast<std::size_t>(sample)];
+            }
+        }
+        return measure_coverage(layers);
+    }
+
+    Mandrel mandrel;
+    RayQuery obstacles;
+    CoverageSamples samples;
+    FootprintFinder footprints;
+    CourseRules rules;
+    std::vector<Member> library;
+    std::vector<char> allowed;
+};
+
+const Scene& cylinder() {
+    static const Scene scene(test::made_cylinder(30.0, 160.0, 5.0));
+    return scene;
+}
+
+const Scene& tee() {
+    static const Scene scene(test::small_tee(4.0));
+    return scene;
+}
+
+// Slowly enough for the courses to find their order.
+AnnealOptions slowly() {
+    return {.proposals = 40'000, .hot = 0.5, .cold = 0.005};
+}
+
+// Two layers everywhere, of helices of both hands, have no unevenness at all: what is left is where
+// bands do not quite meet. Courses laid by chance would have 1 / sqrt(2), 0.71, and leave 13 %
+// bare.
+TEST(Anneal, LaysACylinderTwiceOver) {
+    const Coverage coverage = cylinder().coverage(cylinder().annealed(slowly()));
+    EXPECT_GT(coverage.fraction, 0.99);
+    EXPECT_NEAR(coverage.mean_layers, 2.1, 0.3);
+    EXPECT_LT(coverage.cv, 0.42);
+}
+
+TEST(Anneal, HonoursTheTargetAsMultiplicity) {
+    AnnealOptions options = slowly();
+    options.select.target_layers = 2;
+    const auto courses = cylinder().annealed(options);
+    std::vector<int> layers(cylinder().samples.size(), 0);
+    for (const PlacedCourse& course : courses) {
+        for (const std::int32_t sample : course.member.footprint) {
+            ++layers[static_cast<std::size_t>(sample)];
+        }
+    }
+    const auto twice = std::count_if(layers.begin(), layers.end(), [](int l) { return l >= 2; });
+    EXPECT_GT(static_cast<double>(twice), 0.98 * static_cast<double>(layers.size()));
+    EXPECT_LT(cylinder().coverage(courses).mean_layers, 3.6);
+}
+
+// Every course is again what its candidate gives: ends, length, footprint; and fibres can be
+// joined.
+TEST(Anneal, LeavesCoursesThatKeepTheRules) {
+    const Scene& scene = tee();
+    const auto courses = scene.annealed({.proposals = 12'000});
+    ASSERT_GT(courses.size(), 5U);
+    FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
+    std::vector<int> excess(2 * scene.mandrel.rims.size(), 0);
+    for (const PlacedCourse& course : courses) {
+        Sketch sketch;
+        ASSERT_EQ(draw_sketch(scene.rules, course.member.candidate, scratch, sketch),
+                  Refusal::None);
+        EXPECT_EQ(sketch.course.footprint, course.member.footprint);
+        EXPECT_EQ(sketch.course.length_mm, course.member.length_mm);
+        EXPECT_LE(std::abs(course.member.candidate.slip_ratio), scene.rules.tow.friction);
+        EXPECT_LE(
+            std::abs(course.member.candidate.slip_ratio + course.member.candidate.more_behind),
+            scene.rules.tow.friction);
+        const SurfacePath way = course.backward ? reversed(course.path) : course.path;
+        EXPECT_TRUE(is_windable(scene.rules, way, taut_string(way), kSketchStep_mm));
+        ++excess[arrival_node(end_of(course.member, course.backward))];
+        --excess[departure_node(start_of(course.member, course.backward))];
+    }
+    int loose = 0;
+    for (const int e : excess) {
+        loose += std::abs(e);
+    }
+    // Two ends are the fibre's; what a few more cost is less than the courses that would close them.
+    EXPECT_LE(loose, 8);
+}
+
+TEST(Anneal, TakesOnlyWhatIsVerifiedAndGoesOnlyAllowedWays) {
+    const Scene& scene = tee();
+    AnnealOptions options{.proposals = 3'000};
+    options.verify = [](PlacedCourse& course) { return course.member.length_mm > 150.0; };
+    options.way = [](std::size_t from, std::size_t) { return from % 2 == 0; };
+    const auto courses = scene.annealed(options);
+    ASSERT_FALSE(courses.empty());
+    for (const PlacedCourse& course : courses) {
+        EXPECT_GT(course.member.length_mm, 150.0);
+        EXPECT_EQ(departure_node(start_of(course.member, course.backward)) % 2, 0U);
+    }
+}
+
+TEST(Anneal, KeepsFixedCourses) {
+    const Scene& scene = tee();
+    ASSERT_FALSE(scene.library.empty());
+    PlacedCourse fixed = scene.placed(0);
+    fixed.fixed = true;
+    const auto courses = scene.annealed({.proposals = 3'000}, {fixed});
+    EXPECT_TRUE(std::any_of(courses.begin(), courses.end(), [&](const PlacedCourse& course) {
+        return course.fixed && course.member.length_mm == fixed.member.length_mm;
+    }));
+}
+
+TEST(Anneal, IsTheSameForAnyNumberOfThreads) {
+    set_thread_count(1);
+    const auto one = tee().annealed({.proposals = 3'000});
+    set_thread_count(2);
+    const auto two = tee().annealed({.proposals = 3'000});
+    set_thread_count(0);
+    ASSERT_EQ(one.size(), two.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        EXPECT_EQ(one[i].member.length_mm, two[i].member.length_mm);
+        EXPECT_EQ(one[i].member.footprint, two[i].member.footprint);
+        EXPECT_EQ(one[i].backward, two[i].backward);
+    }
+}
+
+}  // namespace
+}  // namespace meshwind
