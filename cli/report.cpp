@@ -90,6 +90,7 @@ json plan_report(const Plan& plan) {
           {"cv", report_number(plan.coverage.cv)}}},
         {"uncovered", uncovered},
         {"what_if", what_if_report(plan)},
+        {"annealing", {{"proposals", plan.effort.proposals}, {"taken", plan.effort.taken}}},
         {"turns", turns_report(plan)},
         {"families", families_report(plan)},
         {"library",

@@ -229,8 +229,9 @@ private:
             found_.longest_free_mm = std::max(found_.longest_free_mm, length);
             const bool within = length >= rule.min_mm - kFreeLengthSlack_mm &&
                                 length <= rule.max_mm + rules_.simulation.bridge_reach_mm;
-            if (!first && !within) {
-                first = i;
+            if (!within) {
+                first = first.value_or(i);
+                found_.coarse_blocks.push_back(laid.block[i]);
             }
         }
         check.numbers = {{"min_mm", found_.shortest_free_mm},

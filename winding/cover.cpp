@@ -402,7 +402,10 @@ private:
             }
             return rejection == Rejection::None;
         };
-        anneal(rules_, *ground_, members_, allowed_, courses_, annealing);
+        const AnnealEffort effort =
+            anneal(rules_, *ground_, members_, allowed_, courses_, annealing);
+        plan_.effort.proposals += effort.proposals;
+        plan_.effort.taken += effort.accepted;
     }
 
     // Anneals, adds what it takes to join the courses, and puts them in order.

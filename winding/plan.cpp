@@ -22,8 +22,6 @@ const char* name_of(Rejection rejection) {
             return "the machine refuses the course or a turn next to it";
         case Rejection::Apart:
             return "one fibre cannot join the course to the others";
-        case Rejection::Unchecked:
-            return "the search ended before the course was checked";
     }
     return "";
 }

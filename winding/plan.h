@@ -41,9 +41,8 @@ enum class Rejection : std::uint8_t {
     HeadHit,
     InItsPlace,  ///< the machine refuses it, or a turn next to it, between its neighbours
     Apart,       ///< no single fibre joins it to the others
-    Unchecked,   ///< the rounds of the search ended before it was checked
 };
-inline constexpr std::size_t kRejections = 10;
+inline constexpr std::size_t kRejections = 9;
 
 /// Words for a report: "the free fibre hits something", ...
 [[nodiscard]] const char* name_of(Rejection rejection);
@@ -82,6 +81,8 @@ struct TurnsAtRim {
 struct PlanEffort {
     std::int64_t candidates = 0;
     std::array<std::int64_t, kRefusals> refusals{};
+    std::int64_t proposals = 0;    ///< weighed while the courses were annealed
+    std::int64_t taken = 0;        ///< of these
     int courses_out_of_reach = 0;  ///< chosen, but not to be joined to the one fibre; left out
     int rejected_courses = 0;      ///< refused by the measured slip or by the machine
     std::array<std::int64_t, kRejections> rejections{};  ///< members of the library, by reason

@@ -38,12 +38,7 @@ std::vector<Rejection> commonest_rejections(std::size_t samples, std::span<const
         }
     }
     std::vector<Rejection> commonest;
-    for (auto& counts : tally) {
-        // Says nothing where others that pass here have been checked.
-        std::int32_t& unchecked = counts[static_cast<std::size_t>(Rejection::Unchecked)];
-        if (std::accumulate(counts.begin(), counts.end(), 0) > unchecked) {
-            unchecked = 0;
-        }
+    for (const auto& counts : tally) {
         const auto most = std::max_element(counts.begin() + 1, counts.end()) - counts.begin();
         const std::int32_t refused = std::accumulate(counts.begin() + 1, counts.end(), 0);
         commonest.push_back(counts[0] >= refused ? Rejection::None : static_cast<Rejection>(most));
