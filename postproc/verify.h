@@ -59,8 +59,8 @@ struct Verification {
     std::vector<Check> checks;  ///< laydown, slip, bridging, collision, free_length, limits, payout
     std::optional<std::size_t> first_wrong_block;  ///< the first at which a check fails
     /// Blocks, ascending, that finer ones may mend: those of laid stations beyond a tolerance with
-    /// the way over which the fibre was pulled there, those in which something is hit, and those with
-    /// a free length that the machine cannot wind with.
+    /// the way over which the fibre was pulled there, those in which something is hit, and those
+    /// with a free length that the machine cannot wind with.
     std::vector<std::size_t> coarse_blocks;
 };
 

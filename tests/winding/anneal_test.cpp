@@ -140,7 +140,8 @@ TEST(Anneal, LeavesCoursesThatKeepTheRules) {
     for (const int e : excess) {
         loose += std::abs(e);
     }
-    // Two ends are the fibre's; what a few more cost is less than the courses that would close them.
+    // Two ends are the fibre's; what a few more cost is less than the courses that would close
+    // them.
     EXPECT_LE(loose, 8);
 }
 
