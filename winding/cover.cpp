@@ -302,8 +302,8 @@ private:
                     trials.push_back({nodes, {members_[at(i)], {}, backward, false}, i});
                 }
             }
+            tell("route", most == kProvenForWay ? 0.0 : 0.5);
             parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
-                tell("route", static_cast<double>(i) / static_cast<double>(trials.size()));
                 trials[i].rejection = prove(trials[i].course);
             });
             for (const Trial& trial : trials) {
@@ -366,10 +366,9 @@ private:
 
     void keep_proven() {
         std::vector<Rejection> found(courses_.size());
-        parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
-            tell("prove", static_cast<double>(i) / static_cast<double>(courses_.size()));
-            found[i] = prove(courses_[i]);
-        });
+        tell("prove", 0.0);
+        parallel_for(courses_.size(), 1,
+                     [&](std::size_t i, std::size_t) { found[i] = prove(courses_[i]); });
         std::vector<PlacedCourse> proven;
         for (std::size_t i = 0; i < found.size(); ++i) {
             if (found[i] == Rejection::None) {
