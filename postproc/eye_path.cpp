@@ -70,6 +70,41 @@ std::vector<std::size_t> fibre_ends(const EyePath& path, std::span<const Piece> 
     return ends;
 }
 
+// Lengths for the points of one fibre. Where the wish is free all along it is taken, which is what
+// the windows would lead to.
+FreeLengths free_lengths(std::span<const EyePoint> path, const RayQuery& obstacles,
+                         const FreeFibreRule& rule, double wish_mm) {
+    const auto normal = [](const EyePoint& point) -> Eigen::Vector3d {
+        return point.tangent.cross(point.binormal).normalized();
+    };
+    std::vector<char> free(path.size());
+    parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            free[i] = is_free_length(obstacles, path[i].landing_mm, normal(path[i]),
+                                     path[i].tangent, rule, wish_mm)
+                          ? 1
+                          : 0;
+            if (free[i] == 0) {
+                return;
+            }
+        }
+    });
+    if (std::find(free.begin(), free.end(), 0) == free.end()) {
+        const std::vector<double> wish(path.size(), wish_mm);
+        return {wish, wish, {}};
+    }
+    std::vector<double> s_mm(path.size());
+    std::vector<std::vector<FreeFibreWindow>> windows(path.size());
+    parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            s_mm[i] = path[i].s_mm;
+            windows[i] = free_fibre_windows(obstacles, path[i].landing_mm, normal(path[i]),
+                                            path[i].tangent, rule);
+        }
+    });
+    return choose_free_lengths(s_mm, windows, wish_mm);
+}
+
 }  // namespace
 
 EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& obstacles,
@@ -78,21 +113,10 @@ EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& o
     EyePath& path = result.path;
     path = landing_points(pieces);
     const double wish = std::clamp(rule.preferred_mm, rule.min_mm, rule.max_mm);
-    std::vector<double> s_mm(path.size());
-    std::vector<std::vector<FreeFibreWindow>> windows(path.size());
-    parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Eigen::Vector3d normal = path[i].tangent.cross(path[i].binormal).normalized();
-            s_mm[i] = path[i].s_mm;
-            windows[i] =
-                free_fibre_windows(obstacles, path[i].landing_mm, normal, path[i].tangent, rule);
-        }
-    });
     std::size_t begin = 0;
     for (const std::size_t end : fibre_ends(path, pieces)) {
         const FreeLengths lengths =
-            choose_free_lengths(std::span(s_mm).subspan(begin, end - begin),
-                                std::span(windows).subspan(begin, end - begin), wish);
+            free_lengths(std::span(path).subspan(begin, end - begin), obstacles, rule, wish);
         for (const std::size_t i : lengths.blocked) {
             result.blocked.push_back(begin + i);
         }

@@ -1,14 +1,14 @@
 #include "winding/samples.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "core/parallel.h"
 #include "geodesic/trace.h"
 #include "winding/random.h"
 
@@ -22,55 +22,83 @@ constexpr double kDiscShare = 0.7;
 // Darts per disc area: eight leave fewer than one hole in a thousand discs.
 constexpr double kDartsPerDisc = 8.0;
 
-// Cells beside a dart's own, which is the likeliest to be taken: most darts come too late.
-constexpr std::array kOwnFirst = {0, -1, 1};
+// Darts that are drawn at a time, and that one task draws.
+constexpr std::uint64_t kDraw = 1U << 16U;
+constexpr std::size_t kDrawChunk = 1024;
 
+struct Dart {
+    SurfacePoint at;
+    Eigen::Vector3d position_mm;
+    Eigen::Vector3d normal;
+};
+
+// Samples by cells of two discs' width: what is within a disc of a point lies in its own cell or
+// in those on the nearer sides.
 class Grid {
 public:
-    explicit Grid(double cell) : cell_(cell) {}
+    Grid(double disc, std::uint64_t most) : disc_(disc) {
+        slots_.resize(std::bit_ceil(static_cast<std::size_t>(most)));
+    }
 
-    // Adds `point` unless another one is nearer than the cell size on a surface facing the same
-    // way.
-    bool add(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-             const CoverageSamples& samples) {
-        const Eigen::Vector3d scaled = point / cell_;
-        const std::array<std::int64_t, 3> c = {static_cast<std::int64_t>(std::floor(scaled.x())),
-                                               static_cast<std::int64_t>(std::floor(scaled.y())),
-                                               static_cast<std::int64_t>(std::floor(scaled.z()))};
-        for (const int x : kOwnFirst) {
-            for (const int y : kOwnFirst) {
-                for (const int z : kOwnFirst) {
-                    if (taken(key(c[0] + x, c[1] + y, c[2] + z), point, normal, samples)) {
-                        return false;
-                    }
-                }
+    // Adds a dart unless a sample is nearer than a disc on a surface facing the same way.
+    bool add(const Dart& dart, const CoverageSamples& samples) {
+        const Eigen::Array3d scaled = dart.position_mm.array() / (2.0 * disc_);
+        const Eigen::Array3d cell = scaled.floor();
+        const Eigen::Array3d nearer = (scaled - cell < 0.5).select(cell - 1.0, cell + 1.0);
+        for (unsigned side = 0; side < 8; ++side) {
+            const std::uint64_t key = key_of((side & 1U) != 0 ? nearer.x() : cell.x(),
+                                             (side & 2U) != 0 ? nearer.y() : cell.y(),
+                                             (side & 4U) != 0 ? nearer.z() : cell.z());
+            if (taken(slot(key), dart, samples)) {
+                return false;
             }
         }
-        cells_[key(c[0], c[1], c[2])].push_back(static_cast<std::int32_t>(samples.size()));
+        Slot& own = slot(key_of(cell.x(), cell.y(), cell.z()));
+        own.key = key_of(cell.x(), cell.y(), cell.z());
+        next_.push_back(own.last);
+        own.last = static_cast<std::int32_t>(samples.size());
         return true;
     }
 
 private:
-    static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
-        const auto part = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1FFFFFU; };
+    // The samples of a cell: the last one added, then next_ back to the first.
+    struct Slot {
+        std::uint64_t key = 0;
+        std::int32_t last = -1;
+    };
+
+    static std::uint64_t key_of(double x, double y, double z) {
+        const auto part = [](double v) {
+            return static_cast<std::uint64_t>(static_cast<std::int64_t>(v)) & 0x1FFFFFU;
+        };
         return (part(x) << 42U) | (part(y) << 21U) | part(z);
     }
 
-    bool taken(std::uint64_t cell, const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-               const CoverageSamples& samples) const {
-        const auto found = cells_.find(cell);
-        if (found == cells_.end()) {
-            return false;
+    // Of a cell, or the empty one where it would be: open addressing with linear probing.
+    Slot& slot(std::uint64_t key) {
+        const std::size_t mask = slots_.size() - 1;
+        std::size_t i = random_bits(0, key) & mask;
+        while (slots_[i].last >= 0 && slots_[i].key != key) {
+            i = (i + 1) & mask;
         }
-        return std::any_of(found->second.begin(), found->second.end(), [&](std::int32_t i) {
-            const auto k = static_cast<std::size_t>(i);
-            return (samples.position_mm[k] - point).squaredNorm() < cell_ * cell_ &&
-                   samples.normal[k].dot(normal) > 0.0;
-        });
+        return slots_[i];
     }
 
-    double cell_;
-    std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
+    [[nodiscard]] bool taken(const Slot& slot, const Dart& dart,
+                             const CoverageSamples& samples) const {
+        for (std::int32_t i = slot.last; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+            const auto k = static_cast<std::size_t>(i);
+            if ((samples.position_mm[k] - dart.position_mm).squaredNorm() < disc_ * disc_ &&
+                samples.normal[k].dot(dart.normal) > 0.0) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    double disc_;
+    std::vector<Slot> slots_;
+    std::vector<std::int32_t> next_;  // per sample
 };
 
 std::vector<double> cumulative_area(const Surface& surface) {
@@ -123,15 +151,22 @@ CoverageSamples sample_surface(const Surface& surface, double spacing_mm, std::u
     const double disc = kDiscShare * spacing_mm;
     const auto darts =
         static_cast<std::uint64_t>(kDartsPerDisc * cumulative.back() / (disc * disc)) + 1;
-    Grid grid(disc);
-    for (std::uint64_t i = 0; i < darts; ++i) {
-        const SurfacePoint point = dart(cumulative, seed, i);
-        const Eigen::Vector3d position = position_mm(surface, point);
-        const Eigen::Vector3d normal = smooth_normal(surface, point);
-        if (grid.add(position, normal, samples)) {
-            samples.at.push_back(point);
-            samples.position_mm.push_back(position);
-            samples.normal.push_back(normal);
+    Grid grid(disc, darts);
+    std::vector<Dart> drawn;
+    for (std::uint64_t first = 0; first < darts; first += kDraw) {
+        drawn.resize(std::min(kDraw, darts - first));
+        parallel_for(drawn.size(), kDrawChunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const SurfacePoint point = dart(cumulative, seed, first + i);
+                drawn[i] = {point, position_mm(surface, point), smooth_normal(surface, point)};
+            }
+        });
+        for (const Dart& dart : drawn) {
+            if (grid.add(dart, samples)) {
+                samples.at.push_back(dart.at);
+                samples.position_mm.push_back(dart.position_mm);
+                samples.normal.push_back(dart.normal);
+            }
         }
     }
     samples.area_mm2 = cumulative.back() / static_cast<double>(samples.size());
