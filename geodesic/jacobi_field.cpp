@@ -22,13 +22,8 @@ Matrix3d shape_operator_per_mm(const Surface& surface, const SurfacePoint& point
     return shape;
 }
 
-struct Curvature {
-    double gaussian_per_mm2;
-    double torsion_per_mm;  // tau = b . S t
-};
-
-Curvature curvature(const Surface& surface, const SurfacePoint& point, const Vector3d& t,
-                    const Vector3d& b) {
+CurvatureAlong curvature(const Surface& surface, const SurfacePoint& point, const Vector3d& t,
+                         const Vector3d& b) {
     const Matrix3d shape = shape_operator_per_mm(surface, point);
     const Vector3d along = shape * t;
     const double torsion = b.dot(along);
@@ -43,6 +38,10 @@ double gaussian_curvature_per_mm2(const Surface& surface, const SurfacePoint& po
     return curvature(surface, point, t, n.cross(t)).gaussian_per_mm2;
 }
 
+CurvatureAlong curvature_along(const Surface& surface, const PathPoint& station) {
+    return curvature(surface, station.at, station.tangent, station.normal.cross(station.tangent));
+}
+
 std::vector<double> jacobi_field_mm(const Surface& surface, const SurfacePath& path,
                                     double slip_ratio) {
     std::vector<double> field;
@@ -51,10 +50,10 @@ std::vector<double> jacobi_field_mm(const Surface& surface, const SurfacePath& p
     double y = 0.0;
     double slope = 1.0;
     double torsion = 0.0;  // its integral over s
-    Curvature last{};
+    CurvatureAlong last{};
     for (std::size_t i = 0; i < path.size(); ++i) {
         const PathPoint& p = path[i];
-        const Curvature here = curvature(surface, p.at, p.tangent, p.normal.cross(p.tangent));
+        const CurvatureAlong here = curvature_along(surface, p);
         if (i > 0) {
             const double ds = p.s_mm - path[i - 1].s_mm;
             // Half the turn before the step and half after it: second order.

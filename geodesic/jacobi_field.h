@@ -11,6 +11,13 @@ namespace meshwind {
 /// corners. Accuracy: second order in edge length (tests/geodesic/jacobi_field_test.cpp).
 [[nodiscard]] double gaussian_curvature_per_mm2(const Surface& surface, const SurfacePoint& point);
 
+/// What bends neighbouring paths apart or together at a station.
+struct CurvatureAlong {
+    double gaussian_per_mm2 = 0.0;
+    double torsion_per_mm = 0.0;  ///< tau = b . S t of the surface along the path
+};
+[[nodiscard]] CurvatureAlong curvature_along(const Surface& surface, const PathPoint& station);
+
 /// The distance j to the left, in mm per radian of start angle (counter-clockwise), at which a
 /// neighbouring path of the same slip ratio passes each station; 0 at the start, and again at
 /// **conjugate points**, where neighbouring paths meet. With kg = lambda kn and the torsion
