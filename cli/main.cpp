@@ -129,6 +129,7 @@ struct WindOptions {
     std::string machine = "six_axis.json";
     std::string job;
     std::string out = "meshwind-out";
+    int effort = 1;
 };
 
 void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
@@ -140,6 +141,11 @@ void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
     app.add_option("--machine", options.machine, "machine file")->capture_default_str();
     app.add_option("--job", options.job, "job file; without it the defaults hold");
     app.add_option("-o,--out", options.out, "output folder")->capture_default_str();
+    app.add_option("--effort", options.effort,
+                   "how long the plan is improved: 4 takes about 4 times as long as 1, and saves "
+                   "fibre")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
 }
 
 int run_wind(const WindOptions& options, const Common& common) {
@@ -151,6 +157,7 @@ int run_wind(const WindOptions& options, const Common& common) {
     request.out = options.out;
     request.unit_mm = unit_mm(common.units);
     request.seed = common.seed;
+    request.effort = options.effort;
     request.force = common.force;
     request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
     const WindResult result = wind(request);

@@ -90,7 +90,11 @@ json plan_report(const Plan& plan) {
           {"cv", report_number(plan.coverage.cv)}}},
         {"uncovered", uncovered},
         {"what_if", what_if_report(plan)},
-        {"annealing", {{"proposals", plan.effort.proposals}, {"taken", plan.effort.taken}}},
+        {"annealing",
+         {{"seed", plan.effort.seed},
+          {"effort", plan.effort.effort},
+          {"proposals", plan.effort.proposals},
+          {"taken", plan.effort.taken}}},
         {"turns", turns_report(plan)},
         {"families", families_report(plan)},
         {"library",
@@ -178,8 +182,7 @@ std::string percent(double share) {
 void print_bare_wall(std::ostream& out, const WindResult& result) {
     std::map<std::string, double> area_mm2;
     for (const Uncovered& bare : result.plan.uncovered) {
-        // Without how many courses: that differs from region to region.
-        area_mm2[bare.reason.substr(0, bare.reason.find(" (so with"))] += bare.area_mm2;
+        area_mm2[bare.rule] += bare.area_mm2;
     }
     std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
     std::stable_sort(reasons.begin(), reasons.end(),
@@ -188,11 +191,11 @@ void print_bare_wall(std::ostream& out, const WindResult& result) {
         out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
     }
     const Job& job = result.setup.job;
+    const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
+        {WhatIf::Rule::Friction, {job.tow.friction, ""}},
+        {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
+        {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
     for (const WhatIf& what_if : result.plan.what_if) {
-        const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
-            {WhatIf::Rule::Friction, {job.tow.friction, ""}},
-            {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
-            {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
         const auto [value, unit] = now.at(what_if.rule);
         out << "  with a" << (what_if.rule == WhatIf::Rule::Extension ? "n " : " ")
             << name_of(what_if.rule) << " of " << fixed(what_if.factor * value, 2) << unit

@@ -211,6 +211,7 @@ private:
         options.select.target_layers =
             static_cast<int>(std::ceil(job.layers.front().target_layers));
         options.seed = request_.seed;
+        options.effort = request_.effort;
         options.accept = [this](const Piece& piece) {
             const auto refused = refused_pieces({&piece, 1});
             return refused.empty() ? Rejection::None : refused.begin()->second;
@@ -371,7 +372,7 @@ private:
     [[nodiscard]] std::string largest_bare_wall() const {
         std::map<std::string, double> area_mm2;
         for (const Uncovered& bare : result_.plan.uncovered) {
-            area_mm2[bare.reason] += bare.area_mm2;
+            area_mm2[bare.rule] += bare.area_mm2;
         }
         const auto largest =
             std::max_element(area_mm2.begin(), area_mm2.end(),

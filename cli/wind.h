@@ -26,6 +26,7 @@ struct WindRequest {
     std::filesystem::path out = "meshwind-out";
     double unit_mm = 0.0;  ///< overrides the job's units where > 0
     std::uint64_t seed = 1;
+    int effort = 1;      ///< how long the plan is improved, as a multiple
     bool force = false;  ///< write the program although a check failed
     std::function<void(const std::string& step, double share)> progress;
 };

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -14,8 +13,10 @@
 
 #include "core/parallel.h"
 #include "core/units.h"
-#include "mesh/nearest.h"
 #include "winding/balance.h"
+#include "winding/families.h"
+#include "winding/fit.h"
+#include "winding/joints.h"
 #include "winding/random.h"
 
 namespace meshwind {
@@ -25,8 +26,8 @@ using Eigen::Vector3d;
 
 // Proposals that are drawn and judged against the same state, and those that one task takes.
 // Those proved take fifty times as long as others: a group holds some of both for every core.
-constexpr std::size_t kGroup = 256;
-constexpr std::size_t kTask = 4;
+constexpr std::size_t kGroup = 128;
+constexpr std::size_t kTask = 2;
 
 // Kinds of proposals, as shares of all.
 constexpr double kFreshShare = 0.10;      // a course somewhere, mostly where layers are missing
@@ -39,6 +40,10 @@ constexpr double kBesideShare = 0.12;   // a course moved beside another; the re
 
 // Of the fresh courses, those from the library.
 constexpr double kLibraryShare = 0.5;
+
+// Of the courses proposed, those fitted first: a fit takes as long as three that are not, and finds
+// what they would not.
+constexpr double kFitShare = 0.3;
 
 // Places tried for one that is short of layers.
 constexpr int kPlacesTried = 24;
@@ -53,10 +58,6 @@ constexpr double kNudgeRange = 16.0;
 // Neighbours are turned by this much at most, on some of the proposals.
 constexpr double kBesideTurn_rad = 0.02;
 
-// Steering of new courses as shares of the friction.
-constexpr std::array<double, 7> kSteering = {0.0, 0.31, -0.31, 0.62, -0.62, 0.92, -0.92};
-constexpr double kMostSteering = 0.92;
-
 // A course costs its turn's fibre, by this share of what layers too many would.
 constexpr double kTurnShare = 0.1;
 
@@ -65,13 +66,12 @@ constexpr double kTurnShare = 0.1;
 constexpr double kOpenShare = 0.6;
 constexpr int kFreeEnds = 2;
 
+// What a course costs that belongs to no family of parallel ones, as a share of what a course
+// covers. Among families the layers are more even, too.
+constexpr double kAloneShare = 0.5;
+
 // Layers from which on more make no difference.
 constexpr std::size_t kMostLayers = 64;
-
-// Samples per band width. With 2.5 what is covered there is 0.7 % more than what is covered on
-// others, with 4 it is 0.25 %.
-constexpr double kSamplesPerBand = 4.0;
-constexpr std::size_t kSampleChunk = 256;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
@@ -102,75 +102,6 @@ private:
     std::uint64_t index_;
 };
 
-// How many courses lead from node to node (see balance.h).
-class Joints {
-public:
-    explicit Joints(std::size_t nodes) : nodes_(nodes), courses_(nodes * nodes, 0) {}
-
-    void add(const Member& member, bool backward, int times) {
-        courses_[departure_node(start_of(member, backward)) * nodes_ +
-                 arrival_node(end_of(member, backward))] += times;
-    }
-
-    // Arrivals less departures.
-    [[nodiscard]] int excess(std::size_t node) const {
-        int excess = 0;
-        for (std::size_t other = 0; other < nodes_; ++other) {
-            excess += courses_[other * nodes_ + node] - courses_[node * nodes_ + other];
-        }
-        return excess;
-    }
-
-    [[nodiscard]] int loose_ends() const {
-        int loose = 0;
-        for (std::size_t node = 0; node < nodes_; ++node) {
-            loose += std::abs(excess(node));
-        }
-        return loose;
-    }
-
-    // Per node the lowest one that courses join it to; its own number where there are none.
-    [[nodiscard]] std::vector<std::size_t> part_of() const {
-        std::vector<std::size_t> part(nodes_);
-        std::iota(part.begin(), part.end(), std::size_t{0});
-        for (bool changed = true; changed;) {
-            changed = false;
-            for (std::size_t i = 0; i < nodes_; ++i) {
-                for (std::size_t j = 0; j < nodes_; ++j) {
-                    if (courses_[i * nodes_ + j] > 0 && part[i] != part[j]) {
-                        part[i] = part[j] = std::min(part[i], part[j]);
-                        changed = true;
-                    }
-                }
-            }
-        }
-        return part;
-    }
-
-    [[nodiscard]] bool has_courses(std::size_t node) const {
-        for (std::size_t other = 0; other < nodes_; ++other) {
-            if (courses_[other * nodes_ + node] + courses_[node * nodes_ + other] > 0) {
-                return true;
-            }
-        }
-        return false;
-    }
-
-    // Groups of nodes that no course joins; at least one.
-    [[nodiscard]] int parts() const {
-        const std::vector<std::size_t> part = part_of();
-        int parts = 0;
-        for (std::size_t node = 0; node < nodes_; ++node) {
-            parts += part[node] == node && has_courses(node) ? 1 : 0;
-        }
-        return std::max(1, parts);
-    }
-
-private:
-    std::size_t nodes_;
-    std::vector<int> courses_;
-};
-
 class Annealer {
 public:
     Annealer(const CourseRules& rules, const AnnealGround& ground, std::span<const Member> library,
@@ -192,6 +123,9 @@ public:
         for (PlacedCourse& course : courses) {
             course.member.footprint = ground.footprints.footprint(course.path, scratch->footprint);
             lay(course, 1);
+            CourseShape shape = shape_of(course);
+            const std::vector<char> row = neighbours_.beside(shape);
+            neighbours_.add(std::move(shape), row);
         }
         // Of the library: at first there may be no course at all.
         double covered = 0.0;
@@ -200,6 +134,7 @@ public:
         }
         typical_ =
             std::max(1.0, covered / std::max<double>(1.0, static_cast<double>(library.size())));
+        alone_ = neighbours_.without_family({}, nullptr);
         turn_cost_ = kTurnShare * options.select.turn_mm * rules.tow.width_mm / samples_.area_mm2;
     }
 
@@ -267,7 +202,10 @@ private:
         bool holds = false;
         std::optional<std::size_t> out;
         std::optional<PlacedCourse> in;
+        std::optional<CourseShape> shape;  // of `in`
+        std::vector<char> beside;          // neighbours of `in`, per course
         double chance = 0.0;
+        bool fit = false;
     };
 
     void weigh(double bare) {
@@ -296,7 +234,27 @@ private:
         return cost_[std::min(at(layers), kMostLayers - 1)];
     }
 
-    // What the objective changes by.
+    [[nodiscard]] CourseShape shape_of(const PlacedCourse& course) const {
+        return CourseShape(course.path, rules_.tow.width_mm);
+    }
+
+    // What the courses without a family cost more, or less. Looks for the neighbours of what is put
+    // in.
+    [[nodiscard]] double alone_change(Proposal& proposal) const {
+        if (proposal.in) {
+            if (!proposal.shape) {
+                proposal.shape = shape_of(*proposal.in);
+            }
+            proposal.beside = neighbours_.beside(*proposal.shape);
+        }
+        return alone_cost() *
+               (neighbours_.without_family(proposal.out, proposal.in ? &proposal.beside : nullptr) -
+                alone_);
+    }
+
+    [[nodiscard]] double alone_cost() const { return kAloneShare * typical_; }
+
+    // What the objective changes by, but for the families.
     double change(const Proposal& proposal, Scratch& scratch) const {
         double sum = 0.0;
         Joints joints = joints_;
@@ -359,64 +317,32 @@ private:
                 kSteering[draws.below(kSteering.size())] * rules_.tow.friction};
     }
 
-    // How a candidate is moved: to its left, turned, and steered otherwise ahead and behind.
-    struct Move {
-        double left_mm = 0.0;
-        double turn_rad = 0.0;
-        double steering = 0.0;
-        double behind = 0.0;
-    };
-
-    // From a place of a course. Where it is steered in two ways, that is where they meet.
-    [[nodiscard]] Candidate moved(const PlacedCourse& course, const Move& move,
-                                  Draws& draws) const {
-        const Surface& surface = rules_.mandrel.surface;
-        const Candidate& from = course.member.candidate;
+    // From any of its stations. Where it is steered in two ways, from the one where they meet.
+    [[nodiscard]] Candidate moved_from_any(const PlacedCourse& course, const CourseMove& move,
+                                           Draws& draws) const {
         const std::size_t any = draws.below(course.path.size());
-        const std::size_t station = from.more_behind == 0.0 ? any : seed_station(course);
-        const PathPoint& start = course.path[station];
-        const Vector3d left = start.normal.cross(start.tangent);
-        const double side = move.left_mm < 0.0 ? -1.0 : 1.0;
-        const TraceResult way = trace(surface, start.at, side * left, {},
-                                      {.max_length_mm = std::max(std::abs(move.left_mm), 1e-3)});
-        const PathPoint& place = way.path.back();
-        const Vector3d normal = smooth_normal(surface, place.at);
-        const double most = kMostSteering * rules_.tow.friction;
-        const double ahead = std::clamp(from.slip_ratio + move.steering, -most, most);
-        const double behind =
-            std::clamp(from.slip_ratio + from.more_behind + move.behind, -most, most);
-        return {place.at,
-                direction_angle(normal, side * place.tangent.cross(normal)) + move.turn_rad, ahead,
-                behind - ahead};
-    }
-
-    static std::size_t seed_station(const PlacedCourse& course) {
-        const auto found =
-            std::find_if(course.path.begin(), course.path.end(), [&](const PathPoint& point) {
-                return point.at.face == course.member.candidate.seed.face;
-            });
-        return static_cast<std::size_t>(std::min(found, course.path.end() - 1) -
-                                        course.path.begin());
+        const bool anywhere = course.member.candidate.more_behind == 0.0;
+        return moved(rules_, course, anywhere ? any : seed_station(course), move);
     }
 
     [[nodiscard]] Candidate nudged(const PlacedCourse& course, Draws& draws) const {
         const double scale = std::pow(kNudgeRange, -draws.unit());
         const double steering = scale * kNudgeSteering * rules_.tow.friction;
-        Move move{scale * kNudgeBands * rules_.tow.width_mm * draws.normal(),
-                  scale * kNudgeTurn_rad * draws.normal()};
+        CourseMove move{scale * kNudgeBands * rules_.tow.width_mm * draws.normal(),
+                        scale * kNudgeTurn_rad * draws.normal()};
         const double how = draws.unit();
         if (how > 0.5) {
             move.steering = steering * draws.normal();
             move.behind = how > 0.75 ? steering * draws.normal() : move.steering;
         }
-        return moved(course, move, draws);
+        return moved_from_any(course, move, draws);
     }
 
     [[nodiscard]] Candidate beside(const PlacedCourse& course, Draws& draws) const {
         const bool turned = draws.unit() < 0.5;
         const double left = draws.either() * rules_.tow.width_mm;
-        return moved(course, {left, turned ? kBesideTurn_rad * (2.0 * draws.unit() - 1.0) : 0.0},
-                     draws);
+        return moved_from_any(
+            course, {left, turned ? kBesideTurn_rad * (2.0 * draws.unit() - 1.0) : 0.0}, draws);
     }
 
     // Draws a proposal and judges it against the courses as they are.
@@ -424,6 +350,7 @@ private:
         Draws draws(options_.seed, number);
         Proposal proposal;
         proposal.chance = draws.unit();
+        proposal.fit = draws.unit() < kFitShare;
         double kind = draws.unit();
         const auto falls = [&kind](double share) {
             kind -= share;
@@ -500,12 +427,58 @@ private:
     Proposal judged(const Candidate& candidate, bool backward, Proposal proposal,
                     Scratch& scratch) const {
         Sketch sketch;
-        if (draw_sketch(rules_, candidate, scratch.footprint, sketch) != Refusal::None) {
+        if (draw_path(rules_, candidate, sketch) != Refusal::None) {
+            return proposal;
+        }
+        PlacedCourse course{std::move(sketch.course), std::move(sketch.path), backward, false};
+        if (!proposal.fit) {
+            course.member.footprint = ground_.footprints.footprint(course.path, scratch.footprint);
+            return weighed(std::move(course), std::move(proposal), scratch);
+        }
+        const Fit fit = fitted(course, proposal.out, scratch);
+        if (!is_taken(proposal, taken_out(proposal.out) - fit.saved - slack()) ||
+            draw_sketch(rules_, moved(rules_, course, seed_station(course), fit.move),
+                        scratch.footprint, sketch) != Refusal::None) {
             return proposal;
         }
         return weighed({std::move(sketch.course), std::move(sketch.path), backward, false},
                        std::move(proposal), scratch);
     }
+
+    // What the layers cost more without a course.
+    [[nodiscard]] double taken_out(std::optional<std::size_t> out) const {
+        double sum = 0.0;
+        if (out) {
+            for (const std::int32_t sample : courses_[*out].member.footprint) {
+                const std::int32_t layers = layers_[at(sample)];
+                sum += cost(layers - 1) - cost(layers);
+            }
+        }
+        return sum;
+    }
+
+    // The move to where a course saves most with another taken out.
+    Fit fitted(const PlacedCourse& course, std::optional<std::size_t> out, Scratch& scratch) const {
+        const Strip strip = ground_.strips.strip(course.path, scratch.footprint);
+        if (out) {
+            for (const std::int32_t sample : courses_[*out].member.footprint) {
+                --scratch.shift[at(sample)];
+            }
+        }
+        std::vector<float> saving(strip.sample.size());
+        for (std::size_t i = 0; i < saving.size(); ++i) {
+            const std::size_t sample = at(strip.sample[i]);
+            const std::int32_t layers = layers_[sample] + scratch.shift[sample];
+            saving[i] = static_cast<float>(cost(layers) - cost(layers + 1));
+        }
+        if (out) {
+            forget(courses_[*out], scratch);
+        }
+        return fit_course(rules_, course, strip, saving);
+    }
+
+    // What else a change may save: hardly any helps more than two others to a family.
+    [[nodiscard]] double slack() const { return 2.0 * alone_cost(); }
 
     // The proposal to put in a course, if it is worth it and can be wound.
     Proposal weighed(PlacedCourse course, Proposal proposal, Scratch& scratch) const {
@@ -514,11 +487,13 @@ private:
             return proposal;
         }
         proposal.in = std::move(course);
-        if (!is_taken(proposal, change(proposal, scratch)) || !holds(*proposal.in) ||
-            (options_.verify && !options_.verify(*proposal.in))) {
+        const double by = change(proposal, scratch);
+        if (!is_taken(proposal, by - slack()) || !is_taken(proposal, by + alone_change(proposal)) ||
+            !holds(*proposal.in) || (options_.verify && !options_.verify(*proposal.in))) {
             return proposal;
         }
         if (options_.verify) {
+            proposal.shape.reset();  // the path is exact now
             proposal.in->member.footprint =
                 ground_.footprints.footprint(proposal.in->path, scratch.footprint);
         }
@@ -534,38 +509,49 @@ private:
         return windable;
     }
 
-    // Takes what still holds after those before it in the group.
+    // Takes what still holds after those before it in the group, one for each course.
     void take(std::vector<Proposal>& group) {
-        std::vector<std::size_t> touched;
-        std::vector<std::size_t> dropped;
         std::unique_ptr<Scratch> scratch = scratch_.take();
         for (Proposal& proposal : group) {
             if (!proposal.holds ||
-                (proposal.out &&
-                 std::find(touched.begin(), touched.end(), *proposal.out) != touched.end()) ||
-                !is_taken(proposal, change(proposal, *scratch))) {
+                !is_taken(proposal, change(proposal, *scratch) + alone_change(proposal))) {
                 continue;
             }
             ++effort_.accepted;
-            if (proposal.out) {
-                touched.push_back(*proposal.out);
-                lay(courses_[*proposal.out], -1);
+            const std::optional<std::size_t> out = proposal.out;
+            if (out) {
+                lay(courses_[*out], -1);
             }
             if (proposal.in) {
                 lay(*proposal.in, 1);
             }
-            if (proposal.in && proposal.out) {
-                courses_[*proposal.out] = std::move(*proposal.in);
+            if (proposal.in && out) {
+                courses_[*out] = std::move(*proposal.in);
+                neighbours_.replace(*out, std::move(*proposal.shape), proposal.beside);
             } else if (proposal.in) {
                 courses_.push_back(std::move(*proposal.in));
+                neighbours_.add(std::move(*proposal.shape), proposal.beside);
             } else {
-                dropped.push_back(*proposal.out);
+                courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(*out));
+                neighbours_.remove(*out);
+            }
+            alone_ = neighbours_.without_family({}, nullptr);
+            if (out) {
+                outdate(group, *out, !proposal.in);
             }
         }
         scratch_.put_back(std::move(scratch));
-        std::sort(dropped.begin(), dropped.end(), std::greater<>());
-        for (const std::size_t i : dropped) {
-            courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+
+    // The others' proposals for a course that has been changed are void; those for the ones behind
+    // it move up when it is gone.
+    static void outdate(std::vector<Proposal>& group, std::size_t course, bool gone) {
+        for (Proposal& proposal : group) {
+            if (proposal.out == course) {
+                proposal.holds = false;
+            } else if (gone && proposal.out && *proposal.out > course) {
+                --*proposal.out;
+            }
         }
     }
 
@@ -582,36 +568,13 @@ private:
     double heat_ = 0.0;
     std::vector<std::int32_t> layers_;  // per sample
     Joints joints_;
+    Neighbourhood neighbours_;
+    int alone_ = 0;  // courses without a family
     Pool scratch_;
     AnnealEffort effort_;
 };
 
 }  // namespace
-
-AnnealGround::AnnealGround(const CourseRules& rules, const CoverageSamples& measured,
-                           std::span<const Member> library, std::uint64_t seed)
-    : samples(sample_surface(
-          rules.mandrel.surface,
-          std::max(rules.tow.width_mm / kSamplesPerBand, std::sqrt(measured.area_mm2)), seed)),
-      footprints(rules.mandrel.surface, samples, rules.tow.width_mm),
-      passing(samples.size()),
-      ways(ways_between_nodes(library)) {
-    const NearestPoints index(samples.position_mm);
-    std::vector<std::int32_t> beside(measured.size(), -1);
-    parallel_for(measured.size(), kSampleChunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            beside[i] = index.nearest(measured.position_mm[i]);
-        }
-    });
-    for (std::size_t i = 0; i < library.size(); ++i) {
-        for (const std::int32_t sample : library[i].footprint) {
-            auto& here = passing[at(beside[at(sample)])];
-            if (here.empty() || here.back() != static_cast<std::int32_t>(i)) {
-                here.push_back(static_cast<std::int32_t>(i));
-            }
-        }
-    }
-}
 
 AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
                     std::span<const Member> library, std::span<const char> allowed,

@@ -6,20 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "winding/grow.h"
-#include "winding/library.h"
-#include "winding/samples.h"
+#include "winding/anneal_ground.h"
+#include "winding/placed_course.h"
 #include "winding/select.h"
 
 namespace meshwind {
-
-/// A course in its place, with the way it is wound.
-struct PlacedCourse {
-    Member member;
-    SurfacePath path;  ///< from end 0 to end 1
-    bool backward = false;
-    bool fixed = false;  ///< stays as it is
-};
 
 struct AnnealOptions {
     SelectOptions select{};
@@ -27,7 +18,7 @@ struct AnnealOptions {
     std::int64_t proposals = 100'000;
     /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It
     /// falls from `hot` to `cold`, by the same factor in equal numbers of proposals.
-    double hot = 0.03;
+    double hot = 0.1;
     double cold = 0.002;
     /// What a layer short of the target costs, against 1 for a layer too many or too few; it rises
     /// as the chance falls: first all is made even, then the last holes are closed.
@@ -39,19 +30,6 @@ struct AnnealOptions {
     /// it cannot be wound. Must be pure and thread-safe. Empty: a sketch is enough.
     std::function<bool(PlacedCourse& course)> verify{};
     std::function<void(double share)> progress{};
-};
-
-/// What courses are weighed on: samples of its own, others than those that coverage is measured on,
-/// so that what is found to be even was not made so for the very places that are measured.
-struct AnnealGround {
-    /// \param measured samples of the members' footprints
-    AnnealGround(const CourseRules& rules, const CoverageSamples& measured,
-                 std::span<const Member> library, std::uint64_t seed);
-
-    CoverageSamples samples;
-    FootprintFinder footprints;
-    std::vector<std::vector<std::int32_t>> passing;  ///< per sample: members of the library
-    Ways ways;                                       ///< of the library
 };
 
 /// What it took; for reports.

@@ -15,6 +15,7 @@ struct CoverOptions {
     FreeFibreRule free_fibre;
     SelectOptions select;
     std::uint64_t seed = 1;
+    int effort = 1;                ///< how long courses are annealed, as a multiple
     int candidates = 16000;        ///< tried over the whole surface
     int rounds = 3;                ///< of further candidates aimed at what is not reached yet
     int aimed_candidates = 4000;   ///< in each such round

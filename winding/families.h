@@ -1,9 +1,14 @@
 /// Families of parallel courses: what makes a plan readable, and a winding even.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "geodesic/surface_path.h"
 
@@ -12,10 +17,66 @@ namespace meshwind {
 /// A family has at least so many members.
 inline constexpr std::size_t kLeastFamily = 3;
 
-/// The family of every course, -1 where it belongs to none; numbered by their first members. Two
-/// courses are neighbours where over most of the length of either the other runs within one and a
-/// half bands beside it, in nearly the same direction or against it; a family is joined by
-/// neighbours. \param courses in winding order \param band_mm > 0
+/// A course as its neighbours see it: some places spread over it, and points close together.
+class CourseShape {
+public:
+    /// \param path at least two points \param band_mm > 0
+    CourseShape(const SurfacePath& path, double band_mm);
+
+    /// True when each runs beside the other over most of its length: within one and a half bands,
+    /// in nearly the same direction or against it.
+    [[nodiscard]] bool is_neighbour(const CourseShape& other) const;
+
+private:
+    static constexpr int kLanes = 8;
+    static constexpr std::size_t kPlaces = 24;
+    using Lanes = Eigen::Array<float, kLanes, 1>;
+
+    // Points and tangents that are tested at once. Single precision is good to 0.1 um.
+    struct Block {
+        std::array<Lanes, 3> position_mm;
+        std::array<Lanes, 3> tangent;
+    };
+
+    [[nodiscard]] bool runs_beside(const CourseShape& other) const;
+    [[nodiscard]] bool passes(const Eigen::Vector3f& position_mm,
+                              const Eigen::Vector3f& tangent) const;
+
+    std::array<Eigen::Vector3f, kPlaces> place_mm_;
+    std::array<Eigen::Vector3f, kPlaces> tangent_;
+    std::vector<Block> points_;
+    float most_mm2_;
+};
+
+/// Courses and which of them are neighbours.
+class Neighbourhood {
+public:
+    [[nodiscard]] std::size_t size() const { return shape_.size(); }
+
+    /// Per course: 1 where it and `shape` are neighbours.
+    [[nodiscard]] std::vector<char> beside(const CourseShape& shape) const;
+
+    /// \param row what beside() says of the shape
+    void add(CourseShape shape, const std::vector<char>& row);
+    void replace(std::size_t course, CourseShape shape, const std::vector<char>& row);
+    void remove(std::size_t course);
+
+    /// Per course its family, numbered by their first members; -1 where it belongs to none.
+    [[nodiscard]] std::vector<std::int32_t> families() const { return families({}, nullptr); }
+    /// How many belong to none, with one taken out and one with `row` put in.
+    [[nodiscard]] int without_family(std::optional<std::size_t> out,
+                                     const std::vector<char>* row) const;
+
+private:
+    [[nodiscard]] std::vector<std::int32_t> families(std::optional<std::size_t> out,
+                                                     const std::vector<char>* row) const;
+
+    std::vector<CourseShape> shape_;
+    std::vector<std::vector<char>> beside_;
+};
+
+/// The family of every course, -1 where it belongs to none; numbered by their first members. A
+/// family is joined by neighbours. \param courses in winding order \param band_mm > 0
 [[nodiscard]] std::vector<std::int32_t> families_of(std::span<const SurfacePath* const> courses,
                                                     double band_mm);
 

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kPatchChunk = 32;
+constexpr std::size_t kGroupChunk = 32;
 
 // Cosine between the normals of a sample and of the faces about it (60 deg): the wall opposite is
 // never covered. And between those of faces that are taken together (25 deg).
@@ -31,36 +31,42 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
+void forget(const std::vector<std::int32_t>& samples, FootprintFinder::Scratch& scratch) {
+    for (const std::int32_t sample : samples) {
+        scratch.last_seen_mm[at(sample)] = -std::numeric_limits<double>::infinity();
+    }
+}
+
 }  // namespace
 
 FootprintFinder::FootprintFinder(const Surface& surface, const CoverageSamples& samples,
                                  double band_mm)
     : samples_(samples), half_band_mm_(0.5 * band_mm) {
-    const std::vector<Patch> patches = patches_of(surface);
+    const std::vector<FaceGroup> groups = groups_of(surface);
     const NearestPoints index(samples.position_mm);
-    std::vector<std::vector<Block>> rows(patches.size());
-    centre_mm_.resize(patches.size());
-    parallel_for(patches.size(), kPatchChunk, [&](std::size_t first, std::size_t last) {
+    std::vector<std::vector<Block>> rows(groups.size());
+    centre_mm_.resize(groups.size());
+    parallel_for(groups.size(), kGroupChunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
-            centre_mm_[p] = patches[p].centre_mm;
+            centre_mm_[p] = groups[p].centre_mm;
             double reach = 0.0;
-            for (const std::int32_t face : patches[p].faces) {
+            for (const std::int32_t face : groups[p].faces) {
                 for (const std::int32_t v : surface.face[at(face)]) {
                     reach = std::max(reach, (surface.position_mm[at(v)] - centre_mm_[p]).norm());
                 }
             }
             std::vector<std::int32_t> near = index.within(centre_mm_[p], reach + half_band_mm_);
             std::erase_if(near, [&](std::int32_t sample) {
-                return samples.normal[at(sample)].dot(patches[p].normal) < kSameSide;
+                return samples.normal[at(sample)].dot(groups[p].normal) < kSameSide;
             });
             rows[p] = blocks_of(near, centre_mm_[p]);
         }
     });
-    patch_of_.resize(surface.face.size());
+    group_of_.resize(surface.face.size());
     begin_.push_back(0);
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-        for (const std::int32_t face : patches[p].faces) {
-            patch_of_[at(face)] = static_cast<std::int32_t>(p);
+    for (std::size_t p = 0; p < groups.size(); ++p) {
+        for (const std::int32_t face : groups[p].faces) {
+            group_of_[at(face)] = static_cast<std::int32_t>(p);
         }
         near_.insert(near_.end(), rows[p].begin(), rows[p].end());
         begin_.push_back(static_cast<std::int32_t>(near_.size()));
@@ -68,7 +74,7 @@ FootprintFinder::FootprintFinder(const Surface& surface, const CoverageSamples& 
 }
 
 // Faces side by side that look about the same way, up to half a band around the first.
-std::vector<FootprintFinder::Patch> FootprintFinder::patches_of(const Surface& surface) const {
+std::vector<FootprintFinder::FaceGroup> FootprintFinder::groups_of(const Surface& surface) const {
     const auto centre = [&](std::int32_t face) -> Vector3d {
         const auto& v = surface.face[at(face)];
         return (surface.position_mm[at(v[0])] + surface.position_mm[at(v[1])] +
@@ -82,27 +88,27 @@ std::vector<FootprintFinder::Patch> FootprintFinder::patches_of(const Surface& s
             .cross(surface.position_mm[at(v[2])] - a)
             .normalized();
     };
-    std::vector<Patch> patches;
+    std::vector<FaceGroup> groups;
     std::vector<char> taken(surface.face.size(), 0);
     for (std::int32_t first = 0; at(first) < surface.face.size(); ++first) {
         if (taken[at(first)] != 0) {
             continue;
         }
         taken[at(first)] = 1;
-        Patch patch{centre(first), normal(first), {first}};
-        for (std::size_t i = 0; i < patch.faces.size(); ++i) {
-            for (const std::int32_t next : surface.neighbour[at(patch.faces[i])]) {
+        FaceGroup group{centre(first), normal(first), {first}};
+        for (std::size_t i = 0; i < group.faces.size(); ++i) {
+            for (const std::int32_t next : surface.neighbour[at(group.faces[i])]) {
                 if (next != kNoFace && taken[at(next)] == 0 &&
-                    (centre(next) - patch.centre_mm).norm() < half_band_mm_ &&
-                    normal(next).dot(patch.normal) > kSameWay) {
+                    (centre(next) - group.centre_mm).norm() < half_band_mm_ &&
+                    normal(next).dot(group.normal) > kSameWay) {
                     taken[at(next)] = 1;
-                    patch.faces.push_back(next);
+                    group.faces.push_back(next);
                 }
             }
         }
-        patches.push_back(std::move(patch));
+        groups.push_back(std::move(group));
     }
-    return patches;
+    return groups;
 }
 
 std::vector<FootprintFinder::Block> FootprintFinder::blocks_of(
@@ -129,16 +135,16 @@ FootprintFinder::Scratch FootprintFinder::make_scratch() const {
     return {std::vector<double>(samples_.size(), -std::numeric_limits<double>::infinity())};
 }
 
-std::vector<std::int32_t> FootprintFinder::footprint(const SurfacePath& path,
-                                                     Scratch& scratch) const {
-    std::vector<std::int32_t> found;
+template <typename Found>
+void FootprintFinder::visit(const SurfacePath& path, Scratch& scratch, const Found& found) const {
     const double again_mm = 4.0 * half_band_mm_;
     const auto half_band = static_cast<float>(half_band_mm_);
     for (std::size_t i = 0; i + 1 < path.size();) {
+        const std::size_t station = i;
         const PathPoint& from = path[i];
         // The segment lies in the face that both ends share: the one its second end was reached in.
-        const std::int32_t patch_index = patch_of_[at(path[++i].at.face)];
-        while (i + 1 < path.size() && patch_of_[at(path[i + 1].at.face)] == patch_index &&
+        const std::int32_t group_index = group_of_[at(path[++i].at.face)];
+        while (i + 1 < path.size() && group_of_[at(path[i + 1].at.face)] == group_index &&
                path[i + 1].s_mm - from.s_mm < half_band_mm_ &&
                path[i + 1].normal.dot(from.normal) > kStraight) {
             ++i;
@@ -148,12 +154,12 @@ std::vector<std::int32_t> FootprintFinder::footprint(const SurfacePath& path,
         if (length <= 0.0) {
             continue;
         }
-        const std::size_t patch = at(patch_index);
+        const std::size_t group = at(group_index);
         const Eigen::Vector3f along = (step / length).cast<float>();
         const Eigen::Vector3f up = from.normal.cast<float>();
         const Eigen::Vector3f across = up.cross(along);
-        const Eigen::Vector3f start = (from.position_mm - centre_mm_[patch]).cast<float>();
-        for (std::int32_t k = begin_[patch]; k < begin_[patch + 1]; ++k) {
+        const Eigen::Vector3f start = (from.position_mm - centre_mm_[group]).cast<float>();
+        for (std::int32_t k = begin_[group]; k < begin_[group + 1]; ++k) {
             const Block& block = near_[at(k)];
             const Lanes x = block.offset_mm[0] - start.x();
             const Lanes y = block.offset_mm[1] - start.y();
@@ -174,16 +180,33 @@ std::vector<std::int32_t> FootprintFinder::footprint(const SurfacePath& path,
                 const std::int32_t sample = block.sample[lane];
                 double& seen = scratch.last_seen_mm[at(sample)];
                 if (from.s_mm - seen > again_mm) {
-                    found.push_back(sample);
+                    found(sample, beside[static_cast<Eigen::Index>(lane)], station);
                 }
                 seen = from.s_mm;
             }
         }
     }
-    for (const std::int32_t sample : found) {
-        scratch.last_seen_mm[at(sample)] = -std::numeric_limits<double>::infinity();
-    }
-    return found;
+}
+
+std::vector<std::int32_t> FootprintFinder::footprint(const SurfacePath& path,
+                                                     Scratch& scratch) const {
+    std::vector<std::int32_t> samples;
+    visit(path, scratch, [&](std::int32_t sample, float /*left_mm*/, std::size_t /*station*/) {
+        samples.push_back(sample);
+    });
+    forget(samples, scratch);
+    return samples;
+}
+
+Strip FootprintFinder::strip(const SurfacePath& path, Scratch& scratch) const {
+    Strip strip;
+    visit(path, scratch, [&](std::int32_t sample, float left_mm, std::size_t station) {
+        strip.sample.push_back(sample);
+        strip.left_mm.push_back(left_mm);
+        strip.station.push_back(static_cast<std::int32_t>(station));
+    });
+    forget(strip.sample, scratch);
+    return strip;
 }
 
 }  // namespace meshwind

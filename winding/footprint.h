@@ -12,6 +12,13 @@
 
 namespace meshwind {
 
+/// Samples in a strip along a path, with where they lie.
+struct Strip {
+    std::vector<std::int32_t> sample;
+    std::vector<float> left_mm;         ///< distance to the left of the path
+    std::vector<std::int32_t> station;  ///< of the path, just before
+};
+
 /// Finds footprints; immutable once built, so one serves all threads.
 class FootprintFinder {
 public:
@@ -30,19 +37,26 @@ public:
     [[nodiscard]] std::vector<std::int32_t> footprint(const SurfacePath& path,
                                                       Scratch& scratch) const;
 
+    /// The same samples, with where they lie beside the path.
+    [[nodiscard]] Strip strip(const SurfacePath& path, Scratch& scratch) const;
+
 private:
     static constexpr int kLanes = 8;
     using Lanes = Eigen::Array<float, kLanes, 1>;
 
+    // Calls `found(sample, left_mm, station)` for every sample of a footprint.
+    template <typename Found>
+    void visit(const SurfacePath& path, Scratch& scratch, const Found& found) const;
+
     // Faces that are taken together: their samples stay at hand while a path crosses them.
-    struct Patch {
+    struct FaceGroup {
         Eigen::Vector3d centre_mm;
         Eigen::Vector3d normal;
         std::vector<std::int32_t> faces;
     };
-    [[nodiscard]] std::vector<Patch> patches_of(const Surface& surface) const;
+    [[nodiscard]] std::vector<FaceGroup> groups_of(const Surface& surface) const;
 
-    // Samples that are tested at once, as offsets from the patch's centre: in single precision they
+    // Samples that are tested at once, as offsets from the group's centre: in single precision they
     // are good to a few nm. Lanes left over hold places far off.
     struct Block {
         std::array<Lanes, 3> offset_mm;
@@ -53,10 +67,10 @@ private:
 
     const CoverageSamples& samples_;
     double half_band_mm_;
-    std::vector<std::int32_t> patch_of_;      // per face
-    std::vector<Eigen::Vector3d> centre_mm_;  // per patch
-    std::vector<std::int32_t> begin_;         // per patch: rows into near_
-    std::vector<Block> near_;  // samples within half a band of the patch, on its side
+    std::vector<std::int32_t> group_of_;      // per face
+    std::vector<Eigen::Vector3d> centre_mm_;  // per group
+    std::vector<std::int32_t> begin_;         // per group: rows into near_
+    std::vector<Block> near_;  // samples within half a band of the group, on its side
 };
 
 }  // namespace meshwind

@@ -4,16 +4,14 @@
 #include <array>
 #include <utility>
 
+#include "core/parallel.h"
 #include "core/units.h"
 #include "winding/balance.h"
+#include "winding/placed_course.h"
 #include "winding/random.h"
 
 namespace meshwind {
 namespace {
-
-// Steering of the candidates as shares of the friction: geodesic, and three strengths to either
-// side. The strongest leaves room for the error of measuring slip on the mesh.
-constexpr std::array<double, 7> kSteering = {0.0, 0.31, -0.31, 0.62, -0.62, 0.92, -0.92};
 
 // A way between two nodes is scarce with fewer courses than this, and worth the search when at
 // least so many lie there, windable or not.
@@ -24,11 +22,14 @@ constexpr std::size_t kShare = 240;  // of every scarce way in the draw: all cou
 
 // Of so many candidates first, this share of the sketches admitted must hold for sketches to be
 // relied on. On tees of fine meshes nine in ten do.
-constexpr std::size_t kFirstCandidates = 2000;
+constexpr std::size_t kFirstCandidates = 500;
 constexpr double kTrustedShare = 0.7;
 
 // Candidates that are tried under other rules.
 constexpr std::uint64_t kOtherwise = 3000;
+
+// Candidates near members that one task draws.
+constexpr std::size_t kNearChunk = 32;
 
 // How far a candidate near a member is turned at most.
 constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
@@ -80,15 +81,17 @@ private:
     }
 
     // True when most of what sketches admit holds by all rules.
-    [[nodiscard]] bool sketches_hold(const std::vector<std::int32_t>& seeds) const {
+    [[nodiscard]] bool sketches_hold(std::span<const std::int32_t> seeds) const {
         std::vector<Candidate> candidates;
         for (std::size_t i = 0; i < seeds.size(); ++i) {
             candidates.push_back(candidate_at(seeds[i], i));
         }
-        const std::size_t sketched =
-            build_library(rules_, candidates, Judging::Sketches).members.size();
-        const std::size_t hold = build_library(rules_, candidates, Judging::Courses).members.size();
-        return static_cast<double>(hold) >= kTrustedShare * static_cast<double>(sketched);
+        std::vector<Candidate> sketched;
+        for (const Member& member : build_library(rules_, candidates).members) {
+            sketched.push_back(member.candidate);
+        }
+        const std::size_t hold = build_library(rules_, sketched, Judging::Courses).members.size();
+        return static_cast<double>(hold) >= kTrustedShare * static_cast<double>(sketched.size());
     }
 
     // Adds the admissible ones to the library; says what became of each.
@@ -118,9 +121,7 @@ private:
         tell(0.0);
         const std::size_t first = std::min(kFirstCandidates, seeds.size());
         library_.judging =
-            sketches_hold({seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(first)})
-                ? Judging::Sketches
-                : Judging::Courses;
+            sketches_hold(std::span(seeds).first(first)) ? Judging::Sketches : Judging::Courses;
         try_candidates(seeds);
         for (int round = 0; round < options_.rounds; ++round) {
             tell((round + 1.0) / (options_.rounds + 1.0));
@@ -156,22 +157,26 @@ private:
                 }
             }
         }
-        std::vector<Candidate> candidates;
-        for (int i = 0; !near.empty() && i < options_.scarce_candidates / kScarceRounds; ++i) {
-            const std::uint64_t draw = draws_++;
-            candidates.push_back(candidate_near(
-                library_.members[at(near[random_bits(stream(Stream::Seeds), ~draw) % near.size()])],
-                draw));
+        if (near.empty()) {
+            return;
         }
+        const auto count = static_cast<std::size_t>(options_.scarce_candidates / kScarceRounds);
+        std::vector<Candidate> candidates(count);
+        parallel_for(count, kNearChunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint64_t draw = draws_ + i;
+                const std::uint64_t pick = random_bits(stream(Stream::Seeds), ~draw) % near.size();
+                candidates[i] = candidate_near(library_.members[at(near[pick])], draw);
+            }
+        });
+        draws_ += count;
         judge_candidates(candidates);
     }
 
     // A candidate through a station of a member, turned a little, with the same or another
     // steering.
-    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) {
-        Sketch sketch;
-        (void)draw_sketch(rules_, member.candidate, scratch_, sketch);
-        const SurfacePath& path = sketch.path;
+    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) const {
+        const SurfacePath path = trace_both_ways(rules_, member.candidate, TraceMethod::Walk);
         const auto pick = static_cast<std::size_t>(random_unit(stream(Stream::Sampling), draw) *
                                                    static_cast<double>(path.size()));
         const PathPoint& station = path[pick];
@@ -199,7 +204,6 @@ private:
     const CoverageSamples& samples_;
     const CoverOptions& options_;
     Library library_;
-    FootprintFinder::Scratch scratch_ = rules_.footprints.make_scratch();
     std::uint64_t draws_ = 0;
 };
 

@@ -179,9 +179,10 @@ double direction_angle(const Vector3d& normal, const Vector3d& tangent) {
     return std::atan2(tangent.dot(normal.cross(x)), tangent.dot(x));
 }
 
-SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate) {
-    return join_halves(trace_half(rules, candidate, -1.0, TraceMethod::Patches).path,
-                       trace_half(rules, candidate, 1.0, TraceMethod::Patches).path);
+SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate,
+                            TraceMethod method) {
+    return join_halves(trace_half(rules, candidate, -1.0, method).path,
+                       trace_half(rules, candidate, 1.0, method).path);
 }
 
 bool is_windable(const CourseRules& rules, const SurfacePath& path, const TautString& string,
@@ -266,8 +267,7 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
     return Refusal::None;
 }
 
-Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
-                    FootprintFinder::Scratch& scratch, Sketch& sketch) {
+Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
     Member& course = sketch.course;
     course.candidate = candidate;
     course.windable_forward = false;
@@ -276,7 +276,6 @@ Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
     const Refusal refusal = follow(rules, TraceMethod::Walk, course, run);
     if (refusal == Refusal::None) {
         course.length_mm = run.path.back().s_mm;
-        course.footprint = rules.footprints.footprint(run.path, scratch);
         sketch.path = std::move(run.path);
     }
     return refusal;
@@ -287,7 +286,7 @@ namespace {
 Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
                         FootprintFinder::Scratch& scratch, Member& member) {
     Sketch sketch;
-    const Refusal refusal = draw_sketch(rules, candidate, scratch, sketch);
+    const Refusal refusal = draw_path(rules, candidate, sketch);
     if (refusal != Refusal::None) {
         return refusal;
     }
@@ -299,11 +298,21 @@ Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
     if (!course.windable_forward && !course.windable_backward) {
         return Refusal::NotWindable;
     }
+    course.footprint = rules.footprints.footprint(sketch.path, scratch);
     member = std::move(course);
     return Refusal::None;
 }
 
 }  // namespace
+
+Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
+                    FootprintFinder::Scratch& scratch, Sketch& sketch) {
+    const Refusal refusal = draw_path(rules, candidate, sketch);
+    if (refusal == Refusal::None) {
+        sketch.course.footprint = rules.footprints.footprint(sketch.path, scratch);
+    }
+    return refusal;
+}
 
 LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> candidates,
                           Judging judging) {

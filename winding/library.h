@@ -65,8 +65,9 @@ struct CourseRules {
 /// `normal`.
 [[nodiscard]] double direction_angle(const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent);
 
-/// The whole path of a candidate from rim to rim; empty when an end reaches no rim.
-[[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate);
+/// The whole path of a candidate, as far as it can be followed either way.
+[[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate,
+                                          TraceMethod method = TraceMethod::Patches);
 
 /// A finished course, from end 0 to end 1.
 struct FollowedCourse {
@@ -93,6 +94,10 @@ struct Sketch {
     Member course;     ///< windable neither way until that is looked into
     SurfacePath path;  ///< from end 0 to end 1
 };
+
+/// Judges a candidate by the walk alone: as draw_sketch(), but without a footprint.
+[[nodiscard]] Refusal draw_path(const CourseRules& rules, const Candidate& candidate,
+                                Sketch& sketch);
 
 /// Judges a candidate by the walk: ends, turns and bridges. On Refusal::None `sketch` is filled, on
 /// others it is of no use. Slip is not measured: the candidate is steered within the friction.

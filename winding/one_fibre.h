@@ -37,7 +37,7 @@ struct FibreRoute {
 /// What is known of the way between two nodes.
 struct KnownWay {
     bool abounds = false;            ///< many courses lead there
-    std::vector<LaidCourse> proven;  ///< courses that hold, the best link first
+    std::vector<LaidCourse> proven;  ///< courses that hold, in the library's order
 };
 
 /// The route whose stages' courses cover most samples. \param ways by (departure, arrival)

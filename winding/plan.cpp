@@ -22,6 +22,8 @@ const char* name_of(Rejection rejection) {
             return "the machine refuses the course or a turn next to it";
         case Rejection::Apart:
             return "one fibre cannot join the course to the others";
+        case Rejection::NotPlanned:
+            return "nothing is planned where so little of the wall is in reach";
     }
     return "";
 }

@@ -41,8 +41,9 @@ enum class Rejection : std::uint8_t {
     HeadHit,
     InItsPlace,  ///< the machine refuses it, or a turn next to it, between its neighbours
     Apart,       ///< no single fibre joins it to the others
+    NotPlanned,  ///< too little of the wall is in reach
 };
-inline constexpr std::size_t kRejections = 9;
+inline constexpr std::size_t kRejections = 10;
 
 /// Words for a report: "the free fibre hits something", ...
 [[nodiscard]] const char* name_of(Rejection rejection);
@@ -60,7 +61,8 @@ struct Coverage {
 struct Uncovered {
     std::int32_t region = -1;
     double area_mm2 = 0.0;
-    std::string reason;
+    std::string reason;  ///< the rule, and of how many courses it is the reason
+    std::string rule;
 };
 
 /// A rule that keeps wall bare, loosened: what courses would reach then.
@@ -79,6 +81,8 @@ struct TurnsAtRim {
 
 /// What planning took; for reports.
 struct PlanEffort {
+    std::uint64_t seed = 0;
+    int effort = 0;  ///< asked for
     std::int64_t candidates = 0;
     std::array<std::int64_t, kRefusals> refusals{};
     std::int64_t proposals = 0;    ///< weighed while the courses were annealed

@@ -46,16 +46,22 @@ std::vector<Rejection> commonest_rejections(std::size_t samples, std::span<const
     return commonest;
 }
 
-std::string words(const Reason& reason, int courses) {
+std::string rule_of(const Reason& reason) {
     if (!reason.reached) {
         return reason.refusal == Refusal::None ? "no candidate was tried here"
                                                : name_of(reason.refusal);
     }
-    if (reason.rejection == Rejection::None) {
-        return "a course for it would lay more fibre over covered wall than it gains";
-    }
-    return std::string(name_of(reason.rejection)) + " (so with " + std::to_string(courses) +
-           (courses == 1 ? " course" : " courses") + " that would cover it)";
+    return reason.rejection == Rejection::None
+               ? "a course for it would lay more fibre over covered wall than it gains"
+               : name_of(reason.rejection);
+}
+
+// Of how many courses a rejection is the reason.
+std::string so_with(const Reason& reason, int courses) {
+    return reason.rejection == Rejection::None
+               ? ""
+               : " (so with " + std::to_string(courses) + (courses == 1 ? " course" : " courses") +
+                     " that would cover it)";
 }
 
 }  // namespace
@@ -91,7 +97,8 @@ std::vector<Uncovered> uncovered_wall(const Surface& surface, const CoverageSamp
     std::vector<Uncovered> uncovered;
     uncovered.reserve(area_mm2.size());
     for (const auto& [reason, mm2] : area_mm2) {
-        uncovered.push_back({reason.region, mm2, words(reason, courses[reason])});
+        const std::string rule = rule_of(reason);
+        uncovered.push_back({reason.region, mm2, rule + so_with(reason, courses[reason]), rule});
     }
     return uncovered;
 }

@@ -213,6 +213,8 @@ class BadInput(program.ProgramTest):
                                 (["cylinder.stl", "--job", "none.json"], "none.json"),
                                 (["cylinder.stl", "--threads", "-1"], "threads"),
                                 (["cylinder.stl", "--seed", "many"], "seed"),
+                                (["cylinder.stl", "--effort", "0"], "effort"),
+                                (["cylinder.stl", "--effort", "2000"], "effort"),
                                 (["cylinder.stl", "--units", "cubit"], "cubit"),
                                 (["cylinder.stl", "inspect", "cylinder.stl"], "cylinder.stl"),
                                 (["make", "cube", "-o", "a.stl"], ""),

@@ -1,10 +1,12 @@
 #include "winding/families.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "winding/random.h"
 
 namespace meshwind {
 namespace {
@@ -58,6 +60,47 @@ TEST(Families, CrossingCoursesAreNotParallel) {
         courses.push_back(&path);
     }
     EXPECT_EQ(families_of(courses, kBand_mm), std::vector<std::int32_t>(4, -1));
+}
+
+// Courses that come and go one by one are the same as all of them at once.
+TEST(Neighbourhood, KeepsUpWithCoursesThatComeAndGo) {
+    Neighbourhood kept;
+    std::vector<SurfacePath> paths;
+    std::uint64_t index = 0;
+    const auto draw = [&] { return random_unit(4, index++); };
+    const auto any_helix = [&] { return helix(draw() < 0.5 ? 0.7 : 0.9, 60.0 * draw()); };
+    const auto row_of = [&](const CourseShape& shape) { return kept.beside(shape); };
+    for (int i = 0; i < 200; ++i) {
+        const double kind = draw();
+        const auto one = paths.empty() ? 0 : random_bits(4, index++) % paths.size();
+        if (paths.size() < 5 || kind < 0.4) {
+            paths.push_back(any_helix());
+            const CourseShape shape(paths.back(), kBand_mm);
+            kept.add(shape, row_of(shape));
+        } else if (kind < 0.7) {
+            const SurfacePath path = any_helix();
+            const CourseShape shape(path, kBand_mm);
+            std::vector<SurfacePath> after = paths;
+            after[one] = path;
+            std::vector<const SurfacePath*> courses;
+            for (const SurfacePath& course : after) {
+                courses.push_back(&course);
+            }
+            const auto family = families_of(courses, kBand_mm);
+            const std::vector<char> row = row_of(shape);
+            EXPECT_EQ(kept.without_family(one, &row), std::count(family.begin(), family.end(), -1));
+            kept.replace(one, shape, row);
+            paths = std::move(after);
+        } else {
+            kept.remove(one);
+            paths.erase(paths.begin() + static_cast<std::ptrdiff_t>(one));
+        }
+        std::vector<const SurfacePath*> courses;
+        for (const SurfacePath& course : paths) {
+            courses.push_back(&course);
+        }
+        ASSERT_EQ(kept.families(), families_of(courses, kBand_mm)) << "step " << i;
+    }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "winding/library.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -11,42 +12,13 @@
 namespace meshwind {
 namespace {
 
-constexpr double kExtension_mm = 120.0;
+// As many candidates to either side as along geodesics.
+constexpr double kSteered = 0.8;
 
-// Everything that candidates are judged by, on one mandrel.
-struct Scene {
-    explicit Scene(Mandrel loaded)
-        : mandrel(std::move(loaded)),
-          obstacles(test::obstacles_of(mandrel, kExtension_mm)),
-          samples(sample_surface(mandrel.surface, 2.5, 1)),
-          footprints(mandrel.surface, samples, 10.0),
-          rules{mandrel, obstacles, footprints, {}, {}, {}} {
-        rules.tow.width_mm = 10.0;
-        rules.turn = {.friction = rules.tow.friction,
-                      .extension_mm = kExtension_mm,
-                      .band_mm = rules.tow.width_mm};
-        rules.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
+struct Scene : test::CourseScene {
+    explicit Scene(Mandrel loaded) : CourseScene(std::move(loaded), Tow{}.friction) {
         rules.free_fibre.min_mm = 40.0;
-        rules.max_half_length_mm = 2000.0;
     }
-
-    [[nodiscard]] std::vector<Candidate> candidates(int count, std::uint64_t seed) const {
-        test::Draw draw(seed);
-        std::vector<Candidate> all;
-        for (int i = 0; i < count; ++i) {
-            const auto sample =
-                static_cast<std::size_t>(draw.below(static_cast<std::int32_t>(samples.size())));
-            const double slip = (draw.below(3) - 1) * 0.8 * rules.tow.friction;
-            all.push_back({samples.at[sample], draw.between(0.0, kPi), slip});
-        }
-        return all;
-    }
-
-    Mandrel mandrel;
-    RayQuery obstacles;
-    CoverageSamples samples;
-    FootprintFinder footprints;
-    CourseRules rules;
 };
 
 const Scene& cylinder_scene() {
@@ -115,7 +87,7 @@ void expect_windable(const Scene& scene, const SurfacePath& path) {
 void expect_members_keep_the_rules(const Scene& scene, int candidates, std::size_t least) {
     FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
     std::size_t admitted = 0;
-    for (const Candidate& candidate : scene.candidates(candidates, 11)) {
+    for (const Candidate& candidate : scene.candidates(candidates, 11, kSteered)) {
         Member member;
         if (judge(scene.rules, candidate, scratch, member) != Refusal::None) {
             continue;
@@ -156,13 +128,15 @@ TEST(Judge, MembersOnATeeKeepEveryRule) {
 // A sketch is a first opinion: nearly all that it admits the patches admit too, nearly where the
 // sketch has it, and hardly anything else.
 void expect_sketches_like_courses(const Scene& scene, int candidates) {
-    const auto tried = scene.candidates(candidates, 12);
+    const auto tried = scene.candidates(candidates, 12, kSteered);
     const LibraryPart library = build_library(scene.rules, tried);
     ASSERT_EQ(library.outcome.size(), tried.size());
     FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
     std::size_t next = 0;
     int agreed = 0;
     int differed = 0;
+    int both = 0;
+    int apart = 0;
     for (std::size_t i = 0; i < tried.size(); ++i) {
         Member exact;
         const bool holds = judge(scene.rules, tried[i], scratch, exact) == Refusal::None;
@@ -175,12 +149,14 @@ void expect_sketches_like_courses(const Scene& scene, int candidates) {
         if (holds) {
             EXPECT_EQ(sketch.end[0].rim, exact.end[0].rim);
             EXPECT_EQ(sketch.end[1].rim, exact.end[1].rim);
-            // Both follow the same steering; the walk is of second order only, and the edges are
-            // half as long as the tee's blend is wide.
-            EXPECT_NEAR(sketch.length_mm / exact.length_mm, 1.0, 0.1);
+            ++both;
+            apart += std::abs(sketch.length_mm / exact.length_mm - 1.0) > 0.03 ? 1 : 0;
         }
     }
     EXPECT_EQ(next, library.members.size());
+    // Both follow the same steering, the walk to second order only: a course that passes a saddle
+    // several times may come out elsewhere.
+    EXPECT_LE(apart, both / 20) << both;
     EXPECT_GT(agreed, 10);
     EXPECT_LT(differed, agreed / 4) << agreed;
 }
@@ -190,13 +166,13 @@ TEST(BuildLibrary, SketchesOnACylinderAreLikeTheCourses) {
 }
 
 TEST(BuildLibrary, SketchesOnATeeAreLikeTheCourses) {
-    expect_sketches_like_courses(tee_scene(), 600);
+    expect_sketches_like_courses(Scene(test::small_tee(3.0)), 600);
 }
 
 // The steering of the part behind the seed is its own.
 TEST(TraceBothWays, SteersAheadAndBehindTheSeed) {
     const Scene& scene = cylinder_scene();
-    for (Candidate candidate : scene.candidates(20, 14)) {
+    for (Candidate candidate : scene.candidates(20, 14, kSteered)) {
         candidate.slip_ratio = 0.1;
         candidate.more_behind = -0.25;
         const SurfacePath path = trace_both_ways(scene.rules, candidate);
@@ -215,7 +191,7 @@ TEST(TraceBothWays, SteersAheadAndBehindTheSeed) {
 
 TEST(BuildLibrary, IsTheSameForAnyNumberOfThreads) {
     const Scene& scene = tee_scene();
-    const auto candidates = scene.candidates(200, 13);
+    const auto candidates = scene.candidates(200, 13, kSteered);
     set_thread_count(1);
     const LibraryPart one = build_library(scene.rules, candidates);
     set_thread_count(2);

@@ -1,0 +1,59 @@
+#include "winding/joints.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/winding/fixtures.h"
+#include "winding/balance.h"
+
+namespace meshwind {
+namespace {
+
+// A course from one rim to another whose ends have the given senses.
+Member between(std::int32_t from, std::int32_t to, int sense = 1) {
+    Member member;
+    member.end[0].rim = from;
+    member.end[1].rim = to;
+    member.end[0].sense = sense;
+    member.end[1].sense = sense;
+    return member;
+}
+
+TEST(Joints, AgreeWithTheCoursesOneByOne) {
+    constexpr std::int32_t kRims = 4;
+    test::Draw draw(8);
+    Joints joints(2 * kRims);
+    std::vector<int> excess(2 * kRims, 0);
+    for (int i = 0; i < 60; ++i) {
+        const Member member = test::random_member(draw, kRims, 10);
+        const bool backward = draw.coin();
+        joints.add(member, backward, 1);
+        ++excess[arrival_node(end_of(member, backward))];
+        --excess[departure_node(start_of(member, backward))];
+    }
+    int loose = 0;
+    for (std::size_t node = 0; node < excess.size(); ++node) {
+        EXPECT_EQ(joints.excess(node), excess[node]);
+        loose += std::abs(excess[node]);
+    }
+    EXPECT_EQ(joints.loose_ends(), loose);
+}
+
+TEST(Joints, CountsPartsThatNoCourseJoins) {
+    Joints joints(6);
+    EXPECT_EQ(joints.parts(), 1);
+    const Member low = between(0, 0);
+    const Member high = between(1, 1);
+    joints.add(low, false, 1);
+    EXPECT_EQ(joints.parts(), 1);
+    joints.add(high, false, 1);
+    EXPECT_EQ(joints.parts(), 2);
+    const Member link = between(0, 1);
+    joints.add(link, false, 1);
+    EXPECT_EQ(joints.parts(), 1);
+    joints.add(link, false, -1);
+    EXPECT_EQ(joints.parts(), 2);
+    EXPECT_FALSE(joints.has_courses(4));
+}
+
+}  // namespace
+}  // namespace meshwind

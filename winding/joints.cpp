@@ -1,0 +1,67 @@
+#include "winding/joints.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+
+#include "winding/balance.h"
+
+namespace meshwind {
+
+void Joints::add(const Member& member, bool backward, int times) {
+    courses_[departure_node(start_of(member, backward)) * nodes_ +
+             arrival_node(end_of(member, backward))] += times;
+}
+
+int Joints::excess(std::size_t node) const {
+    int excess = 0;
+    for (std::size_t other = 0; other < nodes_; ++other) {
+        excess += courses_[other * nodes_ + node] - courses_[node * nodes_ + other];
+    }
+    return excess;
+}
+
+int Joints::loose_ends() const {
+    int loose = 0;
+    for (std::size_t node = 0; node < nodes_; ++node) {
+        loose += std::abs(excess(node));
+    }
+    return loose;
+}
+
+std::vector<std::size_t> Joints::part_of() const {
+    std::vector<std::size_t> part(nodes_);
+    std::iota(part.begin(), part.end(), std::size_t{0});
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t i = 0; i < nodes_; ++i) {
+            for (std::size_t j = 0; j < nodes_; ++j) {
+                if (courses_[i * nodes_ + j] > 0 && part[i] != part[j]) {
+                    part[i] = part[j] = std::min(part[i], part[j]);
+                    changed = true;
+                }
+            }
+        }
+    }
+    return part;
+}
+
+bool Joints::has_courses(std::size_t node) const {
+    for (std::size_t other = 0; other < nodes_; ++other) {
+        if (courses_[other * nodes_ + node] + courses_[node * nodes_ + other] > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int Joints::parts() const {
+    const std::vector<std::size_t> part = part_of();
+    int parts = 0;
+    for (std::size_t node = 0; node < nodes_; ++node) {
+        parts += part[node] == node && has_courses(node) ? 1 : 0;
+    }
+    return std::max(1, parts);
+}
+
+}  // namespace meshwind

@@ -1,0 +1,19 @@
+/// From courses in their order to the pieces of a plan.
+#pragma once
+
+#include <span>
+
+#include "winding/order.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+/// A finished course as it is wound.
+[[nodiscard]] Piece piece_of(FollowedCourse course, const Member& member, bool backward);
+
+/// Lays out courses and the turns between them: the plan's pieces, fibres, turns and worst figures.
+/// \param members proven ones \param order of some of them
+void lay_out(const CourseRules& rules, std::span<const Member> members,
+             std::span<const OrderedCourse> order, Plan& plan);
+
+}  // namespace meshwind
