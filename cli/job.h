@@ -30,9 +30,9 @@ enum class RedundancyRule { CentralAngle, Hold, Optimal };
 /// One layer; each kind reads what concerns it.
 struct LayerJob {
     LayerKind kind = LayerKind::Auto;
-    double angle_deg = 45.0;     ///< 0 (axial) .. 90 (hoop), from the local axial direction
-    double target_layers = 1.0;  ///< > 0; how often each place is to be covered
-    std::string file;            ///< landing points of an Imported layer; empty for all others
+    std::optional<double> angle_deg;  ///< 0 (axial) .. 90 (hoop), from the local axial direction
+    double target_layers = 1.0;       ///< > 0; how often each place is to be covered
+    std::string file;                 ///< landing points of an Imported layer; empty for all others
 };
 
 struct Job {

@@ -108,7 +108,9 @@ LayerJob read_layer(const JsonValue& value) {
     LayerJob layer;
     const JsonObject object = value.object({"kind", "angle", "target_layers", "file"});
     read_word(object, "kind", kLayerWords, layer.kind);
-    read_number(object, "angle", kAngleDeg, layer.angle_deg);
+    if (object.optional("angle")) {
+        read_number(object, "angle", kAngleDeg, layer.angle_deg.emplace());
+    }
     read_number(object, "target_layers", kPositive, layer.target_layers);
     const auto file = object.optional("file");
     if (file) {
@@ -248,7 +250,9 @@ std::string layers_text(std::span<const LayerJob> layers) {
     for (const LayerJob& layer : layers) {
         text += text.size() > 1 ? ",\n             {" : "{";
         append_member(text, "kind", json_string(word_of(layer.kind, kLayerWords)));
-        append_member(text, "angle", layer.angle_deg);
+        if (layer.angle_deg) {
+            append_member(text, "angle", *layer.angle_deg);
+        }
         append_member(text, "target_layers", layer.target_layers);
         if (!layer.file.empty()) {
             append_member(text, "file", json_string(layer.file));

@@ -62,6 +62,18 @@ json families_report(const Plan& plan) {
     return {{"families", families}, {"courses", in_families}, {"of_course", plan.family}};
 }
 
+// Over pipes, degrees from the axial direction of each.
+json angles_report(const Plan& plan) {
+    json angles = {{"length_mm", report_number(plan.angle.measured_mm)},
+                   {"mean_deg", report_number(deg_from_rad(plan.angle.mean_rad))}};
+    if (plan.angle.wish_rad) {
+        angles["wish_deg"] = report_number(deg_from_rad(*plan.angle.wish_rad));
+        angles["rms_off_deg"] = report_number(deg_from_rad(plan.angle.rms_off_rad));
+        angles["off_share"] = report_number(plan.angle.off_share);
+    }
+    return angles;
+}
+
 json plan_report(const Plan& plan) {
     json uncovered = json::array();
     for (const Uncovered& u : plan.uncovered) {
@@ -95,6 +107,7 @@ json plan_report(const Plan& plan) {
           {"effort", plan.effort.effort},
           {"proposals", plan.effort.proposals},
           {"taken", plan.effort.taken}}},
+        {"angles", angles_report(plan)},
         {"turns", turns_report(plan)},
         {"families", families_report(plan)},
         {"library",

@@ -210,6 +210,9 @@ private:
         options.free_fibre = setup_.rule.free_fibre;
         options.select.target_layers =
             static_cast<int>(std::ceil(job.layers.front().target_layers));
+        if (const auto angle_deg = job.layers.front().angle_deg) {
+            options.angle_rad = rad_from_deg(*angle_deg);
+        }
         options.seed = request_.seed;
         options.effort = request_.effort;
         options.accept = [this](const Piece& piece) {

@@ -27,7 +27,9 @@ CurvatureAlong curvature(const Surface& surface, const SurfacePoint& point, cons
     const Matrix3d shape = shape_operator_per_mm(surface, point);
     const Vector3d along = shape * t;
     const double torsion = b.dot(along);
-    return {t.dot(along) * b.dot(shape * b) - torsion * torsion, torsion};
+    const double normal = t.dot(along);
+    const double across = b.dot(shape * b);
+    return {normal * across - torsion * torsion, normal, across, torsion};
 }
 
 }  // namespace

@@ -11,9 +11,12 @@ namespace meshwind {
 /// corners. Accuracy: second order in edge length (tests/geodesic/jacobi_field_test.cpp).
 [[nodiscard]] double gaussian_curvature_per_mm2(const Surface& surface, const SurfacePoint& point);
 
-/// What bends neighbouring paths apart or together at a station.
+/// The surface's curvature at a station, in the path's tangent t and binormal b: what bends
+/// neighbouring paths apart or together.
 struct CurvatureAlong {
     double gaussian_per_mm2 = 0.0;
+    double normal_per_mm = 0.0;   ///< t . S t, kn of a convex path positive
+    double across_per_mm = 0.0;   ///< b . S b
     double torsion_per_mm = 0.0;  ///< tau = b . S t of the surface along the path
 };
 [[nodiscard]] CurvatureAlong curvature_along(const Surface& surface, const PathPoint& station);

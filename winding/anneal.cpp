@@ -107,8 +107,8 @@ public:
     Annealer(const CourseRules& rules, const AnnealGround& ground, std::span<const Member> library,
              std::span<const char> allowed, std::vector<PlacedCourse>& courses,
              const AnnealOptions& options)
-        : rules_{rules.mandrel, rules.obstacles,  ground.footprints,       rules.tow,
-                 rules.turn,    rules.free_fibre, rules.max_half_length_mm},
+        : rules_{rules.mandrel, rules.obstacles,  ground.footprints,        rules.tow,
+                 rules.turn,    rules.free_fibre, rules.max_half_length_mm, rules.angle_rad},
           ground_(ground),
           samples_(ground.samples),
           library_(library),
@@ -230,6 +230,12 @@ private:
                (std::max(0, joints.loose_ends() - kFreeEnds) + 2 * (joints.parts() - 1));
     }
 
+    // Of fibre off the wanted winding angle.
+    [[nodiscard]] double angle_cost(const Member& member) const {
+        return options_.select.angle_weight * member.off_angle_mm * rules_.tow.width_mm /
+               samples_.area_mm2;
+    }
+
     [[nodiscard]] double cost(std::int32_t layers) const {
         return cost_[std::min(at(layers), kMostLayers - 1)];
     }
@@ -264,7 +270,7 @@ private:
                 const std::int32_t layers = layers_[at(sample)] + scratch.shift[at(sample)]--;
                 sum += cost(layers - 1) - cost(layers);
             }
-            sum -= turn_cost_;
+            sum -= turn_cost_ + angle_cost(course.member);
             joints.add(course.member, course.backward, -1);
         }
         if (proposal.in) {
@@ -272,7 +278,7 @@ private:
                 const std::int32_t layers = layers_[at(sample)] + scratch.shift[at(sample)]++;
                 sum += cost(layers + 1) - cost(layers);
             }
-            sum += turn_cost_;
+            sum += turn_cost_ + angle_cost(proposal.in->member);
             joints.add(proposal.in->member, proposal.in->backward, 1);
         }
         if (proposal.out) {
@@ -313,7 +319,9 @@ private:
                 return library_[member].candidate;
             }
         }
-        return {samples_.at[place], kPi * draws.unit(),
+        const double unit = draws.unit();
+        return {samples_.at[place],
+                draw_direction_rad(rules_, samples_.at[place], unit, draws.unit()),
                 kSteering[draws.below(kSteering.size())] * rules_.tow.friction};
     }
 

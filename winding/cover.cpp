@@ -20,6 +20,7 @@
 #include "winding/one_fibre.h"
 #include "winding/random.h"
 #include "winding/uncovered.h"
+#include "winding/wound_angle.h"
 
 namespace meshwind {
 namespace {
@@ -85,6 +86,7 @@ public:
                  max_half_length_mm(mandrel.surface)} {
         rules_.turn.friction = options.tow.friction;
         rules_.turn.band_mm = options.tow.width_mm;
+        rules_.angle_rad = options.angle_rad;
         rules_.free_fibre.clearance_mm += kHeadMargin_mm;
         plan_.planner = "cover";
         plan_.effort.seed = options.seed;
@@ -540,6 +542,27 @@ private:
             }
         }
         plan_.family = families_of(courses, options_.tow.width_mm);
+        plan_.angle = wound_angles(courses);
+    }
+
+    [[nodiscard]] WoundAngles wound_angles(std::span<const SurfacePath* const> courses) const {
+        AngleKept sum;
+        for (const SurfacePath* course : courses) {
+            const AngleKept kept =
+                angle_kept(mandrel_.surface, *course, options_.angle_rad.value_or(0.0));
+            sum.measured_mm += kept.measured_mm;
+            sum.off_mm += kept.off_mm;
+            sum.angle_mm += kept.angle_mm;
+            sum.square_mm += kept.square_mm;
+        }
+        const double length = std::max(1e-9, sum.measured_mm);
+        WoundAngles angles{.measured_mm = sum.measured_mm, .mean_rad = sum.angle_mm / length};
+        if (options_.angle_rad) {
+            angles.wish_rad = *options_.angle_rad;
+            angles.rms_off_rad = std::sqrt(sum.square_mm / length);
+            angles.off_share = sum.off_mm / length;
+        }
+        return angles;
     }
 
     void describe_uncovered() {

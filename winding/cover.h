@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "winding/plan.h"
@@ -14,6 +15,7 @@ struct CoverOptions {
     TurnRule turn;  ///< friction and band are taken from `tow`
     FreeFibreRule free_fibre;
     SelectOptions select;
+    std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
     std::uint64_t seed = 1;
     int effort = 1;                ///< how long courses are annealed, as a multiple
     int candidates = 16000;        ///< tried over the whole surface

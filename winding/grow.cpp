@@ -63,7 +63,10 @@ private:
     // A candidate through a given sample; `draw` numbers the random draws of the whole run.
     Candidate candidate_at(std::int32_t sample, std::uint64_t draw) const {
         const auto pick = random_bits(stream(Stream::Steerings), draw) % kSteering.size();
-        return {samples_.at[at(sample)], kPi * random_unit(stream(Stream::Angles), draw),
+        const SurfacePoint& place = samples_.at[at(sample)];
+        return {place,
+                draw_direction_rad(rules_, place, random_unit(stream(Stream::Angles), draw),
+                                   random_unit(stream(Stream::Wishes), draw)),
                 kSteering[pick] * options_.tow.friction};
     }
 

@@ -7,7 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
+#include "core/units.h"
 #include "geodesic/bridge.h"
+#include "winding/wound_angle.h"
 
 namespace meshwind {
 namespace {
@@ -28,6 +30,9 @@ constexpr std::size_t kStationsBeyond = 3;
 constexpr int kMaxMoves = 3;
 
 constexpr std::size_t kCandidateChunk = 64;
+
+// Of the directions drawn, those at the wanted winding angle.
+constexpr double kWantedShare = 2.0 / 3.0;
 
 Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
     const Vector3d n = smooth_normal(surface, candidate.seed);
@@ -116,6 +121,12 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
                                                                                  : Refusal::None;
 }
 
+void measure_length(const CourseRules& rules, const SurfacePath& path, Member& course) {
+    course.length_mm = path.back().s_mm;
+    course.off_angle_mm =
+        rules.angle_rad ? angle_kept(rules.mandrel.surface, path, *rules.angle_rad).off_mm : 0.0;
+}
+
 // Where a seed lies under a bridge: one on the wall for the same course, as a taut fibre is traced
 // from where it touches. Some stations beyond the bridge, whose ends are not known better.
 std::optional<Candidate> seed_on_the_wall(const Run& run, const Candidate& candidate) {
@@ -179,6 +190,16 @@ double direction_angle(const Vector3d& normal, const Vector3d& tangent) {
     return std::atan2(tangent.dot(normal.cross(x)), tangent.dot(x));
 }
 
+double draw_direction_rad(const CourseRules& rules, const SurfacePoint& place, double unit,
+                          double choice) {
+    if (rules.angle_rad && choice < kWantedShare) {
+        if (const auto axial = axial_direction_rad(rules.mandrel.surface, place)) {
+            return *axial + (unit < 0.5 ? 1.0 : -1.0) * *rules.angle_rad;
+        }
+    }
+    return kPi * unit;
+}
+
 SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate,
                             TraceMethod method) {
     return join_halves(trace_half(rules, candidate, -1.0, method).path,
@@ -229,7 +250,7 @@ Refusal follow_course(const CourseRules& rules, const Candidate& candidate, Memb
     if (refusal != Refusal::None) {
         return refusal;
     }
-    course.length_mm = run.path.back().s_mm;
+    measure_length(rules, run.path, course);
     SlipMeasure slip =
         measure_slip(rules.mandrel.surface, run.path, run.string,
                      {.friction = rules.tow.friction, .method = TraceMethod::Patches});
@@ -275,7 +296,7 @@ Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& 
     Run run;
     const Refusal refusal = follow(rules, TraceMethod::Walk, course, run);
     if (refusal == Refusal::None) {
-        course.length_mm = run.path.back().s_mm;
+        measure_length(rules, run.path, course);
         sketch.path = std::move(run.path);
     }
     return refusal;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct Member {
     bool windable_forward = false;  ///< from end 0 to end 1
     bool windable_backward = false;
     double length_mm = 0.0;
+    double off_angle_mm = 0.0;            ///< length off the wanted winding angle (wound_angle.h)
     std::vector<std::int32_t> footprint;  ///< coverage samples
 };
 
@@ -59,11 +61,18 @@ struct CourseRules {
     FreeFibreRule free_fibre;
     double max_half_length_mm =
         1e4;  ///< a candidate that meets no rim within this circles for ever
+    std::optional<double> angle_rad{};  ///< wanted winding angle
 };
 
 /// The angle of a candidate that leaves its seed along `tangent`, where the surface's normal is
 /// `normal`.
 [[nodiscard]] double direction_angle(const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent);
+
+/// A direction for a candidate through a place: with a wanted winding angle two in three draws lead
+/// there, one hand or the other, where the wall is like a pipe; else any direction.
+/// \param unit, choice drawn from [0, 1)
+[[nodiscard]] double draw_direction_rad(const CourseRules& rules, const SurfacePoint& place,
+                                        double unit, double choice);
 
 /// The whole path of a candidate, as far as it can be followed either way.
 [[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate,

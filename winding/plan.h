@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,15 @@ struct TurnsAtRim {
     double dwell_rad = 0.0;     ///< wound along hoops, in all
 };
 
+/// Winding angles over pipes (wound_angle.h), by length of fibre.
+struct WoundAngles {
+    double measured_mm = 0.0;  ///< over pipes; 0 where the wall has none
+    double mean_rad = 0.0;
+    std::optional<double> wish_rad{};  ///< what was wanted, if anything
+    double rms_off_rad = 0.0;          ///< from the wish
+    double off_share = 0.0;  ///< of the fibre over pipes: 10 degrees off or more counts all
+};
+
 /// What planning took; for reports.
 struct PlanEffort {
     std::uint64_t seed = 0;
@@ -109,6 +119,7 @@ struct Plan {
     std::vector<WhatIf> what_if;         ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;       ///< per rim
     std::vector<std::int32_t> family;    ///< per course in winding order (families.h)
+    WoundAngles angle;                   ///< of the courses
     PlanEffort effort;
     std::string failure;  ///< empty, or in words why nothing can be wound
 };

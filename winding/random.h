@@ -27,7 +27,8 @@ enum class Stream : std::uint64_t {
     Steerings = 4,
     Ground = 5,
     Annealing = 6,
-    Otherwise = 7
+    Otherwise = 7,
+    Wishes = 8
 };
 
 /// The seed of a stream.

@@ -47,7 +47,10 @@ private:
                 waste += 1.0 + layers - options_.target_layers;
             }
         }
-        gain.value = (static_cast<double>(gain.fresh) - options_.overlap_weight * waste) /
+        const double off = static_cast<double>(member.footprint.size()) * member.off_angle_mm /
+                           std::max(1.0, member.length_mm);
+        gain.value = (static_cast<double>(gain.fresh) - options_.overlap_weight * waste -
+                      options_.overlap_weight * options_.angle_weight * off) /
                      (member.length_mm + options_.turn_mm);
         return gain;
     }

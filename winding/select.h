@@ -17,6 +17,8 @@ struct SelectOptions {
     double overlap_weight = 0.35;
     /// A course that adds less than this share of its own area is not worth its turn.
     double least_gain_share = 0.01;
+    /// What fibre off the wanted winding angle costs, against 1 for a layer too many.
+    double angle_weight = 4.0;
     double turn_mm = 300.0;  ///< fibre that a course costs besides its own length
 };
 

@@ -62,7 +62,7 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "\"extension\":100, \"turn\":\"friction\"},\n"
               "  \"tow\":{\"width\":6, \"thickness\":0.25, \"friction\":0.2, "
               "\"bridging_tolerance\":0.5},\n"
-              "  \"layers\":[{\"kind\":\"auto\", \"angle\":45, \"target_layers\":1}],\n"
+              "  \"layers\":[{\"kind\":\"auto\", \"target_layers\":1}],\n"
               "  \"eye\":{\"rule\":\"equal-free-length\", \"free_length\":200},\n"
               "  \"redundancy\":\"central-angle\",\n"
               "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5},\n"

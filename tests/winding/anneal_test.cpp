@@ -9,6 +9,7 @@
 #include "tests/winding/fixtures.h"
 #include "winding/balance.h"
 #include "winding/coverage.h"
+#include "winding/wound_angle.h"
 
 namespace meshwind {
 namespace {
@@ -70,6 +71,26 @@ TEST(Anneal, LaysACylinderTwiceOver) {
     EXPECT_GT(coverage.fraction, 0.995);
     EXPECT_NEAR(coverage.mean_layers, 2.0, 0.15);
     EXPECT_LT(coverage.cv, 0.4);
+}
+
+TEST(Anneal, ComesNearAWantedWindingAngle) {
+    const double wish = rad_from_deg(60.0);
+    const auto share_off = [&](const std::vector<PlacedCourse>& courses) {
+        double off = 0.0;
+        double length = 0.0;
+        for (const PlacedCourse& course : courses) {
+            const AngleKept kept = angle_kept(cylinder().mandrel.surface, course.path, wish);
+            off += kept.off_mm;
+            length += kept.measured_mm;
+        }
+        return off / length;
+    };
+    Scene scene(test::made_cylinder(30.0, 160.0, 5.0));
+    scene.rules.angle_rad = wish;
+    const double wanted = share_off(scene.annealed(slowly()));
+    const double any = share_off(cylinder().annealed(slowly()));
+    EXPECT_LT(wanted, 0.2);
+    EXPECT_GT(any, 2.0 * wanted);
 }
 
 TEST(Anneal, HonoursTheTargetAsMultiplicity) {
