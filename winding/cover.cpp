@@ -65,6 +65,9 @@ constexpr double kHeadMargin_mm = 0.3;
 // Plans that are tried until the machine can wind the whole.
 constexpr int kMaxAttempts = 8;
 
+// Attempts in a row that refuse as many courses as before, or more, before no other is made.
+constexpr int kMostInVain = 2;
+
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
@@ -117,13 +120,7 @@ public:
         rejection_.assign(members_.size(), Rejection::None);
         find_route();
         choose();
-        for (int attempt = 0; attempt < kMaxAttempts && !courses_.empty(); ++attempt) {
-            join_to_one_fibre(attempt > 0);
-            lay_out(rules_, members_, order_, plan_);
-            if (order_.empty() || !drop_refused_pieces(attempt + 1 == kMaxAttempts)) {
-                break;
-            }
-        }
+        make_it_hold();
         if (order_.empty()) {
             plan_.failure = "every course was refused, " + commonest_rejection();
             describe_uncovered();
@@ -473,27 +470,60 @@ private:
                   order_.begin() + static_cast<std::ptrdiff_t>(fibre.second)};
     }
 
-    // Asks the machine about the whole; drops the courses it refuses, or whose turn it refuses.
-    bool drop_refused_pieces(bool last_attempt) {
-        if (!options_.refused || last_attempt) {
-            return false;
+    // Plans and shows the whole to the machine, again and again without the courses that it refuses
+    // in their place. Where that leads nowhere the plan with the fewest of them stands.
+    void make_it_hold() {
+        std::vector<PlacedCourse> best;
+        std::size_t least = 0;
+        int in_vain = 0;
+        for (int attempt = 0; attempt < kMaxAttempts && !courses_.empty(); ++attempt) {
+            join_to_one_fibre(attempt > 0);
+            lay_out(rules_, members_, order_, plan_);
+            const std::vector<std::size_t> refused = refused_courses();
+            if (refused.empty()) {
+                return;
+            }
+            const bool better = best.empty() || refused.size() < least;
+            in_vain = better ? 0 : in_vain + 1;
+            if (better) {
+                best = courses_;
+                least = refused.size();
+            }
+            if (in_vain == kMostInVain) {
+                break;
+            }
+            give_up(refused);
         }
-        std::vector<std::size_t> dropped;
+        courses_ = std::move(best);
+        put_in_order();
+        keep_main_fibre();
+        lay_out(rules_, members_, order_, plan_);
+    }
+
+    // The courses that the machine refuses, or whose turn it refuses; in order, each once.
+    [[nodiscard]] std::vector<std::size_t> refused_courses() const {
+        std::vector<std::size_t> courses;
+        if (!options_.refused || order_.empty()) {
+            return courses;
+        }
         for (const std::size_t piece : options_.refused(plan_.pieces)) {
             const std::size_t course = piece / 2;  // courses and turns alternate
-            dropped.push_back(at(order_[course].course.member) - library_size_);
+            courses.push_back(at(order_[course].course.member) - library_size_);
         }
-        std::sort(dropped.begin(), dropped.end());
-        dropped.erase(std::unique(dropped.begin(), dropped.end()), dropped.end());
-        for (std::size_t k = dropped.size(); k-- > 0;) {
-            const PlacedCourse course = std::move(courses_[dropped[k]]);
-            courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(dropped[k]));
+        std::sort(courses.begin(), courses.end());
+        courses.erase(std::unique(courses.begin(), courses.end()), courses.end());
+        return courses;
+    }
+
+    void give_up(const std::vector<std::size_t>& refused) {
+        for (std::size_t k = refused.size(); k-- > 0;) {
+            const PlacedCourse course = std::move(courses_[refused[k]]);
+            courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(refused[k]));
             note_refused(course.member, Rejection::InItsPlace);
             if (course.fixed) {
                 replace_link(way_of(course.member, course.backward));
             }
         }
-        return !dropped.empty();
     }
 
     // The next course that holds in place of the link between two stages that did not.
