@@ -59,7 +59,7 @@ json families_report(const Plan& plan) {
     for (const std::int32_t family : plan.family) {
         families = std::max(families, family + 1);
     }
-    return {{"families", families}, {"courses", in_families}, {"of_course", plan.family}};
+    return {{"families", families}, {"courses", in_families}, {"per_course", plan.family}};
 }
 
 // Over pipes, degrees from the axial direction of each.

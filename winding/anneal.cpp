@@ -41,8 +41,8 @@ constexpr double kBesideShare = 0.12;   // a course moved beside another; the re
 // Of the fresh courses, those from the library.
 constexpr double kLibraryShare = 0.5;
 
-// Of the courses proposed, those fitted first: a fit takes as long as three that are not, and finds
-// what they would not.
+// Of the courses proposed, those fitted first. A fit takes as long as three that are not; of 0,
+// 0.15, 0.3 and 1 this gave the most even plans of four tees in equal time.
 constexpr double kFitShare = 0.3;
 
 // Places tried for one that is short of layers.
@@ -134,7 +134,7 @@ public:
         }
         typical_ =
             std::max(1.0, covered / std::max<double>(1.0, static_cast<double>(library.size())));
-        alone_ = neighbours_.without_family({}, nullptr);
+        alone_ = neighbours_.without_family();
         turn_cost_ = kTurnShare * options.select.turn_mm * rules.tow.width_mm / samples_.area_mm2;
     }
 
@@ -543,7 +543,7 @@ private:
                 courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(*out));
                 neighbours_.remove(*out);
             }
-            alone_ = neighbours_.without_family({}, nullptr);
+            alone_ = neighbours_.without_family();
             if (out) {
                 outdate(group, *out, !proposal.in);
             }

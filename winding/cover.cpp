@@ -20,7 +20,7 @@
 #include "winding/one_fibre.h"
 #include "winding/random.h"
 #include "winding/uncovered.h"
-#include "winding/wound_angle.h"
+#include "winding/what_if.h"
 
 namespace meshwind {
 namespace {
@@ -53,10 +53,6 @@ constexpr std::size_t kAbound = 8;
 
 // Where courses reach less of the wall nothing is planned: what comes of it is no part.
 constexpr double kWorthPlanning = 0.5;
-
-// By how much rules are loosened to see what that would bring, and what is worth telling.
-constexpr double kLooser = 1.5;
-constexpr double kWorthAWord = 0.001;
 
 // Added to the clearance while candidates are judged at a few stations, so that a course still
 // fits when every station is tried.
@@ -106,8 +102,9 @@ public:
             describe_uncovered();
             return std::move(plan_);
         }
-        ask_what_if();
-        if (reachable() < kWorthPlanning) {
+        plan_.what_if =
+            ask_what_if(rules_, samples_, library_, seed_of(Stream::Otherwise, options_.seed));
+        if (reached_share(library_.reached) < kWorthPlanning) {
             plan_.failure = hardly_reachable();
             rejection_.assign(members_.size(), Rejection::NotPlanned);
             describe_uncovered();
@@ -157,45 +154,10 @@ private:
                " candidates: " + name_of(static_cast<Refusal>(most - refusals.begin()));
     }
 
-    [[nodiscard]] double reachable() const {
-        return static_cast<double>(
-                   std::count(library_.reached.begin(), library_.reached.end(), 1)) /
-               static_cast<double>(samples_.size());
-    }
-
-    // What courses would reach if one rule were looser, for all that are worth a word.
-    void ask_what_if() {
-        const double now = reachable();
-        for (const WhatIf::Rule rule :
-             {WhatIf::Rule::Friction, WhatIf::Rule::Bridging, WhatIf::Rule::Extension}) {
-            CourseRules rules = rules_;
-            switch (rule) {
-                case WhatIf::Rule::Friction:
-                    rules.tow.friction *= kLooser;
-                    rules.turn.friction *= kLooser;
-                    break;
-                case WhatIf::Rule::Bridging:
-                    rules.tow.bridging_tolerance_mm *= kLooser;
-                    break;
-                case WhatIf::Rule::Extension:
-                    rules.turn.extension_mm *= kLooser;
-                    break;
-            }
-            const double then = reach_with(rules, samples_, library_.reached, library_.judging,
-                                           seed_of(Stream::Otherwise, options_.seed));
-            if (then - now > kWorthAWord) {
-                plan_.what_if.push_back({rule, kLooser, then});
-            }
-        }
-        std::stable_sort(
-            plan_.what_if.begin(), plan_.what_if.end(),
-            [](const WhatIf& a, const WhatIf& b) { return a.reachable > b.reachable; });
-    }
-
     [[nodiscard]] std::string hardly_reachable() const {
-        return "courses reach only " + fixed(100.0 * reachable(), 1) + " % of the wall, under " +
-               fixed(100.0 * kWorthPlanning, 0) + " % nothing is planned; refused most often, " +
-               commonest_refusal();
+        return "courses reach only " + fixed(100.0 * reached_share(library_.reached), 1) +
+               " % of the wall, under " + fixed(100.0 * kWorthPlanning, 0) +
+               " % nothing is planned; refused most often, " + commonest_refusal();
     }
 
     // "123 of 456: the head would come too near"
@@ -561,7 +523,7 @@ private:
             }
         }
         plan_.coverage = measure_coverage(layers_);
-        plan_.coverage.reachable = reachable();
+        plan_.coverage.reachable = reached_share(library_.reached);
         describe_uncovered();
         plan_.face_layers = layers_per_face(mandrel_.surface, samples_, layers_);
         plan_.face_angle_rad = angle_per_face(mandrel_.surface, plan_.pieces);
@@ -572,27 +534,7 @@ private:
             }
         }
         plan_.family = families_of(courses, options_.tow.width_mm);
-        plan_.angle = wound_angles(courses);
-    }
-
-    [[nodiscard]] WoundAngles wound_angles(std::span<const SurfacePath* const> courses) const {
-        AngleKept sum;
-        for (const SurfacePath* course : courses) {
-            const AngleKept kept =
-                angle_kept(mandrel_.surface, *course, options_.angle_rad.value_or(0.0));
-            sum.measured_mm += kept.measured_mm;
-            sum.off_mm += kept.off_mm;
-            sum.angle_mm += kept.angle_mm;
-            sum.square_mm += kept.square_mm;
-        }
-        const double length = std::max(1e-9, sum.measured_mm);
-        WoundAngles angles{.measured_mm = sum.measured_mm, .mean_rad = sum.angle_mm / length};
-        if (options_.angle_rad) {
-            angles.wish_rad = *options_.angle_rad;
-            angles.rms_off_rad = std::sqrt(sum.square_mm / length);
-            angles.off_share = sum.off_mm / length;
-        }
-        return angles;
+        plan_.angle = wound_angles(mandrel_.surface, courses, options_.angle_rad);
     }
 
     void describe_uncovered() {

@@ -64,8 +64,8 @@ public:
     /// Per course its family, numbered by their first members; -1 where it belongs to none.
     [[nodiscard]] std::vector<std::int32_t> families() const { return families({}, nullptr); }
     /// How many belong to none, with one taken out and one with `row` put in.
-    [[nodiscard]] int without_family(std::optional<std::size_t> out,
-                                     const std::vector<char>* row) const;
+    [[nodiscard]] int without_family(std::optional<std::size_t> out = {},
+                                     const std::vector<char>* row = nullptr) const;
 
 private:
     [[nodiscard]] std::vector<std::int32_t> families(std::optional<std::size_t> out,

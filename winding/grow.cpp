@@ -233,6 +233,11 @@ Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
     return Grower(rules, samples, options).run();
 }
 
+double reached_share(std::span<const char> reached) {
+    return static_cast<double>(std::count(reached.begin(), reached.end(), 1)) /
+           static_cast<double>(std::max<std::size_t>(1, reached.size()));
+}
+
 double reach_with(const CourseRules& rules, const CoverageSamples& samples,
                   std::span<const char> reached, Judging judging, std::uint64_t seed) {
     std::vector<char> now(reached.begin(), reached.end());
@@ -254,8 +259,7 @@ double reach_with(const CourseRules& rules, const CoverageSamples& samples,
             now[at(sample)] = 1;
         }
     }
-    return static_cast<double>(std::count(now.begin(), now.end(), 1)) /
-           static_cast<double>(std::max<std::size_t>(1, now.size()));
+    return reached_share(now);
 }
 
 }  // namespace meshwind

@@ -40,6 +40,9 @@ using Ways = std::map<std::pair<std::size_t, std::size_t>, Way>;  ///< by (depar
 [[nodiscard]] Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
                                    const CoverOptions& options);
 
+/// Share of the samples that are reached. \param reached per sample, 1 or 0
+[[nodiscard]] double reached_share(std::span<const char> reached);
+
 /// Share of the samples that courses reach under other rules: those reached already, and those that
 /// further candidates through the others reach. \param reached per sample \param judging as it was
 [[nodiscard]] double reach_with(const CourseRules& rules, const CoverageSamples& samples,

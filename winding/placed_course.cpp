@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -10,10 +11,20 @@ namespace meshwind {
 using Eigen::Vector3d;
 
 std::size_t seed_station(const PlacedCourse& course) {
-    const auto found = std::find_if(
-        course.path.begin(), course.path.end(),
-        [&](const PathPoint& point) { return point.at.face == course.member.candidate.seed.face; });
-    return static_cast<std::size_t>(std::min(found, course.path.end() - 1) - course.path.begin());
+    // Not just the first in the seed's face: a course may pass that several times.
+    const SurfacePoint& seed = course.member.candidate.seed;
+    std::size_t best = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < course.path.size(); ++i) {
+        const SurfacePoint& at = course.path[i].at;
+        const double distance = at.face == seed.face ? (at.bary - seed.bary).squaredNorm()
+                                                     : std::numeric_limits<double>::max();
+        if (distance < nearest) {
+            nearest = distance;
+            best = i;
+        }
+    }
+    return best;
 }
 
 Candidate moved(const CourseRules& rules, const PlacedCourse& course, std::size_t station,

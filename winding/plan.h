@@ -3,12 +3,12 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "geodesic/measure.h"
 #include "winding/library.h"
+#include "winding/wound_angle.h"
 
 namespace meshwind {
 
@@ -78,15 +78,6 @@ struct TurnsAtRim {
     int turns = 0;
     double extension_mm = 0.0;  ///< axial length that they and the band need
     double dwell_rad = 0.0;     ///< wound along hoops, in all
-};
-
-/// Winding angles over pipes (wound_angle.h), by length of fibre.
-struct WoundAngles {
-    double measured_mm = 0.0;  ///< over pipes; 0 where the wall has none
-    double mean_rad = 0.0;
-    std::optional<double> wish_rad{};  ///< what was wanted, if anything
-    double rms_off_rad = 0.0;          ///< from the wish
-    double off_share = 0.0;  ///< of the fibre over pipes: 10 degrees off or more counts all
 };
 
 /// What planning took; for reports.

@@ -18,10 +18,6 @@ constexpr double kStraightShare = 0.25;
 // From here on fibre is simply off, however far.
 constexpr double kOff_rad = 10.0 * kPi / 180.0;
 
-}  // namespace
-
-namespace {
-
 // From a station's tangent to the direction in which the wall is most convex, counter-clockwise,
 // -pi/2 to pi/2; nothing where the wall is not like a pipe.
 std::optional<double> hoop_from_tangent_rad(const Surface& surface, const PathPoint& station) {
@@ -69,6 +65,30 @@ AngleKept angle_kept(const Surface& surface, const SurfacePath& path, double wis
         kept.square_mm += length * off * off;
     }
     return kept;
+}
+
+WoundAngles wound_angles(const Surface& surface, std::span<const SurfacePath* const> courses,
+                         std::optional<double> wish_rad) {
+    AngleKept sum;
+    for (const SurfacePath* course : courses) {
+        const AngleKept kept = angle_kept(surface, *course, wish_rad.value_or(0.0));
+        sum.measured_mm += kept.measured_mm;
+        sum.off_mm += kept.off_mm;
+        sum.angle_mm += kept.angle_mm;
+        sum.square_mm += kept.square_mm;
+    }
+    WoundAngles angles;
+    if (sum.measured_mm <= 0.0) {
+        return angles;
+    }
+    angles.measured_mm = sum.measured_mm;
+    angles.mean_rad = sum.angle_mm / sum.measured_mm;
+    if (wish_rad) {
+        angles.wish_rad = wish_rad;
+        angles.rms_off_rad = std::sqrt(sum.square_mm / sum.measured_mm);
+        angles.off_share = sum.off_mm / sum.measured_mm;
+    }
+    return angles;
 }
 
 }  // namespace meshwind

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "geodesic/surface_path.h"
 
@@ -28,5 +29,17 @@ struct AngleKept {
 };
 [[nodiscard]] AngleKept angle_kept(const Surface& surface, const SurfacePath& path,
                                    double wish_rad);
+
+/// Winding angles of many courses over pipes, by length of fibre.
+struct WoundAngles {
+    double measured_mm = 0.0;  ///< over pipes; 0 where the wall has none
+    double mean_rad = 0.0;
+    std::optional<double> wish_rad{};  ///< what was wanted, if anything
+    double rms_off_rad = 0.0;          ///< from the wish
+    double off_share = 0.0;  ///< of the fibre over pipes: 10 degrees off or more counts all
+};
+[[nodiscard]] WoundAngles wound_angles(const Surface& surface,
+                                       std::span<const SurfacePath* const> courses,
+                                       std::optional<double> wish_rad);
 
 }  // namespace meshwind

@@ -73,10 +73,9 @@ Fit fit_to(const Scene& scene, const PlacedCourse& course, const std::set<std::i
 // the move itself, traced anew: nothing in it comes from the fit's linear theory.
 void expect_finds_the_way_back(const Scene& scene) {
     test::Draw draw(3);
-    int found = 0;
+    std::vector<double> left_over;  // shares of what was lost
     int worse = 0;
     int broken = 0;  // promises
-    double left_over = 0.0;
     for (const Candidate& candidate : scene.candidates(200, 7, 0.4)) {
         const auto course = scene.placed(candidate);
         if (!course || course->member.length_mm > 600.0) {
@@ -96,18 +95,21 @@ void expect_finds_the_way_back(const Scene& scene) {
         if (!back || most - before < 0.05 * most) {
             continue;
         }
-        ++found;
         const double after = score(*back, wanted);
-        left_over += (most - after) / (most - before);
+        left_over.push_back((most - after) / (most - before));
         worse += after <= before ? 1 : 0;
         // The band's edge is a slope to the fit.
         broken += std::abs(fit.saved - after) > 0.1 * most ? 1 : 0;
     }
-    EXPECT_GT(found, 20);
+    const auto found = static_cast<int>(left_over.size());
+    ASSERT_GT(found, 20);
     // Where a saddle parts neighbours quickly first order does not reach far.
     EXPECT_LE(worse, found / 20);
     EXPECT_LE(broken, found / 20);
-    EXPECT_LT(left_over / found, 0.35);
+    // Half of them come back by two thirds of the way at least; those moved by more than a fit
+    // may move (kFitBands) do not.
+    std::sort(left_over.begin(), left_over.end());
+    EXPECT_LT(left_over[left_over.size() / 2], 1.0 / 3.0);
 }
 
 TEST(FitCourse, FindsTheWayBackOnACylinder) {
