@@ -35,7 +35,8 @@ double seconds(std::chrono::steady_clock::duration duration) {
 
 void lay_on_ellipsoid(benchmark::State& state) {
     const Machine machine = read_machine(MESHWIND_SOURCE_DIR "/machines/six_axis.json");
-    const Surface surface = ellipsoid(static_cast<double>(state.range(0)));
+    const LaydownWall wall(ellipsoid(static_cast<double>(state.range(0))));
+    const Surface& surface = wall.surface();
     const EyePath path = test::on_ellipsoid(kLine, 4'000);
     const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
     const BlockChoice choice = choose_blocks(machine, {.path = path, .joints = joints}, {});
@@ -47,7 +48,7 @@ void lay_on_ellipsoid(benchmark::State& state) {
     double tracing_s = 0.0;
     for (auto _ : state) {
         const auto begun = std::chrono::steady_clock::now();
-        const LaidPath laid = lay_down(surface, machine, list, start);
+        const LaidPath laid = lay_down(wall, machine, list, start);
         const auto halfway = std::chrono::steady_clock::now();
         if (!laid.failure.empty()) {
             state.SkipWithError(laid.failure.c_str());

@@ -123,23 +123,24 @@ json plan_report(const Plan& plan) {
 
 // Furthest of an axis from its planned position for circuits that are repeated, mm or deg.
 double drift_of(const WindResult& result, std::size_t axis) {
-    const std::vector<std::int64_t>& nano = result.layout.drift_nano;
+    const std::vector<std::int64_t>& nano = result.made.layout.drift_nano;
     return nano.empty() ? 0.0 : static_cast<double>(nano[axis]) / static_cast<double>(kNanoPerUnit);
 }
 
 json repeats_report(const WindResult& result) {
     json drift = json::object();
-    for (std::size_t a = 0; a < result.blocks.axes.size(); ++a) {
-        drift[std::string(1, result.blocks.axes[a].letter)] = report_number(drift_of(result, a));
+    for (std::size_t a = 0; a < result.made.blocks.axes.size(); ++a) {
+        drift[std::string(1, result.made.blocks.axes[a].letter)] =
+            report_number(drift_of(result, a));
     }
-    return {{"subprograms", result.layout.subprograms.size()},
-            {"calls", result.layout.calls()},
+    return {{"subprograms", result.made.layout.subprograms.size()},
+            {"calls", result.made.layout.calls()},
             {"drift", drift}};
 }
 
 json axes_report(const WindResult& result) {
     json axes = json::object();
-    const BlockList& list = result.blocks;
+    const BlockList& list = result.made.blocks;
     for (std::size_t a = 0; a < list.axes.size(); ++a) {
         double low = list.value(0, a);
         double high = low;
@@ -170,18 +171,18 @@ json choice_report(const BlockChoice& choice) {
 
 json program_report(const WindResult& result) {
     json binding = json::array();
-    for (const BindingLimit& limit : result.binding) {
+    for (const BindingLimit& limit : result.made.binding) {
         binding.push_back({{"limit", limit.name}, {"time_s", report_number(limit.time_s)}});
     }
     return {{"file", result.program_written ? json(result.program_file) : json(nullptr)},
             {"dialect", result.setup.machine.controller.dialect},
-            {"path_points", result.path_points},
-            {"blocks", result.blocks.blocks.size()},
-            {"choice", choice_report(result.choice)},
-            {"duration_s", report_number(result.duration_s)},
+            {"path_points", result.made.path_points},
+            {"blocks", result.made.blocks.blocks.size()},
+            {"choice", choice_report(result.made.choice)},
+            {"duration_s", report_number(result.made.duration_s)},
             {"free_length_mm",
-             {{"min", report_number(result.eyes.shortest_mm)},
-              {"max", report_number(result.eyes.longest_mm)}}},
+             {{"min", report_number(result.made.eyes.shortest_mm)},
+              {"max", report_number(result.made.eyes.longest_mm)}}},
             {"binding_limits", binding},
             {"repeats", repeats_report(result)},
             {"axes", axes_report(result)}};
@@ -232,8 +233,8 @@ std::string report_json(const WindResult& result) {
                    {"program", program_report(result)},
                    {"ok", result.passed()},
                    {"timing_s", timing}};
-    if (!result.verification.checks.empty()) {
-        report["verification"] = verification_report(result.verification, result.blocks);
+    if (!result.made.verification.checks.empty()) {
+        report["verification"] = verification_report(result.made.verification, result.made.blocks);
     }
     return report.dump(1) + "\n";
 }
@@ -244,8 +245,8 @@ void print_summary(std::ostream& out, const WindResult& result,
     if (plan.failure.empty()) {
         out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
             << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
-            << " m of fibre, " << result.blocks.blocks.size() << " blocks, "
-            << fixed(result.duration_s / 60.0, 1) << " min\n"
+            << " m of fibre, " << result.made.blocks.blocks.size() << " blocks, "
+            << fixed(result.made.duration_s / 60.0, 1) << " min\n"
             << "covered " << percent(plan.coverage.fraction) << " of the wall (reachable "
             << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
             << " layers on average, at most " << plan.coverage.max_layers << '\n';

@@ -110,6 +110,8 @@ Setup read_setup(const SetupRequest& request) {
     setup.mandrel = load_mandrel(request.mandrel, mandrel_options(setup.job, request.unit_mm));
     setup.rule = collision_rule(setup, request.job);
     setup.obstacles = obstacles_of(setup.mandrel, setup.job.mandrel.extension_mm);
+    setup.wall = std::make_unique<LaydownWall>(
+        extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
     return setup;
 }
 
@@ -123,11 +125,10 @@ Verification verify_program(const Setup& setup, const BlockList& program,
                             .laydown = {.deviation_mm = job.tolerance.laydown_mm,
                                         .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},
                             .simulation = {}};
-    const Surface surface = extended_surface(setup.mandrel, job.mandrel.extension_mm);
     return verify({.program = program,
                    .machine = setup.machine,
                    .envelope = setup.envelope,
-                   .surface = surface,
+                   .wall = *setup.wall,
                    .obstacles = *setup.obstacles,
                    .rules = rules,
                    .plan = plan});

@@ -30,6 +30,7 @@ struct Setup {
     HeadEnvelope envelope;
     CollisionRule rule;
     std::unique_ptr<RayQuery> obstacles;  ///< mandrel and extensions
+    std::unique_ptr<LaydownWall> wall;    ///< the surface with its extensions
 };
 
 /// \throws InputError, IoError for input that cannot be used; machine and job are read first

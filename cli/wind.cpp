@@ -29,36 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where the head has more room than that the corner may be cut by up to this much.
-constexpr double kMostBetweenBlocks_mm = 2.0;
-
-// And where a plan leaves less than nothing, blocks are not cut to crumbs for it: it is refused.
-constexpr double kLeastBetweenBlocks_mm = 0.1;
-
-// Laid fibre against the plan. For the choice of blocks a quarter is left for what the choice does
-// not see: rounding to the axes' resolution (0.005 mm at 300 mm from the spindle) and the first
-// order.
-constexpr double kChoiceShare = 0.75;
-
 // Share of the friction that is planned with: the rest is for what the blocks add.
 constexpr double kPlannedFriction = 0.96;
-
-// Share of the friction that plan and blocks may use together: the rest is for measuring it.
-constexpr double kUsedFriction = 0.995;
-
-// Share of the head's spare clearance that blocks may use: between two points it may be less.
-constexpr double kUsedRoom = 0.5;
-
-// Where the simulation finds blocks too coarse they get this share of the tolerance they had, so
-// many times.
-constexpr double kTighter = 0.5;
-constexpr int kTighterRounds = 4;
-
-// After so many rounds the same pieces still found too coarse are taken for beyond mending.
-constexpr int kRoundsInVain = 1;
-
-// Turns of less than this per mm (radius 100 m) are none.
-constexpr double kStraight_per_mm = 1e-5;
 
 // Share of the reachable wall that a plan must cover to count as one.
 constexpr double kCoveredShare = 0.9;
@@ -116,7 +88,7 @@ public:
         plan();
         if (result_.plan.failure.empty()) {
             if (!holds_) {
-                (void)wind_through(result_.plan.pieces);
+                (void)wind_whole(result_.plan.pieces, true);
             }
             check();
         } else {
@@ -136,69 +108,11 @@ private:
     void read() {
         tell("import", 0.0);
         setup_ = read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
+        mandrel_digest_ = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
         refuse_what_is_not_offered(setup_.job, request_.job);
         const SpindleWristInverse inverse(setup_.machine);       // refuses what cannot be solved
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         watch_.stage("import");
-    }
-
-    // What the machine does for some pieces, point by point.
-    struct Motion {
-        EyePathResult eyes;  // at the stations
-        EyePath path;        // with points between stations where the axes need them
-        JointPath joints;    // along that path
-    };
-
-    [[nodiscard]] Motion motion_for(std::span<const Piece> pieces) const {
-        constexpr RedundancyPolicy kPolicy = RedundancyPolicy::CentralAngle;
-        Motion motion;
-        motion.eyes = equal_free_length(pieces, *setup_.obstacles, setup_.rule.free_fibre);
-        motion.path = refine_path(setup_.machine, motion.eyes.path, kPolicy, block_tolerance());
-        motion.joints = solve_joints(setup_.machine, motion.path, kPolicy);
-        return motion;
-    }
-
-    [[nodiscard]] BlockTolerance block_tolerance() const {
-        BlockTolerance tolerance;
-        tolerance.sideways_mm = kChoiceShare * setup_.job.tolerance.laydown_mm;
-        tolerance.angle_rad = kChoiceShare * rad_from_deg(setup_.job.tolerance.laydown_angle_deg);
-        tolerance.eye_mm = kMostBetweenBlocks_mm;
-        return tolerance;
-    }
-
-    [[nodiscard]] CollisionReport collisions_of(const Motion& motion,
-                                                const CollisionRule& rule) const {
-        return check_collisions(setup_.machine, setup_.envelope, *setup_.obstacles, motion.path,
-                                motion.joints, rule);
-    }
-
-    // Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason:
-    // no free length, beyond an axis' travel, or hitting something.
-    [[nodiscard]] std::map<std::size_t, Rejection> refused_pieces(
-        std::span<const Piece> pieces) const {
-        const Motion motion = motion_for(pieces);
-        std::map<std::size_t, Rejection> refused;
-        const auto refuse = [&](const EyePoint& point, Rejection reason) {
-            refused.emplace(static_cast<std::size_t>(point.piece), reason);
-        };
-        for (const std::size_t point : motion.eyes.blocked) {
-            refuse(motion.eyes.path[point], Rejection::FreeLength);
-        }
-        for (const LimitViolation& violation : motion.joints.violations) {
-            refuse(motion.path[violation.point], Rejection::AxisTravel);
-        }
-        if (refused.empty()) {
-            CollisionRule rule = setup_.rule;
-            rule.told_mm = rule.clearance_mm;
-            const CollisionReport report = collisions_of(motion, rule);
-            for (const std::size_t point : report.fibre_hits) {
-                refuse(motion.path[point], Rejection::FibreHit);
-            }
-            for (const std::size_t point : report.head_hits) {
-                refuse(motion.path[point], Rejection::HeadHit);
-            }
-        }
-        return refused;
     }
 
     void plan() {
@@ -216,129 +130,43 @@ private:
         options.seed = request_.seed;
         options.effort = request_.effort;
         options.accept = [this](const Piece& piece) {
-            const auto refused = refused_pieces({&piece, 1});
-            return refused.empty() ? Rejection::None : refused.begin()->second;
+            return first_of(refused_by_machine(setup_, {&piece, 1}));
+        };
+        options.wind = [this](const Piece& piece) {
+            return first_of(program_of(setup_, {&piece, 1}).refused);
         };
         options.refused = [this](std::span<const Piece> pieces) {
             std::vector<std::size_t> refused;
-            for (const auto& [piece, reason] : refused_pieces(pieces)) {
+            for (const auto& [piece, reason] : wind_whole(pieces, false)) {
                 refused.push_back(piece);
-            }
-            if (refused.empty()) {
-                refused = wind_through(pieces);
-                holds_ = refused.empty();
             }
             return refused;
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         result_.plan = plan_cover(setup_.mandrel, *setup_.obstacles, options);
-        pieces_ = result_.plan.pieces;
         watch_.stage("plan");
+    }
+
+    [[nodiscard]] static Rejection first_of(const std::map<std::size_t, Rejection>& refused) {
+        return refused.empty() ? Rejection::None : refused.begin()->second;
     }
 
     // The way from a plan to its program, and back: the program is read from its text and wound
-    // again, a few times where its blocks turn out too coarse. Returns the pieces that it does not
-    // lay as they are planned.
-    std::vector<std::size_t> wind_through(std::span<const Piece> pieces) {
+    // again. Returns the pieces that it does not lay as they are planned.
+    const std::map<std::size_t, Rejection>& wind_whole(std::span<const Piece> pieces,
+                                                       bool in_spite) {
         watch_.stage("plan");
-        pieces_ = pieces;
-        post_process();
-        watch_.stage("post");
-        std::set<std::size_t> refused;
-        const bool one_fibre = std::count_if(pieces.begin(), pieces.end(), [](const Piece& piece) {
-                                   return piece.starts_fibre;
-                               }) == 1;
-        for (int round = 0; one_fibre; ++round) {
-            tell("verify", static_cast<double>(round) / kTighterRounds);
-            read_ = setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
-            result_.verification = verify_program(setup_, read_, planned_fibre(pieces_));
-            std::set<std::size_t> coarse;
-            for (const std::size_t block : result_.verification.coarse_blocks) {
-                coarse.insert(static_cast<std::size_t>(result_.blocks.blocks[block].piece));
-            }
-            const bool in_vain = round > kRoundsInVain && coarse == refused;
-            refused = std::move(coarse);
-            if (round == kTighterRounds || in_vain || !tighten()) {
-                break;
-            }
-            make_program();
-        }
-        watch_.stage("verify");
-        return {refused.begin(), refused.end()};
-    }
-
-    void post_process() {
-        tell("post", 0.0);
-        motion_ = motion_for(pieces_);
-        result_.eyes = motion_.eyes;
-        result_.path_points = motion_.path.size();
-        tell("collisions", 0.5);
-        room_mm_ = collisions_of(motion_, setup_.rule).clearance_mm;
-        for (double& room : room_mm_) {
-            room = std::clamp(kUsedRoom * (room - setup_.rule.clearance_mm), kLeastBetweenBlocks_mm,
-                              kMostBetweenBlocks_mm);
-        }
-        share_.assign(motion_.path.size(), 1.0);
-        make_program();
-    }
-
-    // Blocks for the motion, and their text.
-    void make_program() {
-        const std::vector<double> turn_room = turn_room_per_mm();
-        result_.choice = choose_blocks(setup_.machine,
-                                       {.path = motion_.path,
-                                        .joints = motion_.joints,
-                                        .room_mm = room_mm_,
-                                        .turn_room_per_mm = turn_room,
-                                        .share = share_},
-                                       block_tolerance());
-        const std::span<const std::size_t> ends = result_.choice.ends;
-        const EyePath path = points_at(motion_.path, ends);
-        const JointPath joints = points_at(motion_.joints, ends);
-        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
-        TimedBlocks timed =
-            make_blocks(setup_.machine, path, joints, result_.choice.fibre_mm, time);
-        result_.duration_s = timed.time.duration_s;
-        result_.binding = std::move(timed.time.binding);
-        // What the program runs, repeated circuits included.
-        FoldedProgram folded = setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
-        result_.blocks = std::move(folded.list);
-        result_.layout = std::move(folded.layout);
-        write_program();
-    }
-
-    // Asks for finer blocks where the simulation found some too coarse; false where it found none.
-    bool tighten() {
-        const auto key = [](const auto& at) { return std::pair(at.piece, at.point); };
-        bool any = false;
-        std::size_t point = 0;
-        for (const std::size_t block : result_.verification.coarse_blocks) {
-            const auto from = key(result_.blocks.blocks[block > 0 ? block - 1 : 0]);
-            const auto to = key(result_.blocks.blocks[block]);
-            while (point < motion_.path.size() && key(motion_.path[point]) < from) {
-                ++point;
-            }
-            for (; point < motion_.path.size() && key(motion_.path[point]) <= to; ++point) {
-                share_[point] *= kTighter;
-                any = true;
-            }
-        }
-        return any;
-    }
-
-    // How much the blocks may turn the fibre on top of the plan without using up the friction, per
-    // point; where the plan lifts the fibre off, as they like.
-    [[nodiscard]] std::vector<double> turn_room_per_mm() const {
-        std::vector<double> room;
-        for (const EyePoint& point : motion_.path) {
-            const Piece& piece = pieces_[static_cast<std::size_t>(point.piece)];
-            const auto i = static_cast<std::size_t>(point.point);
-            const double spare = kUsedFriction * setup_.job.tow.friction - piece.slip[i];
-            room.push_back(piece.string.gap_mm[i] > 0.0
-                               ? std::numeric_limits<double>::infinity()
-                               : std::max(spare * piece.path[i].kn_per_mm, kStraight_per_mm));
-        }
-        return room;
+        PieceProgramOptions options;
+        options.in_spite = in_spite;
+        options.through_text = [this](const PieceProgram& made) {
+            write_program(made);
+            return setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
+        };
+        options.progress = [this](const char* step, double share) { tell(step, share); };
+        options.stage_done = [this](const char* stage) { watch_.stage(stage); };
+        result_.made = program_of(setup_, pieces, options);
+        holds_ = result_.made.refused.empty();
+        return result_.made.refused;
     }
 
     [[nodiscard]] static std::string place_of(const EyePoint& eye) {
@@ -399,14 +227,14 @@ private:
     }
 
     void check_eyes() {
-        const std::vector<std::size_t>& blocked = result_.eyes.blocked;
+        const std::vector<std::size_t>& blocked = result_.made.eyes.blocked;
         Check check{"eye", blocked.empty(), {}, {}};
         check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
         if (!check.ok) {
             check.words = "no free fibre length between " +
                           fixed(setup_.rule.free_fibre.min_mm, 0) + " and " +
                           fixed(setup_.rule.free_fibre.max_mm, 0) + " mm is clear at " +
-                          place_of(result_.eyes.path[blocked.front()]);
+                          place_of(result_.made.eyes.path[blocked.front()]);
         }
         result_.checks.push_back(check);
     }
@@ -429,36 +257,35 @@ private:
 
     void check_program() {
         check_rounding();
-        const std::vector<Check>& found = result_.verification.checks;
+        const std::vector<Check>& found = result_.made.verification.checks;
         result_.checks.insert(result_.checks.end(), found.begin(), found.end());
-        write_program();  // with what failed, for --force
+        write_program(result_.made);  // with what failed, for --force
     }
 
     void check_rounding() {
-        Check check{"rounding", read_.nano == result_.blocks.nano, {}, {}};
-        check.numbers["blocks"] = static_cast<double>(read_.blocks.size());
+        Check check{"rounding", result_.made.read.nano == result_.made.blocks.nano, {}, {}};
+        check.numbers["blocks"] = static_cast<double>(result_.made.read.blocks.size());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";
         }
         result_.checks.push_back(check);
     }
 
-    void write_program() {
+    void write_program(const PieceProgram& made) {
         ProgramHeader header;
         header.version = kVersion;
         header.mandrel = setup_.mandrel.file;
-        header.mandrel_digest = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
+        header.mandrel_digest = mandrel_digest_;
         header.job_digest = "sha256 " + sha256_hex(job_text(setup_.job));
         header.fibre_length_mm = result_.plan.fibre_length_mm;
-        header.tie_on_mm = result_.eyes.path.front().landing_mm;
+        header.tie_on_mm = made.eyes.path.front().landing_mm;
         for (const Check& check : result_.checks) {
             if (!check.ok) {
                 header.notes.push_back("CHECK FAILED, written by force: " + check.name);
             }
         }
         result_.program_file = "program" + setup_.dialect->extension();
-        result_.program =
-            setup_.dialect->write(setup_.machine, result_.blocks, result_.layout, header);
+        result_.program = setup_.dialect->write(setup_.machine, made.blocks, made.layout, header);
     }
 
     [[nodiscard]] std::string vtu() const {
@@ -483,8 +310,8 @@ private:
         result_.program_written = planned && (result_.passed() || request_.force);
         OutputFolder& folder = *folder_;
         if (planned) {
-            folder.add("path.csv", path_csv(result_.plan.pieces, result_.eyes.path));
-            folder.add("motion.csv", motion_csv(setup_.machine, result_.blocks));
+            folder.add("path.csv", path_csv(result_.plan.pieces, result_.made.eyes.path));
+            folder.add("motion.csv", motion_csv(setup_.machine, result_.made.blocks));
             folder.add("layup.vtu", vtu());
         } else {
             for (const char* const name : {"path.csv", "motion.csv", "layup.vtu"}) {
@@ -506,12 +333,8 @@ private:
     Setup& setup_ = result_.setup;
     Stopwatch watch_;
     std::unique_ptr<OutputFolder> folder_;
-    std::span<const Piece> pieces_;  // of the plan that is wound
-    bool holds_ = false;             // the last plan that was wound is laid as it is planned
-    Motion motion_;
-    BlockList read_;               // the program as read back
-    std::vector<double> room_mm_;  // per point of the motion: how far the eye may be off
-    std::vector<double> share_;    // per point: of the tolerance, for blocks
+    std::string mandrel_digest_;
+    bool holds_ = false;  // the last plan that was wound is laid as it is planned
 };
 
 }  // namespace

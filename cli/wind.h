@@ -8,12 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/piece_program.h"
 #include "cli/setup.h"
-#include "postproc/block.h"
-#include "postproc/choose_blocks.h"
-#include "postproc/eye_path.h"
-#include "postproc/repeats.h"
-#include "postproc/time_law.h"
 #include "postproc/verify.h"
 #include "winding/plan.h"
 
@@ -35,16 +31,9 @@ struct WindRequest {
 struct WindResult {
     Setup setup;
     Plan plan;
-    EyePathResult eyes;
-    std::size_t path_points = 0;  ///< points that blocks were chosen from
-    BlockChoice choice;
-    BlockList blocks;          ///< what the program runs, one by one
-    ProgramLayout layout;      ///< how they are written
+    PieceProgram made;         ///< of the plan
     std::string program;       ///< text; empty when nothing can be written
     std::string program_file;  ///< name, e.g. "program.ngc"
-    double duration_s = 0.0;
-    std::vector<BindingLimit> binding;
-    Verification verification;  ///< of the program, where it winds one fibre
     std::vector<Check> checks;
     std::map<std::string, double> timing_s;
     bool program_written = false;

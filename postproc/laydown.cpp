@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -13,7 +14,6 @@
 #include "geodesic/field_walk.h"
 #include "machines/kinematics.h"
 #include "mesh/nearest.h"
-#include "mesh/ray_query.h"
 
 namespace meshwind {
 namespace {
@@ -137,30 +137,20 @@ std::vector<char> hollow_faces(const Surface& surface, double reach_mm) {
     return near;
 }
 
-SurfacePoint on_surface(const Surface& surface, const Vector3d& place) {
+RayQuery facets_of(const Surface& surface) {
     const std::array<TriangleSoup, 1> soup{{{surface.position_mm, surface.face}}};
-    const RayQuery query(soup);
-    const double reach = std::max(1.0, 2.0 * surface.mean_edge_mm);
-    const ClosestPoint closest = query.closest(place, reach);
-    if (closest.part < 0) {
-        throw InputError("verify.tie_on", "",
-                         "the tie-on point (" + fixed(place.x(), 3) + ", " + fixed(place.y(), 3) +
-                             ", " + fixed(place.z(), 3) + ") is more than " + fixed(reach, 1) +
-                             " mm off the mandrel; is it the mandrel of this program?");
-    }
-    return {closest.face, closest.bary};
+    return RayQuery(soup);
 }
 
 class Layer {
 public:
-    Layer(const Surface& surface, const Machine& machine, const BlockList& list,
+    Layer(const LaydownWall& wall, const Machine& machine, const BlockList& list,
           const Vector3d& tie_on_mm, const LaydownOptions& options)
-        : surface_(surface),
+        : wall_(wall),
           machine_(machine),
           list_(list),
           options_(options),
-          hollow_(hollow_faces(surface, options.bridge_reach_mm)),
-          walker_(surface, on_surface(surface, tie_on_mm)) {
+          walker_(wall.surface(), wall.nearest(tie_on_mm)) {
         walker_.move_under(tie_on_mm);  // the patch's point instead of the facet's
     }
 
@@ -311,7 +301,7 @@ private:
                 case FieldStop::Length:
                     return fail("the eye dips into the mandrel");
                 case FieldStop::Arrived:
-                    if (hollow_[at(walker_.face())] == 0 || !cross_hollow(eye)) {
+                    if (!wall_.hollow_near(walker_.face()) || !cross_hollow(eye)) {
                         return true;
                     }
                     break;
@@ -330,8 +320,8 @@ private:
         const Vector3d free = eye - walker_.position_mm();
         const double length = free.norm();
         const std::optional<Bridge> bridge =
-            bridge_ahead(surface_, walker_, free / length,
-                         std::min(options_.bridge_reach_mm, kAheadShare * length));
+            bridge_ahead(wall_.surface(), walker_, free / length,
+                         std::min(wall_.bridge_reach_mm(), kAheadShare * length));
         if (!bridge) {
             return false;
         }
@@ -378,11 +368,10 @@ private:
         laid_.block.push_back(block_);
     }
 
-    const Surface& surface_;
+    const LaydownWall& wall_;
     const Machine& machine_;
     const BlockList& list_;
     LaydownOptions options_;
-    std::vector<char> hollow_;
     FieldWalker walker_;
     Vector3d eye_mm_ = Vector3d::Zero();
     std::size_t block_ = 0;
@@ -393,9 +382,27 @@ private:
 
 }  // namespace
 
-LaidPath lay_down(const Surface& surface, const Machine& machine, const BlockList& list,
+LaydownWall::LaydownWall(Surface surface, double bridge_reach_mm)
+    : surface_(std::move(surface)),
+      bridge_reach_mm_(bridge_reach_mm),
+      hollow_(hollow_faces(surface_, bridge_reach_mm)),
+      facets_(facets_of(surface_)) {}
+
+SurfacePoint LaydownWall::nearest(const Vector3d& place) const {
+    const double reach = std::max(1.0, 2.0 * surface_.mean_edge_mm);
+    const ClosestPoint closest = facets_.closest(place, reach);
+    if (closest.part < 0) {
+        throw InputError("verify.tie_on", "",
+                         "the tie-on point (" + fixed(place.x(), 3) + ", " + fixed(place.y(), 3) +
+                             ", " + fixed(place.z(), 3) + ") is more than " + fixed(reach, 1) +
+                             " mm off the mandrel; is it the mandrel of this program?");
+    }
+    return {closest.face, closest.bary};
+}
+
+LaidPath lay_down(const LaydownWall& wall, const Machine& machine, const BlockList& list,
                   const Vector3d& tie_on_mm, const LaydownOptions& options) {
-    return Layer(surface, machine, list, tie_on_mm, options).lay();
+    return Layer(wall, machine, list, tie_on_mm, options).lay();
 }
 
 }  // namespace meshwind

@@ -10,6 +10,7 @@
 #include "geodesic/bridge.h"
 #include "geodesic/surface_path.h"
 #include "machines/machine.h"
+#include "mesh/ray_query.h"
 #include "mesh/surface.h"
 #include "postproc/block.h"
 #include "postproc/eye_path.h"
@@ -21,9 +22,34 @@ struct LaydownOptions {
     /// The eye moves no further and the rotary axes turn no further between two samples.
     double sample_mm = 10.0;
     double sample_rad = 0.1;
-    /// Over hollows the fibre is looked for so far ahead of the landing point; what it meets
-    /// further on counts as a collision of the free fibre.
-    double bridge_reach_mm = kBridgeReach_mm;
+};
+
+/// What fibre is laid on: a wall, with what laying looks up there. Built once for any number of
+/// programs and threads.
+class LaydownWall {
+public:
+    /// \param surface the wall with its extensions (mesh/extension.h)
+    /// \param bridge_reach_mm over hollows the fibre is looked for so far ahead of the landing
+    /// point; what it meets further on counts as a collision of the free fibre
+    explicit LaydownWall(Surface surface, double bridge_reach_mm = kBridgeReach_mm);
+
+    [[nodiscard]] const Surface& surface() const { return surface_; }
+    [[nodiscard]] double bridge_reach_mm() const { return bridge_reach_mm_; }
+
+    /// Whether the wall is hollow, along any direction, within reach of a face.
+    [[nodiscard]] bool hollow_near(std::int32_t face) const {
+        return hollow_[static_cast<std::size_t>(face)] != 0;
+    }
+
+    /// The nearest place of the wall.
+    /// \throws InputError verify.tie_on where it is more than two edges off, and 1 mm
+    [[nodiscard]] SurfacePoint nearest(const Eigen::Vector3d& place_mm) const;
+
+private:
+    Surface surface_;
+    double bridge_reach_mm_;
+    std::vector<char> hollow_;  // per face
+    RayQuery facets_;
 };
 
 /// When a station was laid.
@@ -57,10 +83,10 @@ struct LaidPath {
 /// path is the integral curve of the directions E(theta(X)) - X, solved on the curved patches with
 /// fourth order. Over a hollow the straight fibre is followed over the wall: where it meets the
 /// wall again the landing point goes there and leaves a bridge behind.
-/// \param surface the wall with its extensions (mesh/extension.h)
-/// \param tie_on_mm within an edge of the surface
+/// \param tie_on_mm within an edge of the wall
+/// \throws InputError verify.tie_on where it is not
 /// Accuracy: tests/postproc/laydown_test.cpp.
-[[nodiscard]] LaidPath lay_down(const Surface& surface, const Machine& machine,
+[[nodiscard]] LaidPath lay_down(const LaydownWall& wall, const Machine& machine,
                                 const BlockList& list, const Eigen::Vector3d& tie_on_mm,
                                 const LaydownOptions& options = {});
 

@@ -36,8 +36,8 @@ public:
                              "the program does not say where the fibre is tied on; give --tie-on "
                              "X,Y,Z in the mandrel's frame");
         }
-        found_.laid = lay_down(task_.surface, task_.machine, task_.program,
-                               *task_.program.tie_on_mm, rules_.simulation);
+        found_.laid = lay_down(task_.wall, task_.machine, task_.program, *task_.program.tie_on_mm,
+                               rules_.simulation);
         found_.fibre_length_mm = found_.laid.path.back().s_mm;
         found_.duration_s = task_.program.duration_s();
         check_laydown();
@@ -47,9 +47,11 @@ public:
         check_free_length();
         check_limits();
         check_payout();
-        std::vector<std::size_t>& coarse = found_.coarse_blocks;
-        std::sort(coarse.begin(), coarse.end());
-        coarse.erase(std::unique(coarse.begin(), coarse.end()), coarse.end());
+        for (std::vector<std::size_t>* const blocks :
+             {&found_.wrong_blocks, &found_.coarse_blocks}) {
+            std::sort(blocks->begin(), blocks->end());
+            blocks->erase(std::unique(blocks->begin(), blocks->end()), blocks->end());
+        }
         return std::move(found_);
     }
 
@@ -70,15 +72,23 @@ private:
     void fail(Check& check, std::size_t block, const std::string& words) {
         check.ok = false;
         check.words = words;
+        found_.wrong_blocks.push_back(block);
         if (!found_.first_wrong_block || block < *found_.first_wrong_block) {
             found_.first_wrong_block = block;
         }
     }
 
+    // Blocks in which finer ones may help.
+    void note_coarse(std::size_t block) {
+        found_.wrong_blocks.push_back(block);
+        found_.coarse_blocks.push_back(block);
+    }
+
     // The blocks that laid the fibre over `back_mm` up to a station.
-    void note_coarse(std::size_t station, double back_mm) {
+    void note_coarse_behind(std::size_t station, double back_mm) {
         const LaidPath& laid = found_.laid;
         const double from_mm = laid.path[station].s_mm - back_mm;
+        found_.wrong_blocks.push_back(laid.at[station].block);
         for (std::size_t i = station;; --i) {
             if (found_.coarse_blocks.empty() || found_.coarse_blocks.back() != laid.at[i].block) {
                 found_.coarse_blocks.push_back(laid.at[i].block);
@@ -101,7 +111,8 @@ private:
                              {"limit_deg", deg_from_rad(rules_.laydown.angle_rad)},
                              {"end_gap_mm", off.end_gap_mm}};
             for (const std::size_t station : off.wrong) {
-                note_coarse(station, kPulledShare * rules_.collision.free_fibre.preferred_mm);
+                note_coarse_behind(station,
+                                   kPulledShare * rules_.collision.free_fibre.preferred_mm);
             }
             const std::size_t last = task_.program.blocks.size() - 1;
             if (!off.wrong.empty()) {
@@ -116,6 +127,7 @@ private:
             }
         }
         if (!laid.failure.empty()) {
+            note_coarse(laid.failed_block);
             fail(check, laid.failed_block, laid.failure + " in " + words_of(laid.failed_block));
         }
         found_.checks.push_back(check);
@@ -143,7 +155,8 @@ private:
         const SlipOptions options{.window_mm = rules_.tow_width_mm,
                                   .friction = rules_.friction,
                                   .method = TraceMethod::Patches};
-        found_.slip = measure_slip(task_.surface, laid.path, taut_string(laid.path), options).slip;
+        found_.slip =
+            measure_slip(task_.wall.surface(), laid.path, taut_string(laid.path), options).slip;
         const std::vector<double> to_bridge = distance_to_bridges();
         std::size_t worst = 0;
         std::optional<std::size_t> first;
@@ -154,7 +167,7 @@ private:
             worst = found_.slip[i] > found_.slip[worst] ? i : worst;
             if (found_.slip[i] > rules_.friction) {
                 first = first.value_or(i);
-                note_coarse(i, 2.0 * rules_.tow_width_mm);
+                note_coarse_behind(i, 2.0 * rules_.tow_width_mm);
             }
         }
         Check check{"slip", true, {}, {}};
@@ -174,8 +187,9 @@ private:
         std::optional<std::size_t> first;
         for (std::size_t i = 0; i < laid.at.size(); ++i) {
             worst = std::max(worst, laid.at[i].gap_mm);
-            if (!first && laid.at[i].gap_mm > rules_.bridging_tolerance_mm) {
-                first = i;
+            if (laid.at[i].gap_mm > rules_.bridging_tolerance_mm) {
+                first = first.value_or(i);
+                note_coarse(laid.at[i].block);
             }
         }
         Check check{"bridging", true, {}, {}};
@@ -208,7 +222,7 @@ private:
         };
         for (const auto* const hits : {&report.fibre_hits, &report.head_hits}) {
             for (const std::size_t sample : *hits) {
-                found_.coarse_blocks.push_back(laid.block[sample]);
+                note_coarse(laid.block[sample]);
             }
         }
         say(report.fibre_hits, "the free fibre meets the mandrel");
@@ -228,10 +242,10 @@ private:
             found_.shortest_free_mm = std::min(found_.shortest_free_mm, length);
             found_.longest_free_mm = std::max(found_.longest_free_mm, length);
             const bool within = length >= rule.min_mm - kFreeLengthSlack_mm &&
-                                length <= rule.max_mm + rules_.simulation.bridge_reach_mm;
+                                length <= rule.max_mm + task_.wall.bridge_reach_mm();
             if (!within) {
                 first = first.value_or(i);
-                found_.coarse_blocks.push_back(laid.block[i]);
+                note_coarse(laid.block[i]);
             }
         }
         check.numbers = {{"min_mm", found_.shortest_free_mm},

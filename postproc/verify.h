@@ -11,7 +11,6 @@
 
 #include "machines/machine.h"
 #include "mesh/ray_query.h"
-#include "mesh/surface.h"
 #include "postproc/block.h"
 #include "postproc/collision.h"
 #include "postproc/deviation.h"
@@ -42,7 +41,7 @@ struct VerifyTask {
     const BlockList& program;  ///< as a dialect's reader gave it, with the place of its tie-on
     const Machine& machine;
     const HeadEnvelope& envelope;
-    const Surface& surface;     ///< the wall with its extensions
+    const LaydownWall& wall;
     const RayQuery& obstacles;  ///< everything that can be hit
     const VerifyRules& rules;
     const PlannedFibre& plan;  ///< for the last comparison; empty: nothing is compared
@@ -58,7 +57,8 @@ struct Verification {
     double longest_free_mm = 0.0;
     std::vector<Check> checks;  ///< laydown, slip, bridging, collision, free_length, limits, payout
     std::optional<std::size_t> first_wrong_block;  ///< the first at which a check fails
-    /// Blocks, ascending, that finer ones may mend: those of laid stations beyond a tolerance with
+    std::vector<std::size_t> wrong_blocks;         ///< ascending: all at which a check fails
+    /// Blocks, ascending, to be made finer: those of laid stations beyond a tolerance with
     /// the way over which the fibre was pulled there, those in which something is hit, and those
     /// with a free length that the machine cannot wind with.
     std::vector<std::size_t> coarse_blocks;

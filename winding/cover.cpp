@@ -61,7 +61,7 @@ constexpr double kHeadMargin_mm = 0.3;
 // Plans that are tried until the machine can wind the whole.
 constexpr int kMaxAttempts = 8;
 
-// Attempts in a row that refuse as many courses as before, or more, before no other is made.
+// Attempts that refuse as many courses as before, or more, before no others are put there.
 constexpr int kMostInVain = 2;
 
 std::size_t at(std::int32_t i) {
@@ -168,9 +168,10 @@ private:
                ": " + name_of(static_cast<Rejection>(most - rejections.begin()));
     }
 
-    // Follows a course accurately and asks the machine. Where both agree the member becomes what
-    // was found, windable in this direction alone.
-    Rejection prove(PlacedCourse& course) const {
+    // Follows a course accurately and asks the machine; for one that is to stay, its own program is
+    // wound, too. Where all agree the member becomes what was found, windable in this direction
+    // alone.
+    Rejection prove(PlacedCourse& course, bool to_stay = false) const {
         const bool backward = course.backward;
         Member exact;
         FollowedCourse followed;
@@ -185,12 +186,11 @@ private:
         if (way_of(exact, backward) != way_of(course.member, backward)) {
             return Rejection::Path;
         }
-        if (options_.accept) {
-            const Rejection rejection = options_.accept(piece_of(followed, exact, backward));
-            if (rejection != Rejection::None) {
-                return rejection;
-            }
-        } else if (!is_windable(rules_, followed, backward)) {
+        const Rejection rejection = ask_machine(piece_of(followed, exact, backward), to_stay);
+        if (rejection != Rejection::None) {
+            return rejection;
+        }
+        if (!options_.accept && !is_windable(rules_, followed, backward)) {
             return Rejection::FreeLength;
         }
         FootprintFinder::Scratch scratch = footprints_.make_scratch();
@@ -199,7 +199,16 @@ private:
         exact.windable_backward = backward;
         course.member = std::move(exact);
         course.path = std::move(followed.path);
+        course.wound = to_stay;
         return Rejection::None;
+    }
+
+    [[nodiscard]] Rejection ask_machine(const Piece& piece, bool to_stay) const {
+        Rejection rejection = options_.accept ? options_.accept(piece) : Rejection::None;
+        if (rejection == Rejection::None && to_stay && options_.wind) {
+            rejection = options_.wind(piece);
+        }
+        return rejection;
     }
 
     static std::pair<std::size_t, std::size_t> way_of(const Member& member, bool backward) {
@@ -322,8 +331,8 @@ private:
         }
         annealing.progress = [this](double share) { tell("anneal", share); };
         annealing.way = [this](std::size_t from, std::size_t to) { return route_.holds(from, to); };
-        annealing.verify = [this](PlacedCourse& course) {
-            const Rejection rejection = prove(course);
+        annealing.verify = [this, mending](PlacedCourse& course) {
+            const Rejection rejection = prove(course, mending);
             if (rejection != Rejection::None) {
                 FootprintFinder::Scratch scratch = footprints_.make_scratch();
                 Member refused;  // on the samples of the plan, not on those of the annealing
@@ -338,9 +347,27 @@ private:
         plan_.effort.taken += effort.accepted;
     }
 
-    // Anneals, adds what it takes to join the courses, and puts them in order.
-    void join_to_one_fibre(bool mending) {
-        anneal_proven(mending);
+    // Replaces the courses whose own programs do not lay them as planned.
+    void keep_what_winds() {
+        tell("prove", 0.0);
+        std::vector<Rejection> found(courses_.size(), Rejection::None);
+        parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
+            found[i] = courses_[i].wound ? Rejection::None : prove(courses_[i], true);
+        });
+        std::vector<std::pair<std::size_t, Rejection>> refused;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            if (found[i] != Rejection::None) {
+                refused.emplace_back(i, found[i]);
+            }
+        }
+        if (!refused.empty()) {
+            give_up(refused);
+            anneal_proven(true);
+        }
+    }
+
+    // Adds what it takes to join the courses, and puts them in order.
+    void join_to_one_fibre() {
         join();
         put_in_order();
         keep_main_fibre();
@@ -391,7 +418,7 @@ private:
                 continue;
             }
             PlacedCourse added = placed(course.member, course.backward);
-            const Rejection rejection = prove(added);
+            const Rejection rejection = prove(added, true);
             if (rejection == Rejection::None) {
                 taken.push_back(std::move(added));
                 continue;
@@ -432,29 +459,32 @@ private:
                   order_.begin() + static_cast<std::ptrdiff_t>(fibre.second)};
     }
 
-    // Plans and shows the whole to the machine, again and again without the courses that it refuses
-    // in their place. Where that leads nowhere the plan with the fewest of them stands.
+    // Plans, winds the whole, and plans again without the courses that the machine refuses in their
+    // place. Where putting others there leads nowhere they are only left out; if all is in vain,
+    // the plan with the fewest of them stands.
     void make_it_hold() {
+        anneal_proven(false);
+        keep_what_winds();
         std::vector<PlacedCourse> best;
         std::size_t least = 0;
         int in_vain = 0;
         for (int attempt = 0; attempt < kMaxAttempts && !courses_.empty(); ++attempt) {
-            join_to_one_fibre(attempt > 0);
+            join_to_one_fibre();
             lay_out(rules_, members_, order_, plan_);
-            const std::vector<std::size_t> refused = refused_courses();
+            const auto refused = refused_courses();
             if (refused.empty()) {
                 return;
             }
             const bool better = best.empty() || refused.size() < least;
-            in_vain = better ? 0 : in_vain + 1;
+            in_vain += better ? 0 : 1;
             if (better) {
                 best = courses_;
                 least = refused.size();
             }
-            if (in_vain == kMostInVain) {
-                break;
-            }
             give_up(refused);
+            if (in_vain < kMostInVain) {
+                anneal_proven(true);
+            }
         }
         courses_ = std::move(best);
         put_in_order();
@@ -463,25 +493,27 @@ private:
     }
 
     // The courses that the machine refuses, or whose turn it refuses; in order, each once.
-    [[nodiscard]] std::vector<std::size_t> refused_courses() const {
-        std::vector<std::size_t> courses;
+    [[nodiscard]] std::vector<std::pair<std::size_t, Rejection>> refused_courses() const {
+        std::vector<std::pair<std::size_t, Rejection>> courses;
         if (!options_.refused || order_.empty()) {
             return courses;
         }
         for (const std::size_t piece : options_.refused(plan_.pieces)) {
             const std::size_t course = piece / 2;  // courses and turns alternate
-            courses.push_back(at(order_[course].course.member) - library_size_);
+            courses.emplace_back(at(order_[course].course.member) - library_size_,
+                                 Rejection::InItsPlace);
         }
         std::sort(courses.begin(), courses.end());
         courses.erase(std::unique(courses.begin(), courses.end()), courses.end());
         return courses;
     }
 
-    void give_up(const std::vector<std::size_t>& refused) {
+    void give_up(const std::vector<std::pair<std::size_t, Rejection>>& refused) {
         for (std::size_t k = refused.size(); k-- > 0;) {
-            const PlacedCourse course = std::move(courses_[refused[k]]);
-            courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(refused[k]));
-            note_refused(course.member, Rejection::InItsPlace);
+            const auto& [index, reason] = refused[k];
+            const PlacedCourse course = std::move(courses_[index]);
+            courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(index));
+            note_refused(course.member, reason);
             if (course.fixed) {
                 replace_link(way_of(course.member, course.backward));
             }
@@ -495,7 +527,7 @@ private:
         while (!proven.empty()) {
             PlacedCourse link = placed(proven.front().member, proven.front().backward);
             link.fixed = true;
-            if (prove(link) == Rejection::None) {
+            if (prove(link, true) == Rejection::None) {
                 courses_.push_back(std::move(link));
                 return;
             }

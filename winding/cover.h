@@ -25,6 +25,9 @@ struct CoverOptions {
     /// Asked of every course before it enters the plan, in the direction it would be wound: what
     /// the machine says, None where it accepts. Must be pure and thread-safe.
     std::function<Rejection(const Piece&)> accept;
+    /// Asked of every course that is to stay: its own program, wound again. Must be pure and
+    /// thread-safe.
+    std::function<Rejection(const Piece&)> wind;
     /// Asked of the whole plan: which of its pieces the machine cannot wind in their place. Those
     /// are replaced and the plan is made again, a few times.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;

@@ -13,6 +13,7 @@ struct PlacedCourse {
     SurfacePath path;  ///< from end 0 to end 1
     bool backward = false;
     bool fixed = false;  ///< stays as it is
+    bool wound = false;  ///< its own program lays it as planned
 };
 
 /// How a course is moved: to its left, turned, and steered otherwise ahead of its seed and behind.

@@ -18,6 +18,8 @@ const char* name_of(Rejection rejection) {
             return "the free fibre would hit something";
         case Rejection::HeadHit:
             return "the head would come too near";
+        case Rejection::Laydown:
+            return "wound again, its program does not lay the course as planned";
         case Rejection::InItsPlace:
             return "the machine refuses the course or a turn next to it";
         case Rejection::Apart:

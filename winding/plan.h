@@ -40,11 +40,12 @@ enum class Rejection : std::uint8_t {
     AxisTravel,
     FibreHit,
     HeadHit,
+    Laydown,     ///< wound again its program does not lay it as planned
     InItsPlace,  ///< the machine refuses it, or a turn next to it, between its neighbours
     Apart,       ///< no single fibre joins it to the others
     NotPlanned,  ///< too little of the wall is in reach
 };
-inline constexpr std::size_t kRejections = 10;
+inline constexpr std::size_t kRejections = 11;
 
 /// Words for a report: "the free fibre hits something", ...
 [[nodiscard]] const char* name_of(Rejection rejection);

@@ -65,10 +65,10 @@ ExactCurve helix(double step_mm, double length_mm = 240.0) {
 
 LaidPath lay(const Surface& surface, const EyePath& path,
              RedundancyPolicy policy = RedundancyPolicy::CentralAngle,
-             const LaydownOptions& options = {}) {
+             const LaydownOptions& options = {}, double bridge_reach_mm = kBridgeReach_mm) {
     const Machine machine = test::fine_machine();
-    return lay_down(surface, machine, test::program(machine, path, policy), path.front().landing_mm,
-                    options);
+    return lay_down(LaydownWall(surface, bridge_reach_mm), machine,
+                    test::program(machine, path, policy), path.front().landing_mm, options);
 }
 
 LaidPath lay(const Surface& surface, const ExactCurve& curve,
@@ -166,7 +166,8 @@ TEST(LayDown, SamplesFollowTheBlocksInTime) {
     const ExactCurve curve = helix(2.0);
     const BlockList list =
         test::program(machine, test::eye_path(curve, kFree_mm), RedundancyPolicy::CentralAngle);
-    const LaidPath laid = lay_down(cylinder(), machine, list, curve.states[0].position_mm);
+    const LaidPath laid =
+        lay_down(LaydownWall(cylinder()), machine, list, curve.states[0].position_mm);
     expect_sound(laid, list);
     EXPECT_NEAR(laid.time_s.back(), list.duration_s(), 1e-9);
     for (const EyePoint& sample : laid.samples) {
@@ -265,8 +266,8 @@ TEST(LayDown, BridgesTheHourglassBetweenItsShoulders) {
 
 // A reach that ends before the far shoulder: the fibre is not seen to touch it.
 TEST(LayDown, WithoutReachDoesNotBridge) {
-    const LaidPath laid = lay(hourglass(), test::meridian({}, 0.5), RedundancyPolicy::CentralAngle,
-                              {.bridge_reach_mm = 15.0});
+    const EyePath path = test::eye_path(test::meridian({}, 0.5), kFree_mm);
+    const LaidPath laid = lay(hourglass(), path, RedundancyPolicy::CentralAngle, {}, 15.0);
     for (const LaidAt& at : laid.at) {
         ASSERT_FALSE(at.lifted && at.gap_mm > 1.0);
     }
@@ -304,7 +305,8 @@ TEST(LayDown, SaysWhereTheFibreRunsOverTheEnd) {
     const Machine machine = test::fine_machine();
     const BlockList list =
         test::program(machine, test::eye_path(curve, kFree_mm), RedundancyPolicy::CentralAngle);
-    const LaidPath laid = lay_down(cylinder(), machine, list, curve.states[0].position_mm);
+    const LaidPath laid =
+        lay_down(LaydownWall(cylinder()), machine, list, curve.states[0].position_mm);
     expect_sound(laid, list);
     EXPECT_EQ(laid.failure.substr(0, laid.failure.size() - 1),
               "the fibre runs over the end of the extension of rim ");
@@ -336,7 +338,7 @@ TEST(LayDown, SaysThatTheEyeIsInTheMandrel) {
     const Vector3d tie_on(50.0, 0.0, 0.0);
     const auto failure = [&](const std::vector<Vector3d>& eyes) {
         const BlockList list = eye_list(machine, eyes);
-        const LaidPath laid = lay_down(cylinder(), machine, list, tie_on);
+        const LaidPath laid = lay_down(LaydownWall(cylinder()), machine, list, tie_on);
         expect_sound(laid, list);
         return laid.failure;
     };
@@ -350,14 +352,15 @@ TEST(LayDown, RefusesATieOnOffTheMandrel) {
     const BlockList list = eye_list(machine, {{50.0, 100.0, 20.0}, {40.0, 100.0, 20.0}});
     for (const Vector3d& tie_on : {Vector3d(70.0, 0.0, 0.0), Vector3d(50.0, 0.0, 230.0)}) {
         try {
-            (void)lay_down(cylinder(), machine, list, tie_on);
+            (void)lay_down(LaydownWall(cylinder()), machine, list, tie_on);
             FAIL();
         } catch (const InputError& error) {
             EXPECT_EQ(error.code(), "verify.tie_on");
             EXPECT_NE(std::string(error.what()).find("mm off the mandrel"), std::string::npos);
         }
     }
-    EXPECT_THROW((void)lay_down(Surface{}, machine, list, {50.0, 0.0, 0.0}), InputError);
+    EXPECT_THROW((void)lay_down(LaydownWall(Surface{}), machine, list, {50.0, 0.0, 0.0}),
+                 InputError);
 }
 
 // Whatever the axes do: an end in finite numbers, the same one each time.
@@ -379,9 +382,9 @@ TEST(LayDown, EndsForAnyMotion) {
                 list.nano.push_back(std::llround(place[a] * 1e3) * list.axes[a].resolution_nano);
             }
         }
-        const LaidPath laid = lay_down(surface, machine, list, tie_on);
+        const LaidPath laid = lay_down(LaydownWall(surface), machine, list, tie_on);
         expect_sound(laid, list);
-        const LaidPath again = lay_down(surface, machine, list, tie_on);
+        const LaidPath again = lay_down(LaydownWall(surface), machine, list, tie_on);
         ASSERT_EQ(laid.failure, again.failure);
         ASSERT_EQ(laid.path.size(), again.path.size());
         ASSERT_EQ(laid.path.back().position_mm, again.path.back().position_mm);

@@ -32,9 +32,9 @@ const Mandrel& mandrel() {
     return kCylinder;
 }
 
-const Surface& wall() {
-    static const Surface kSurface = extended_surface(mandrel(), kExtension_mm);
-    return kSurface;
+const LaydownWall& cylinder_wall() {
+    static const LaydownWall kWall(extended_surface(mandrel(), kExtension_mm));
+    return kWall;
 }
 
 const RayQuery& cylinder_obstacles() {
@@ -71,7 +71,7 @@ struct Job {
         return verify({.program = program,
                        .machine = machine,
                        .envelope = envelope,
-                       .surface = *surface,
+                       .wall = *wall,
                        .obstacles = *obstacles,
                        .rules = rules,
                        .plan = plan});
@@ -80,7 +80,7 @@ struct Job {
     Machine machine;  // the program was made for it as it is in its file
     BlockList program;
     HeadEnvelope envelope;
-    const Surface* surface = &wall();
+    const LaydownWall* wall = &cylinder_wall();
     const RayQuery* obstacles = &cylinder_obstacles();
     VerifyRules rules;
     PlannedFibre plan;
@@ -226,11 +226,11 @@ TEST(Verify, SeesSlipBeyondTheFriction) {
 // Up the hourglass' meridian: the fibre bridges 1.46 mm.
 TEST(Verify, SeesBridging) {
     const test::Hourglass shape;
-    const Surface surface = shape.surface(1.5);
+    const LaydownWall wall(shape.surface(1.5));
     const RayQuery nothing(
         std::vector<TriangleSoup>{test::box({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0})});
     Job job(test::eye_path(test::meridian(shape, 0.5), kFree_mm));
-    job.surface = &surface;
+    job.wall = &wall;
     job.obstacles = &nothing;
     job.rules.bridging_tolerance_mm = 2.0;
     EXPECT_EQ(failed(job.verified()), "");

@@ -167,6 +167,70 @@ TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
     EXPECT_GT(bare_mm2, 0.0);
 }
 
+// How directly a course leaves its rim.
+double steepness(const Piece& piece) {
+    return std::abs(piece.path.front().tangent.z());
+}
+
+CoverOptions wide_tow() {
+    CoverOptions options;
+    options.tow.width_mm = 12.0;
+    options.candidates = 1500;
+    return options;
+}
+
+Plan cover_cylinder(const CoverOptions& options) {
+    return plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0, kTable_mm), options);
+}
+
+// Steeper than this is a quarter of the courses that are wound when nothing forbids it.
+double steep() {
+    std::vector<double> all;
+    for (const Piece& piece : cover_cylinder(wide_tow()).pieces) {
+        if (piece.kind == PieceKind::Course) {
+            all.push_back(steepness(piece));
+        }
+    }
+    std::sort(all.begin(), all.end());
+    return all[all.size() * 3 / 4];
+}
+
+void expect_no_course_steeper(const Plan& plan, double limit, Rejection reason) {
+    ASSERT_EQ(plan.failure, "");
+    EXPECT_GT(plan.effort.rejections[static_cast<std::size_t>(reason)], 0);
+    EXPECT_GT(plan.coverage.fraction, 0.9);
+    for (const Piece& piece : plan.pieces) {
+        if (piece.kind == PieceKind::Course) {
+            EXPECT_LE(steepness(piece), limit);
+        }
+    }
+}
+
+TEST(PlanCover, KeepsOnlyCoursesWhoseOwnProgramHolds) {
+    const double limit = steep();
+    CoverOptions options = wide_tow();
+    options.wind = [limit](const Piece& piece) {
+        return steepness(piece) > limit ? Rejection::Laydown : Rejection::None;
+    };
+    expect_no_course_steeper(cover_cylinder(options), limit, Rejection::Laydown);
+}
+
+// Others that are as steep come in their place: replacing them has no end, leaving them out has.
+TEST(PlanCover, LeavesOutWhatIsRefusedAgainAndAgain) {
+    const double limit = steep();
+    CoverOptions options = wide_tow();
+    options.refused = [limit](std::span<const Piece> pieces) {
+        std::vector<std::size_t> refused;
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            if (pieces[i].kind == PieceKind::Course && steepness(pieces[i]) > limit) {
+                refused.push_back(i);
+            }
+        }
+        return refused;
+    };
+    expect_no_course_steeper(cover_cylinder(options), limit, Rejection::InItsPlace);
+}
+
 // A cylinder that goes over into a cone at a sharp convex edge and back at a sharp concave one:
 // courses that run over the edges are geodesics there and hold.
 TEST(PlanCover, CoversAReducerWithSharpEdges) {

@@ -1,0 +1,57 @@
+/// Pieces of a plan on their way to a program, and back: the program is wound again.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "cli/setup.h"
+#include "postproc/block.h"
+#include "postproc/choose_blocks.h"
+#include "postproc/eye_path.h"
+#include "postproc/joint_path.h"
+#include "postproc/repeats.h"
+#include "postproc/time_law.h"
+#include "postproc/verify.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+/// What comes of pieces.
+struct PieceProgram {
+    EyePathResult eyes;           ///< at the stations
+    std::size_t path_points = 0;  ///< points that blocks were chosen from
+    BlockChoice choice;
+    BlockList blocks;      ///< what the program runs, one by one
+    ProgramLayout layout;  ///< how they are written
+    double duration_s = 0.0;
+    std::vector<BindingLimit> binding;
+    BlockList read;             ///< the blocks as they were wound again
+    Verification verification;  ///< of these; empty where the pieces are more than one fibre
+    /// Pieces that the machine cannot wind, or that the blocks do not lay as they are planned, each
+    /// with the first reason.
+    std::map<std::size_t, Rejection> refused;
+};
+
+struct PieceProgramOptions {
+    /// Make a program even of what the machine cannot wind.
+    bool in_spite = false;
+    /// From the blocks to their text and back. Empty: they are wound as they are.
+    std::function<BlockList(const PieceProgram&)> through_text;
+    std::function<void(const char* step, double share)> progress;
+    std::function<void(const char* stage)> stage_done;  ///< "post", "verify"
+};
+
+/// Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason: no
+/// free length, beyond an axis' travel, or hitting something. Thread-safe.
+[[nodiscard]] std::map<std::size_t, Rejection> refused_by_machine(const Setup& setup,
+                                                                  std::span<const Piece> pieces);
+
+/// Eye, axes, blocks and time law of the pieces; then the blocks are wound again, and where that
+/// shows them too coarse they are made finer, a few times. Without blocks where the machine cannot
+/// wind the pieces, unless `in_spite`. Thread-safe. \pre there are pieces
+[[nodiscard]] PieceProgram program_of(const Setup& setup, std::span<const Piece> pieces,
+                                      const PieceProgramOptions& options = {});
+
+}  // namespace meshwind
