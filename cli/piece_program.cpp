@@ -38,6 +38,12 @@ constexpr int kRoundsInVain = 1;
 // Turns of less than this per mm (radius 100 m) are none.
 constexpr double kStraight_per_mm = 1e-5;
 
+// Where the head comes too near between stations its piece gets so much more clearance at them, so
+// many times: a free length that grows by 3 mm per mm of fibre moves the head by up to 12 mm
+// between two.
+constexpr double kMoreClearance_mm = 1.0;
+constexpr int kMoreClearanceRounds = 2;
+
 constexpr RedundancyPolicy kPolicy = RedundancyPolicy::CentralAngle;
 
 class Programmer {
@@ -46,12 +52,9 @@ public:
         : setup_(setup), pieces_(pieces) {}
 
     std::map<std::size_t, Rejection> ask_machine() {
-        move();
-        if (found_.refused.empty()) {
-            CollisionRule rule = setup_.rule;
-            rule.told_mm = rule.clearance_mm;
-            (void)collisions(rule);
-        }
+        CollisionRule rule = setup_.rule;
+        rule.told_mm = rule.clearance_mm;
+        (void)move(rule, false);
         return std::move(found_.refused);
     }
 
@@ -67,11 +70,7 @@ public:
             }
         };
         tell("post", 0.0);
-        move();
-        tell("collisions", 0.5);
-        if (found_.refused.empty() || options.in_spite) {
-            leave_room(collisions(setup_.rule));
-        }
+        leave_room(move(setup_.rule, options.in_spite));
         if (!found_.refused.empty() && !options.in_spite) {
             return std::move(found_);
         }
@@ -115,9 +114,39 @@ private:
         found_.refused.emplace(static_cast<std::size_t>(point.piece), reason);
     }
 
-    // What the machine does for the pieces, point by point.
-    void move() {
-        found_.eyes = equal_free_length(pieces_, *setup_.obstacles, setup_.rule.free_fibre);
+    // What the machine does for the pieces, point by point. Returns the clearance at each,
+    // if the free lengths and the axes allow it or in spite of them.
+    std::vector<double> move(const CollisionRule& rule, bool in_spite) {
+        std::vector<double> more_mm(pieces_.size(), 0.0);
+        for (int round = 0;; ++round) {
+            move(more_mm);
+            if (!found_.refused.empty() && !in_spite) {
+                return {};
+            }
+            CollisionReport report = check_collisions(setup_.machine, setup_.envelope,
+                                                      *setup_.obstacles, path_, joints_, rule);
+            const std::size_t refused = found_.refused.size();
+            for (const std::size_t point : report.fibre_hits) {
+                refuse(path_[point], Rejection::FibreHit);
+            }
+            for (const std::size_t point : report.head_hits) {
+                refuse(path_[point], Rejection::HeadHit);
+            }
+            const bool only_head =
+                refused == 0 && report.fibre_hits.empty() && !report.head_hits.empty();
+            if (!only_head || round == kMoreClearanceRounds) {
+                return std::move(report.clearance_mm);
+            }
+            for (const auto& [piece, reason] : found_.refused) {
+                more_mm[piece] += kMoreClearance_mm;
+            }
+        }
+    }
+
+    void move(std::span<const double> more_clearance_mm) {
+        found_.refused.clear();
+        found_.eyes = equal_free_length(pieces_, *setup_.obstacles, setup_.rule.free_fibre,
+                                        more_clearance_mm);
         path_ = refine_path(setup_.machine, found_.eyes.path, kPolicy, block_tolerance());
         joints_ = solve_joints(setup_.machine, path_, kPolicy);
         found_.path_points = path_.size();
@@ -127,19 +156,6 @@ private:
         for (const LimitViolation& violation : joints_.violations) {
             refuse(path_[violation.point], Rejection::AxisTravel);
         }
-    }
-
-    // The clearance at each point.
-    std::vector<double> collisions(const CollisionRule& rule) {
-        CollisionReport report = check_collisions(setup_.machine, setup_.envelope,
-                                                  *setup_.obstacles, path_, joints_, rule);
-        for (const std::size_t point : report.fibre_hits) {
-            refuse(path_[point], Rejection::FibreHit);
-        }
-        for (const std::size_t point : report.head_hits) {
-            refuse(path_[point], Rejection::HeadHit);
-        }
-        return std::move(report.clearance_mm);
     }
 
     void leave_room(std::vector<double> clearance_mm) {

@@ -1,6 +1,7 @@
 #include "postproc/eye_path.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -12,8 +13,10 @@ namespace {
 constexpr std::size_t kPointChunk = 256;
 
 // Under a bridge the fibre runs straight from the place that it leaves to the one that it meets:
-// there the eye goes on along this line.
-void straighten_bridges(const Piece& piece, std::span<EyePoint> points) {
+// there the eye goes on along this line. What is free of it begins only where it meets the wall
+// again, so much `ahead_mm` of each station.
+void straighten_bridges(const Piece& piece, std::span<EyePoint> points,
+                        std::span<double> ahead_mm) {
     const std::vector<double>& gap = piece.string.gap_mm;
     for (std::size_t first = 1; first + 1 < points.size(); ++first) {
         if (gap[first] <= 0.0) {
@@ -26,18 +29,26 @@ void straighten_bridges(const Piece& piece, std::span<EyePoint> points) {
         const EyePoint& from = points[first - 1];
         const EyePoint& to = points[end];
         const Eigen::Vector3d chord = to.landing_mm - from.landing_mm;
+        ahead_mm[first - 1] = chord.norm();
         for (std::size_t i = first; i < end; ++i) {
             const double share = (points[i].s_mm - from.s_mm) / (to.s_mm - from.s_mm);
             points[i].landing_mm = from.landing_mm + share * chord;
             points[i].tangent = chord.normalized();
+            ahead_mm[i] = (1.0 - share) * chord.norm();
             points[i].binormal = piece.path[i].normal.cross(chord).normalized();
         }
         first = end;
     }
 }
 
-EyePath landing_points(std::span<const Piece> pieces) {
+struct LandingPoints {
     EyePath path;
+    std::vector<double> ahead_mm;  // how far ahead of each the free fibre begins
+};
+
+LandingPoints landing_points(std::span<const Piece> pieces) {
+    LandingPoints points;
+    EyePath& path = points.path;
     double laid_mm = 0.0;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const Piece& piece = pieces[p];
@@ -52,10 +63,12 @@ EyePath landing_points(std::span<const Piece> pieces) {
             point.binormal = station.normal.cross(station.tangent);
             path.push_back(point);
         }
-        straighten_bridges(piece, std::span(path).last(piece.path.size()));
+        points.ahead_mm.resize(path.size(), 0.0);
+        straighten_bridges(piece, std::span(path).last(piece.path.size()),
+                           std::span(points.ahead_mm).last(piece.path.size()));
         laid_mm += piece.path.back().s_mm;
     }
-    return path;
+    return points;
 }
 
 // Ends of the fibres in the path: each is tied on anew, with a free length of its own.
@@ -71,17 +84,22 @@ std::vector<std::size_t> fibre_ends(const EyePath& path, std::span<const Piece> 
 }
 
 // Lengths for the points of one fibre. Where the wish is free all along it is taken, which is what
-// the windows would lead to.
-FreeLengths free_lengths(std::span<const EyePoint> path, const RayQuery& obstacles,
-                         const FreeFibreRule& rule, double wish_mm) {
+// the windows would lead to. The rules are one per piece.
+FreeLengths free_lengths(std::span<const EyePoint> path, std::span<const double> ahead_mm,
+                         const RayQuery& obstacles, std::span<const FreeFibreRule> rules,
+                         double wish_mm) {
     const auto normal = [](const EyePoint& point) -> Eigen::Vector3d {
         return point.tangent.cross(point.binormal).normalized();
+    };
+    const auto rule = [&](const EyePoint& point) -> const FreeFibreRule& {
+        return rules[static_cast<std::size_t>(point.piece)];
     };
     std::vector<char> free(path.size());
     parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            free[i] = is_free_length(obstacles, path[i].landing_mm, normal(path[i]),
-                                     path[i].tangent, rule, wish_mm)
+            free[i] = wish_mm >= rule(path[i]).min_mm + ahead_mm[i] &&
+                              is_free_length(obstacles, path[i].landing_mm, normal(path[i]),
+                                             path[i].tangent, rule(path[i]), wish_mm)
                           ? 1
                           : 0;
             if (free[i] == 0) {
@@ -98,8 +116,10 @@ FreeLengths free_lengths(std::span<const EyePoint> path, const RayQuery& obstacl
     parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             s_mm[i] = path[i].s_mm;
+            FreeFibreRule at_station = rule(path[i]);
+            at_station.min_mm += ahead_mm[i];
             windows[i] = free_fibre_windows(obstacles, path[i].landing_mm, normal(path[i]),
-                                            path[i].tangent, rule);
+                                            path[i].tangent, at_station);
         }
     });
     return choose_free_lengths(s_mm, windows, wish_mm);
@@ -108,15 +128,28 @@ FreeLengths free_lengths(std::span<const EyePoint> path, const RayQuery& obstacl
 }  // namespace
 
 EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& obstacles,
-                                const FreeFibreRule& rule) {
+                                const FreeFibreRule& rule,
+                                std::span<const double> more_clearance_mm) {
     EyePathResult result;
     EyePath& path = result.path;
-    path = landing_points(pieces);
-    const double wish = std::clamp(rule.preferred_mm, rule.min_mm, rule.max_mm);
+    LandingPoints points = landing_points(pieces);
+    path = std::move(points.path);
+    // Long enough for every bridge, so that the length need not change for them.
+    double bridge = 0.0;
+    for (const double ahead : points.ahead_mm) {
+        bridge = std::max(bridge, ahead);
+    }
+    const double wish = std::min(std::max(rule.preferred_mm, rule.min_mm + bridge), rule.max_mm);
+    std::vector<FreeFibreRule> rules(pieces.size(), rule);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        rules[i].preferred_mm = wish;
+        rules[i].clearance_mm += more_clearance_mm.empty() ? 0.0 : more_clearance_mm[i];
+    }
     std::size_t begin = 0;
     for (const std::size_t end : fibre_ends(path, pieces)) {
-        const FreeLengths lengths =
-            free_lengths(std::span(path).subspan(begin, end - begin), obstacles, rule, wish);
+        const FreeLengths lengths = free_lengths(
+            std::span(path).subspan(begin, end - begin),
+            std::span(points.ahead_mm).subspan(begin, end - begin), obstacles, rules, wish);
         for (const std::size_t i : lengths.blocked) {
             result.blocked.push_back(begin + i);
         }

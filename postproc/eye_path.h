@@ -40,9 +40,12 @@ struct EyePathResult {
 
 /// Rule equal-free-length (fu_2009_post_processing, sec. 1): L is the preferred length wherever
 /// free fibre and head are clear, and leaves it only as far as it must, at most by the rates of
-/// free_fibre.h. Stations under a bridge are taken on the taut string. One eye point per station of
-/// the pieces.
+/// free_fibre.h. Stations under a bridge are taken on the taut string; the fibre ahead
+/// of it is no shorter than the machine's shortest. One eye point per station of
+/// the pieces. \param more_clearance_mm per piece, on top of the rule's: lengths are clear at the
+/// stations, and between two of them the head may come nearer; empty: none
 [[nodiscard]] EyePathResult equal_free_length(std::span<const Piece> pieces,
-                                              const RayQuery& obstacles, const FreeFibreRule& rule);
+                                              const RayQuery& obstacles, const FreeFibreRule& rule,
+                                              std::span<const double> more_clearance_mm = {});
 
 }  // namespace meshwind

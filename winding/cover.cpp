@@ -246,7 +246,7 @@ private:
             }
             tell("route", most == kProvenForWay ? 0.0 : 0.5);
             parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
-                trials[i].rejection = prove(trials[i].course);
+                trials[i].rejection = prove(trials[i].course, true);
             });
             for (const Trial& trial : trials) {
                 if (trial.rejection != Rejection::None) {

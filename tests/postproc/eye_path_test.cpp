@@ -102,6 +102,24 @@ TEST(EqualFreeLength, TakesStationsUnderABridgeOnTheStraightFibre) {
     expect_eye_on_the_free_fibre(path);
 }
 
+// The fibre that is in the air over a hollow is not the free one: that begins where it lands.
+TEST(EqualFreeLength, CountsFromTheFarEndOfABridge) {
+    std::vector<Piece> pieces{helix(60.0)};
+    for (const std::size_t i : {7U, 8U}) {
+        pieces[0].string.gap_mm[i] = 0.4;
+    }
+    FreeFibreRule rule = rule_of(200.0);
+    rule.min_mm = 200.0;
+    const EyePathResult eyes = equal_free_length(pieces, nothing_near(), rule);
+    EXPECT_TRUE(eyes.blocked.empty());
+    const Vector3d& lands = pieces[0].path[9].position_mm;
+    for (const std::size_t i : {6U, 7U, 8U}) {
+        EXPECT_GE((eyes.path[i].eye_mm - lands).norm(), 200.0 - 0.01) << i;
+    }
+    EXPECT_NEAR(eyes.longest_mm, 200.0 + (lands - pieces[0].path[6].position_mm).norm(), 1e-9);
+    expect_rates(eyes.path);
+}
+
 TEST(EqualFreeLength, KeepsWithinTheMachinesRange) {
     const std::vector<Piece> pieces{helix(20.0)};
     EXPECT_EQ(equal_free_length(pieces, nothing_near(), rule_of(10.0)).longest_mm, 40.0);
@@ -127,6 +145,29 @@ TEST(EqualFreeLength, LeavesThePreferredLengthByTheRatesAndComesBack) {
     for (const EyePoint& p : eyes.path) {
         ASSERT_GE((p.eye_mm - post).cwiseAbs().maxCoeff(), 4.0 + 15.0 / std::sqrt(3.0) - 0.05);
     }
+}
+
+TEST(EqualFreeLength, KeepsMoreClearanceOnThePiecesThatAskForIt) {
+    const std::vector<Piece> pieces{helix(300.0), helix(300.0)};
+    const Vector3d half(4.0, 4.0, 4.0);
+    const PathPoint& station = pieces[0].path[40];  // the second piece lies over the first
+    const Vector3d post = station.position_mm + 200.0 * station.tangent + 12.0 * station.normal;
+    const TriangleSoup soup = test::box(post - half, post + half);
+    const RayQuery obstacles({&soup, 1});
+    const std::vector<double> more{0.0, 5.0};
+    const EyePath path = equal_free_length(pieces, obstacles, rule_of(200.0), more).path;
+    const auto least = [&](std::int32_t piece) {
+        double distance = 1e9;
+        for (const EyePoint& p : path) {
+            if (p.piece == piece) {
+                distance = std::min(distance, obstacles.closest(p.eye_mm, 1e3).distance_mm);
+            }
+        }
+        return distance;
+    };
+    EXPECT_GE(least(0), 15.0 - 0.05);  // head and clearance
+    EXPECT_LT(least(0), 20.0);
+    EXPECT_GE(least(1), 20.0 - 0.05);
 }
 
 TEST(EqualFreeLength, NamesThePointsWhereNoLengthIsPossible) {
