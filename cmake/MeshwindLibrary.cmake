@@ -15,15 +15,35 @@ endfunction()
 
 # Warnings, reproducible arithmetic and sanitizers for a target of this project.
 function(meshwind_flags target)
+    meshwind_compile_flags(${target})
+    if(MESHWIND_PCH)
+        target_precompile_headers(${target} REUSE_FROM meshwind_pch)
+    endif()
+endfunction()
+
+# The headers that nearly every source file reads, compiled once. Only for builds that repeat another
+# one: with them a source file compiles although it forgets to include what it uses.
+function(meshwind_precompile)
+    file(WRITE ${CMAKE_BINARY_DIR}/pch.cpp "")
+    add_library(meshwind_pch OBJECT ${CMAKE_BINARY_DIR}/pch.cpp)
+    target_link_libraries(meshwind_pch PRIVATE Eigen3::Eigen)
+    target_precompile_headers(
+        meshwind_pch PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <set>
+        <span> <string> <vector> <Eigen/Core> <Eigen/Geometry>)
+    meshwind_compile_flags(meshwind_pch)
+endfunction()
+
+function(meshwind_compile_flags target)
     target_compile_options(
         ${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off
                           $<$<BOOL:${MESHWIND_WERROR}>:-Werror>)
     if(MESHWIND_SANITIZE)
-        # GCC sees reads of uninitialised memory in instrumented library code where there are none;
-        # the builds without sanitizers keep that warning.
+        # Without the checks of every access through a pointer, which double the time to build code that
+        # uses Eigen: the address sanitizer sees what is out of bounds, null included.
         target_compile_options(
-            ${target} PRIVATE -fsanitize=${MESHWIND_SANITIZE} -fno-sanitize-recover=all
-                              -fno-omit-frame-pointer -Wno-maybe-uninitialized)
+            ${target}
+            PRIVATE -fsanitize=${MESHWIND_SANITIZE} -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow
+                    -fno-sanitize-recover=all -fno-omit-frame-pointer)
         target_link_options(${target} PUBLIC -fsanitize=${MESHWIND_SANITIZE})
     endif()
 endfunction()
