@@ -184,6 +184,7 @@ private:
         } else {
             check_planned_slip();
         }
+        write_program(result_.made);  // with what failed, for --force
     }
 
     void check_fibres() {
@@ -259,7 +260,6 @@ private:
         check_rounding();
         const std::vector<Check>& found = result_.made.verification.checks;
         result_.checks.insert(result_.checks.end(), found.begin(), found.end());
-        write_program(result_.made);  // with what failed, for --force
     }
 
     void check_rounding() {
