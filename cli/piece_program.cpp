@@ -54,7 +54,7 @@ public:
     std::map<std::size_t, Rejection> ask_machine() {
         CollisionRule rule = setup_.rule;
         rule.told_mm = rule.clearance_mm;
-        (void)move(rule, false);
+        (void)keep_clear(rule, false);
         return std::move(found_.refused);
     }
 
@@ -70,7 +70,7 @@ public:
             }
         };
         tell("post", 0.0);
-        leave_room(move(setup_.rule, options.in_spite));
+        leave_room(keep_clear(setup_.rule, options.in_spite));
         if (!found_.refused.empty() && !options.in_spite) {
             return std::move(found_);
         }
@@ -116,10 +116,10 @@ private:
 
     // What the machine does for the pieces, point by point. Returns the clearance at each,
     // if the free lengths and the axes allow it or in spite of them.
-    std::vector<double> move(const CollisionRule& rule, bool in_spite) {
+    std::vector<double> keep_clear(const CollisionRule& rule, bool in_spite) {
         std::vector<double> more_mm(pieces_.size(), 0.0);
         for (int round = 0;; ++round) {
-            move(more_mm);
+            solve_motion(more_mm);
             if (!found_.refused.empty() && !in_spite) {
                 return {};
             }
@@ -143,7 +143,7 @@ private:
         }
     }
 
-    void move(std::span<const double> more_clearance_mm) {
+    void solve_motion(std::span<const double> more_clearance_mm) {
         found_.refused.clear();
         found_.eyes = equal_free_length(pieces_, *setup_.obstacles, setup_.rule.free_fibre,
                                         more_clearance_mm);

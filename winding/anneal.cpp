@@ -490,8 +490,7 @@ private:
 
     // The proposal to put in a course, if it is worth it and can be wound.
     Proposal weighed(PlacedCourse course, Proposal proposal, Scratch& scratch) const {
-        if (options_.way && !options_.way(departure_node(start_of(course.member, course.backward)),
-                                          arrival_node(end_of(course.member, course.backward)))) {
+        if (options_.way && !options_.way(nodes_of(course.member, course.backward))) {
             return proposal;
         }
         proposal.in = std::move(course);

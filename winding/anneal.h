@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "winding/anneal_ground.h"
+#include "winding/balance.h"
 #include "winding/placed_course.h"
 #include "winding/select.h"
 
@@ -24,8 +25,8 @@ struct AnnealOptions {
     /// as the chance falls: first all is made even, then the last holes are closed.
     double bare_hot = 30.0;
     double bare_cold = 120.0;
-    /// True where a course may lead from a node (see balance.h) to another; empty: anywhere.
-    std::function<bool(std::size_t from, std::size_t to)> way{};
+    /// True where courses may lead; empty: anywhere.
+    std::function<bool(const NodePair&)> way{};
     /// The last word on a course that is about to be taken, which it may make exact; false where
     /// it cannot be wound. Must be pure and thread-safe. Empty: a sketch is enough.
     std::function<bool(PlacedCourse& course)> verify{};

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "winding/library.h"
@@ -32,6 +33,12 @@ struct LaidCourse {
 }
 [[nodiscard]] inline std::size_t departure_node(const RimCrossing& start) {
     return 2 * static_cast<std::size_t>(start.rim) + (start.sense > 0 ? 0U : 1U);
+}
+
+/// Departure and arrival of a course wound in this direction.
+using NodePair = std::pair<std::size_t, std::size_t>;
+[[nodiscard]] inline NodePair nodes_of(const Member& member, bool backward) {
+    return {departure_node(start_of(member, backward)), arrival_node(end_of(member, backward))};
 }
 
 /// Directs the chosen courses and adds members, the cheapest chains first, until at every node as

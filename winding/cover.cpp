@@ -168,51 +168,13 @@ private:
                ": " + name_of(static_cast<Rejection>(most - rejections.begin()));
     }
 
-    // Follows a course accurately and asks the machine; for one that is to stay, its own program is
-    // wound, too. Where all agree the member becomes what was found, windable in this direction
-    // alone.
+    // For a course that is to stay its own program is wound, too.
     Rejection prove(PlacedCourse& course, bool to_stay = false) const {
-        const bool backward = course.backward;
-        Member exact;
-        FollowedCourse followed;
-        switch (follow_course(rules_, course.member.candidate, exact, followed)) {
-            case Refusal::None:
-                break;
-            case Refusal::Slips:
-                return Rejection::Slip;
-            default:
-                return Rejection::Path;
-        }
-        if (way_of(exact, backward) != way_of(course.member, backward)) {
-            return Rejection::Path;
-        }
-        const Rejection rejection = ask_machine(piece_of(followed, exact, backward), to_stay);
-        if (rejection != Rejection::None) {
-            return rejection;
-        }
-        if (!options_.accept && !is_windable(rules_, followed, backward)) {
-            return Rejection::FreeLength;
-        }
-        FootprintFinder::Scratch scratch = footprints_.make_scratch();
-        exact.footprint = footprints_.footprint(followed.path, scratch);
-        exact.windable_forward = !backward;
-        exact.windable_backward = backward;
-        course.member = std::move(exact);
-        course.path = std::move(followed.path);
-        course.wound = to_stay;
-        return Rejection::None;
-    }
-
-    [[nodiscard]] Rejection ask_machine(const Piece& piece, bool to_stay) const {
-        Rejection rejection = options_.accept ? options_.accept(piece) : Rejection::None;
-        if (rejection == Rejection::None && to_stay && options_.wind) {
-            rejection = options_.wind(piece);
-        }
+        const bool wind = to_stay && options_.wind;
+        const Rejection rejection =
+            prove_course(rules_, wind ? options_.wind : options_.accept, course);
+        course.wound = to_stay && rejection == Rejection::None;
         return rejection;
-    }
-
-    static std::pair<std::size_t, std::size_t> way_of(const Member& member, bool backward) {
-        return {departure_node(start_of(member, backward)), arrival_node(end_of(member, backward))};
     }
 
     void note_refused(const Member& member, Rejection reason) {
@@ -226,7 +188,7 @@ private:
     // What lies off it is struck off the library.
     void find_route() {
         struct Trial {
-            std::pair<std::size_t, std::size_t> nodes;
+            NodePair nodes;
             PlacedCourse course;
             std::int32_t member;
             Rejection rejection = Rejection::None;
@@ -240,7 +202,7 @@ private:
                     const std::int32_t i = way.windable[k * way.windable.size() / count];
                     const Member& member = members_[at(i)];
                     const bool backward =
-                        !(member.windable_forward && way_of(member, false) == nodes);
+                        !(member.windable_forward && nodes_of(member, false) == nodes);
                     trials.push_back({nodes, {member, {}, backward, false}, i});
                 }
             }
@@ -279,8 +241,7 @@ private:
             Member& member = members_[i];
             for (const bool backward : {false, true}) {
                 bool& windable = backward ? member.windable_backward : member.windable_forward;
-                const auto [from, to] = way_of(member, backward);
-                windable = windable && route_.holds(from, to);
+                windable = windable && route_.holds(nodes_of(member, backward));
             }
             if (!member.windable_forward && !member.windable_backward) {
                 strike_off(i, Rejection::Apart);
@@ -330,7 +291,7 @@ private:
             annealing.bare_hot = annealing.bare_cold;
         }
         annealing.progress = [this](double share) { tell("anneal", share); };
-        annealing.way = [this](std::size_t from, std::size_t to) { return route_.holds(from, to); };
+        annealing.way = [this](const NodePair& nodes) { return route_.holds(nodes); };
         annealing.verify = [this, mending](PlacedCourse& course) {
             const Rejection rejection = prove(course, mending);
             if (rejection != Rejection::None) {
@@ -515,13 +476,13 @@ private:
             courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(index));
             note_refused(course.member, reason);
             if (course.fixed) {
-                replace_link(way_of(course.member, course.backward));
+                replace_link(nodes_of(course.member, course.backward));
             }
         }
     }
 
     // The next course that holds in place of the link between two stages that did not.
-    void replace_link(const std::pair<std::size_t, std::size_t>& nodes) {
+    void replace_link(const NodePair& nodes) {
         std::vector<LaidCourse>& proven = known_[nodes].proven;
         proven.erase(proven.begin());
         while (!proven.empty()) {
@@ -592,7 +553,7 @@ private:
     std::vector<char> allowed_;          // per member
     std::vector<Rejection> rejection_;   // per member: why it is not allowed
     std::vector<PlacedCourse> courses_;  // the plan, not in order
-    std::map<std::pair<std::size_t, std::size_t>, KnownWay> known_;  // by (departure, arrival)
+    KnownWays known_;
     FibreRoute route_;
     std::vector<OrderedCourse> order_;  // of the pool
     std::vector<std::int32_t> layers_;  // per sample

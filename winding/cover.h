@@ -6,6 +6,7 @@
 #include <span>
 
 #include "winding/plan.h"
+#include "winding/prove.h"
 #include "winding/select.h"
 
 namespace meshwind {
@@ -22,12 +23,10 @@ struct CoverOptions {
     int rounds = 3;                ///< of further candidates aimed at what is not reached yet
     int aimed_candidates = 4000;   ///< in each such round
     int scarce_candidates = 8000;  ///< tried near courses that go where few can be wound
-    /// Asked of every course before it enters the plan, in the direction it would be wound: what
-    /// the machine says, None where it accepts. Must be pure and thread-safe.
-    std::function<Rejection(const Piece&)> accept;
-    /// Asked of every course that is to stay: its own program, wound again. Must be pure and
-    /// thread-safe.
-    std::function<Rejection(const Piece&)> wind;
+    AskMachine accept;             ///< asked of every course before it enters the plan
+    /// Asked of every course that is to stay: its own program, wound again. Refuses all that
+    /// `accept` refuses.
+    AskMachine wind;
     /// Asked of the whole plan: which of its pieces the machine cannot wind in their place. Those
     /// are replaced and the plan is made again, a few times.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;

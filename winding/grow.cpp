@@ -217,8 +217,7 @@ Ways ways_between_nodes(std::span<const Member> members) {
     for (std::size_t i = 0; i < members.size(); ++i) {
         for (const bool backward : {false, true}) {
             const Member& member = members[i];
-            Way& way = ways[{departure_node(start_of(member, backward)),
-                             arrival_node(end_of(member, backward))}];
+            Way& way = ways[nodes_of(member, backward)];
             way.lying.push_back(static_cast<std::int32_t>(i));
             if (backward ? member.windable_backward : member.windable_forward) {
                 way.windable.push_back(static_cast<std::int32_t>(i));

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "winding/balance.h"
 #include "winding/cover.h"
 #include "winding/samples.h"
 
@@ -29,7 +30,7 @@ struct Way {
     std::vector<std::int32_t> lying;     ///< indices of members, windable in this direction or not
     std::vector<std::int32_t> windable;  ///< those that can be wound in this direction
 };
-using Ways = std::map<std::pair<std::size_t, std::size_t>, Way>;  ///< by (departure, arrival)
+using Ways = std::map<NodePair, Way>;
 
 [[nodiscard]] Ways ways_between_nodes(std::span<const Member> members);
 

@@ -9,8 +9,8 @@
 namespace meshwind {
 
 void Joints::add(const Member& member, bool backward, int times) {
-    courses_[departure_node(start_of(member, backward)) * nodes_ +
-             arrival_node(end_of(member, backward))] += times;
+    const auto [from, to] = nodes_of(member, backward);
+    courses_[from * nodes_ + to] += times;
 }
 
 int Joints::excess(std::size_t node) const {

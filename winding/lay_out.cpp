@@ -59,7 +59,7 @@ void add_piece(Piece piece, Plan& plan) {
 
 }  // namespace
 
-Piece piece_of(FollowedCourse course, const Member& member, bool backward) {
+Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
     Piece piece;
     piece.kind = PieceKind::Course;
     if (backward) {

@@ -9,7 +9,7 @@
 namespace meshwind {
 
 /// A finished course as it is wound.
-[[nodiscard]] Piece piece_of(FollowedCourse course, const Member& member, bool backward);
+[[nodiscard]] Piece piece_of(FollowedCourse&& course, const Member& member, bool backward);
 
 /// Lays out courses and the turns between them: the plan's pieces, fibres, turns and worst figures.
 /// \param members proven ones \param order of some of them

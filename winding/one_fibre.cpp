@@ -12,8 +12,6 @@ std::size_t at(std::int32_t i) {
 // Routes that are looked into; so many only a mandrel of many rims has.
 constexpr int kMostRoutes = 2000;
 
-using KnownWays = std::map<std::pair<std::size_t, std::size_t>, KnownWay>;
-
 class RouteSearch {
 public:
     RouteSearch(std::span<const Member> members, const KnownWays& ways, std::size_t nodes,
@@ -23,8 +21,9 @@ public:
         covered_.assign(static_cast<std::size_t>(groups_), std::vector<char>(samples, 0));
         for (const Member& member : members) {
             for (const bool backward : {false, true}) {
-                const int from = group_[departure_node(start_of(member, backward))];
-                const int to = group_[arrival_node(end_of(member, backward))];
+                const auto [departure, arrival] = nodes_of(member, backward);
+                const int from = group_[departure];
+                const int to = group_[arrival];
                 if (from < 0 || from != to ||
                     !(backward ? member.windable_backward : member.windable_forward)) {
                     continue;

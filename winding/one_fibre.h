@@ -29,8 +29,8 @@ struct FibreRoute {
     std::vector<LaidCourse> links;  ///< links[i] leads from stage i to stage i + 1
 
     /// True when a course may lead from a node to another, as often as wanted.
-    [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
-        return stage[from] >= 0 && stage[from] == stage[to];
+    [[nodiscard]] bool holds(const NodePair& nodes) const {
+        return stage[nodes.first] >= 0 && stage[nodes.first] == stage[nodes.second];
     }
 };
 
@@ -40,11 +40,10 @@ struct KnownWay {
     std::vector<LaidCourse> proven;  ///< courses that hold, in the library's order
 };
 
-/// The route whose stages' courses cover most samples. \param ways by (departure, arrival)
-/// \param nodes their number: two for each rim
-[[nodiscard]] FibreRoute best_route(
-    std::span<const Member> members,
-    const std::map<std::pair<std::size_t, std::size_t>, KnownWay>& ways, std::size_t nodes,
-    std::size_t samples);
+using KnownWays = std::map<NodePair, KnownWay>;
+
+/// The route whose stages' courses cover most samples. \param nodes their number: two for each rim
+[[nodiscard]] FibreRoute best_route(std::span<const Member> members, const KnownWays& ways,
+                                    std::size_t nodes, std::size_t samples);
 
 }  // namespace meshwind

@@ -142,7 +142,7 @@ TEST(Anneal, TakesOnlyWhatIsVerifiedAndGoesOnlyAllowedWays) {
     const Scene& scene = tee();
     AnnealOptions options{.proposals = 3'000};
     options.verify = [](PlacedCourse& course) { return course.member.length_mm > 150.0; };
-    options.way = [](std::size_t from, std::size_t) { return from % 2 == 0; };
+    options.way = [](const NodePair& nodes) { return nodes.first % 2 == 0; };
     const auto courses = scene.annealed(options);
     ASSERT_FALSE(courses.empty());
     for (const PlacedCourse& course : courses) {

@@ -40,9 +40,9 @@ TEST(BestRoute, GoesThroughAllThatLinksLeadTo) {
     ASSERT_EQ(route.links.size(), 2U);
     EXPECT_EQ(route.links[0].member, 6);
     EXPECT_EQ(route.links[1].member, 5);
-    EXPECT_TRUE(route.holds(0, 3));
-    EXPECT_FALSE(route.holds(0, 4));
-    EXPECT_FALSE(route.holds(5, 5));
+    EXPECT_TRUE(route.holds({0, 3}));
+    EXPECT_FALSE(route.holds({0, 4}));
+    EXPECT_FALSE(route.holds({5, 5}));
 }
 
 TEST(BestRoute, TakesTheStagesThatCoverMostWhereNoLinkHolds) {

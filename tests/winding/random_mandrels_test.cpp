@@ -170,11 +170,12 @@ bool has_room(const RayQuery& obstacles, const FreeFibreRule& rule, const Piece&
     return true;
 }
 
+constexpr int kPlaces = 600;
+
 // The share of places drawn on the mesh that lie under a course: within half a band of a station's
 // line, on the same side of the wall.
 double share_covered(const Surface& surface, const std::vector<const Piece*>& courses,
                      test::Draw& draw) {
-    constexpr int kPlaces = 600;
     const auto face_count = static_cast<std::int32_t>(surface.face.size());
     double covered = 0.0;
     double all = 0.0;
@@ -257,10 +258,9 @@ bool plan_and_judge_again(const Shape& shape, std::uint64_t seed) {
     EXPECT_EQ(static_cast<int>(courses.size()), plan.courses);
     test::Draw draw(seed);
     const double covered = share_covered(mandrel.surface, courses, draw);
-    // Three standard deviations of 600 places, and a band's edge that is known to 0.3 mm.
+    // Three standard deviations of so many places, and a band's edge that is known to 0.3 mm.
     const double fraction = plan.coverage.fraction;
-    EXPECT_NEAR(covered, fraction,
-                3.0 * std::sqrt(0.25 * fraction * (1.0 - fraction) / 150.0) + 0.02);
+    EXPECT_NEAR(covered, fraction, 3.0 * std::sqrt(fraction * (1.0 - fraction) / kPlaces) + 0.02);
     std::printf(
         "%s: %d courses, covered %.3f (again %.3f), off %.3f mm, beyond friction %.5f / mm, "
         "chord over wall %.3f mm\n",

@@ -1,0 +1,43 @@
+#include "winding/prove.h"
+
+#include <utility>
+
+#include "winding/balance.h"
+#include "winding/lay_out.h"
+
+namespace meshwind {
+
+Rejection prove_course(const CourseRules& rules, const AskMachine& machine, PlacedCourse& course) {
+    const bool backward = course.backward;
+    Member exact;
+    FollowedCourse followed;
+    switch (follow_course(rules, course.member.candidate, exact, followed)) {
+        case Refusal::None:
+            break;
+        case Refusal::Slips:
+            return Rejection::Slip;
+        default:
+            return Rejection::Path;
+    }
+    if (nodes_of(exact, backward) != nodes_of(course.member, backward)) {
+        return Rejection::Path;
+    }
+    if (!machine && !is_windable(rules, followed, backward)) {
+        return Rejection::FreeLength;
+    }
+    SurfacePath path = followed.path;
+    const Piece piece = piece_of(std::move(followed), exact, backward);
+    if (const Rejection rejection = machine ? machine(piece) : Rejection::None;
+        rejection != Rejection::None) {
+        return rejection;
+    }
+    FootprintFinder::Scratch scratch = rules.footprints.make_scratch();
+    exact.footprint = rules.footprints.footprint(path, scratch);
+    exact.windable_forward = !backward;
+    exact.windable_backward = backward;
+    course.member = std::move(exact);
+    course.path = std::move(path);
+    return Rejection::None;
+}
+
+}  // namespace meshwind
