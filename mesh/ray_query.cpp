@@ -1,5 +1,6 @@
 #include "mesh/ray_query.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -21,6 +22,9 @@ constexpr double kFarthest_mm = 1000.0;
 // Nodes of a distance table: some 5 mm apart around a mandrel of half a metre, built in under a
 // second.
 constexpr double kTableNodes = 4e5;
+
+// Keeps a bound a bound in spite of rounding.
+constexpr double kRoundUp = 1.0 + 1e-12;
 
 // Barycentric coordinates of the point of triangle abc nearest to p (by Voronoi regions of the
 // triangle's features). Source: ericson_2004_collision, sec. 5.1.5.
@@ -62,14 +66,42 @@ Eigen::Vector3d closest_bary(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
     return {va / sum, vb / sum, vc / sum};
 }
 
+// A ball around a triangle.
+struct Ball {
+    Eigen::Vector3d centre_mm;
+    double radius_mm;
+};
+
+std::vector<Ball> balls_around(const TriangleSoup& soup) {
+    std::vector<Ball> balls;
+    balls.reserve(soup.faces.size());
+    for (const auto& v : soup.faces) {
+        const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
+            return soup.points_mm[static_cast<std::size_t>(v[i])];
+        };
+        const Eigen::Vector3d centre = (corner(0) + corner(1) + corner(2)) / 3.0;
+        const double radius = std::max({(corner(0) - centre).norm(), (corner(1) - centre).norm(),
+                                        (corner(2) - centre).norm()});
+        balls.push_back({centre, kRoundUp * radius});
+    }
+    return balls;
+}
+
 struct Search {
     const std::vector<TriangleSoup>* parts;
+    const std::vector<std::vector<Ball>>* balls;
     Eigen::Vector3d query;
     ClosestPoint best;
 };
 
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     auto& search = *static_cast<Search*>(args->userPtr);
+    // Most triangles whose boxes are near enough are not.
+    const Ball& ball = (*search.balls)[args->geomID][args->primID];
+    const double reach = search.best.distance_mm + ball.radius_mm;
+    if ((search.query - ball.centre_mm).squaredNorm() > kRoundUp * reach * reach) {
+        return false;
+    }
     const auto part = static_cast<std::int32_t>(args->geomID);
     const auto face = static_cast<std::int32_t>(args->primID);
     const TriangleSoup& soup = (*search.parts)[args->geomID];
@@ -128,6 +160,7 @@ struct RayQuery::Impl {
     DistanceTable table;
 
     std::vector<TriangleSoup> parts;
+    std::vector<std::vector<Ball>> balls;  // per part and face
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
@@ -179,6 +212,7 @@ RayQuery::RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm)
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t i = 0; i < impl_->parts.size(); ++i) {
         impl_->add(static_cast<unsigned>(i), impl_->parts[i]);
+        impl_->balls.push_back(balls_around(impl_->parts[i]));
     }
     rtcCommitScene(impl_->scene);
     if (field_reach_mm > 0.0) {
@@ -255,7 +289,7 @@ bool RayQuery::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) 
 }
 
 ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) const {
-    Search search{&impl_->parts, query, {}};
+    Search search{&impl_->parts, &impl_->balls, query, {}};
     search.best.distance_mm = radius_mm;
     RTCPointQuery point{};
     point.x = static_cast<float>(query.x());
@@ -295,12 +329,12 @@ double RayQuery::distance_estimate_mm(const Eigen::Vector3d& query) const {
         return closest(query, kFarthest_mm).distance_mm;
     }
     const Eigen::Array3d scaled = ((query - table.origin) / table.cell_mm).array();
-    const Eigen::Array3d whole = scaled.floor();
-    const Eigen::Array3i node = whole.cast<int>();
-    if ((node < 0).any() || (node + 1 >= table.nodes).any()) {
+    // The cast cuts towards 0, so what is below it is looked for by itself.
+    const Eigen::Array3i node = scaled.cast<int>();
+    if ((scaled < 0.0).any() || (node + 1 >= table.nodes).any()) {
         return table.parts.exteriorDistance(query);
     }
-    const Eigen::Array3d t = scaled - whole;
+    const Eigen::Array3d t = scaled - node.cast<double>();
     const auto nx = static_cast<std::size_t>(table.nodes.x());
     const std::size_t nxy = nx * static_cast<std::size_t>(table.nodes.y());
     const float* d = table.distance_mm.data() + table.index(node);
