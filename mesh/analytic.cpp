@@ -18,10 +18,12 @@ using Eigen::Vector3d;
 struct Spine {
     double run_mm;     // radius of the run's offset cylinder
     double branch_mm;  // radius of the branch's offset cylinder, <= run_mm
+    double lean_rad;
 
     explicit Spine(const TeeShape& shape)
         : run_mm(shape.run_radius_mm + shape.blend_radius_mm),
-          branch_mm(shape.branch_radius_mm + shape.blend_radius_mm) {}
+          branch_mm(shape.branch_radius_mm + shape.blend_radius_mm),
+          lean_rad(shape.lean_rad) {}
 
     // x^2 = run^2 - branch^2 sin^2, written without cancellation for equal radii.
     [[nodiscard]] double x(double psi) const {
@@ -29,7 +31,8 @@ struct Spine {
         return std::sqrt((run_mm - branch_mm) * (run_mm + branch_mm) + c * c);
     }
     [[nodiscard]] Vector3d point(double psi) const {
-        return {x(psi), branch_mm * std::sin(psi), branch_mm * std::cos(psi)};
+        const double x_mm = x(psi);
+        return {x_mm, branch_mm * std::sin(psi), leaned(x_mm, branch_mm * std::cos(psi))};
     }
     // In the quarter 0 <= psi <= pi/2. Equal radii have a kink at pi/2; the limit from below holds
     // there.
@@ -37,11 +40,18 @@ struct Spine {
         const double s = branch_mm * std::sin(psi);
         const double c = branch_mm * std::cos(psi);
         const double x_mm = x(psi);
-        return {x_mm > 0.0 ? -s * c / x_mm : -s, c, -s};
+        const double x_rate = x_mm > 0.0 ? -s * c / x_mm : -s;
+        return {x_rate, c, leaned(x_rate, -s)};
+    }
+
+private:
+    // z on the axis of a branch that leans, where x is given, and so far across it.
+    [[nodiscard]] double leaned(double x_mm, double across_mm) const {
+        return (x_mm * std::sin(lean_rad) + across_mm) / std::cos(lean_rad);
     }
 };
 
-// Spine parameter nearest to a point with y >= 0 and z >= 0, in [0, pi/2].
+// Spine parameter nearest to a point with y >= 0, in [0, pi/2].
 double nearest_psi(const Spine& spine, const Vector3d& point) {
     return nearest_parameter(
         {0.0, 0.5 * kPi}, [&](double psi) { return (spine.point(psi) - point).squaredNorm(); },
@@ -56,17 +66,31 @@ ShapeFoot run_foot(const TeeShape& shape, const Vector3d& point) {
 }
 
 ShapeFoot branch_foot(const TeeShape& shape, const Vector3d& point) {
-    const double radius = std::hypot(point.y(), point.z());
-    const Vector3d normal = Vector3d(0.0, point.y(), point.z()) / radius;
-    const Vector3d foot = shape.branch_radius_mm * normal + Vector3d(point.x(), 0.0, 0.0);
-    return {foot, normal, radius - shape.branch_radius_mm, ShapePart::Branch};
+    const Vector3d seen = seen_from_branch(shape, point);
+    const double radius = std::hypot(seen.y(), seen.z());
+    const Vector3d normal = Vector3d(0.0, seen.y(), seen.z()) / radius;
+    const Vector3d foot = shape.branch_radius_mm * normal + Vector3d(seen.x(), 0.0, 0.0);
+    return {seen_from_run(shape, foot), seen_from_run(shape, normal),
+            radius - shape.branch_radius_mm, ShapePart::Branch};
+}
+
+// The nearest place of the half spine on one side: +1 that to which the branch leans, -1 the other,
+// which is its mirror image for a branch that leans as far to the other side.
+Vector3d nearest_centre(const TeeShape& shape, double side, const Vector3d& point) {
+    const Vector3d sign(1.0, std::copysign(1.0, point.y()), side);
+    TeeShape mirrored = shape;
+    mirrored.lean_rad *= side;
+    const Spine spine(mirrored);
+    return spine.point(nearest_psi(spine, point.cwiseProduct(sign))).cwiseProduct(sign);
 }
 
 ShapeFoot blend_foot(const TeeShape& shape, const Vector3d& point) {
-    const Vector3d sign(1.0, std::copysign(1.0, point.y()), std::copysign(1.0, point.z()));
-    const Spine spine(shape);
-    const Vector3d folded = point.cwiseProduct(sign);
-    const Vector3d centre = spine.point(nearest_psi(spine, folded)).cwiseProduct(sign);
+    const double side = std::copysign(1.0, point.z());
+    Vector3d centre = nearest_centre(shape, side, point);
+    if (shape.lean_rad != 0.0) {
+        const Vector3d other = nearest_centre(shape, -side, point);
+        centre = (other - point).norm() < (centre - point).norm() ? other : centre;
+    }
     const double distance = (centre - point).norm();
     const Vector3d normal = (centre - point) / distance;
     return {centre - shape.blend_radius_mm * normal, normal, shape.blend_radius_mm - distance,
@@ -88,6 +112,18 @@ ShapeFoot pipe_foot(const PipeCentre& pipe, const Vector3d& point) {
 
 }  // namespace
 
+Vector3d seen_from_branch(const TeeShape& shape, const Vector3d& p) {
+    const double c = std::cos(shape.lean_rad);
+    const double s = std::sin(shape.lean_rad);
+    return {p.x() * c + p.z() * s, p.y(), p.z() * c - p.x() * s};
+}
+
+Vector3d seen_from_run(const TeeShape& shape, const Vector3d& p) {
+    const double c = std::cos(shape.lean_rad);
+    const double s = std::sin(shape.lean_rad);
+    return {p.x() * c - p.z() * s, p.y(), p.z() * c + p.x() * s};
+}
+
 Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad) {
     return Spine(shape).point(psi_rad);
 }
@@ -97,11 +133,15 @@ ShapeFoot tee_foot(const TeeShape& shape, const Vector3d& point_mm) {
     // a point belongs to a cylinder exactly where that cylinder's offset lies outside the other's.
     const Spine spine(shape);
     const Vector2d around_run = spine.run_mm * point_mm.head<2>().normalized();
-    const Vector2d around_branch = spine.branch_mm * point_mm.tail<2>().normalized();
+    const Vector3d off_branch =
+        seen_from_branch(shape, {around_run.x(), around_run.y(), point_mm.z()});
     const bool on_run =
-        around_run.x() <= 0.0 || std::hypot(around_run.y(), point_mm.z()) >= spine.branch_mm;
+        around_run.x() <= 0.0 || std::hypot(off_branch.y(), off_branch.z()) >= spine.branch_mm;
+    const Vector3d seen = seen_from_branch(shape, point_mm);
+    const Vector2d around_branch = spine.branch_mm * seen.tail<2>().normalized();
+    const Vector3d off_run = seen_from_run(shape, {seen.x(), around_branch.x(), around_branch.y()});
     const bool on_branch =
-        point_mm.x() > 0.0 && std::hypot(point_mm.x(), around_branch.x()) >= spine.run_mm;
+        seen.x() > 0.0 && off_run.x() > 0.0 && std::hypot(off_run.x(), off_run.y()) >= spine.run_mm;
     if (on_run && on_branch) {
         const ShapeFoot run = run_foot(shape, point_mm);
         const ShapeFoot branch = branch_foot(shape, point_mm);

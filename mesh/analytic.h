@@ -19,8 +19,13 @@ struct ShapeFoot {
     ShapePart part = ShapePart::Run;
 };
 
-/// The point where the blend's ball stands at angle `psi_rad` around the branch axis, from +z to
-/// +y. \pre shape is valid
+/// A place as the branch of a tee sees it: x along the branch's axis, y across, z the way to which
+/// it leans; and back. Without a lean both change nothing. \pre |lean| < pi / 2
+[[nodiscard]] Eigen::Vector3d seen_from_branch(const TeeShape& shape, const Eigen::Vector3d& p);
+[[nodiscard]] Eigen::Vector3d seen_from_run(const TeeShape& shape, const Eigen::Vector3d& p);
+
+/// The point where the blend's ball stands at angle `psi_rad` around the branch axis, from the way
+/// to which it leans (+z) to +y. \pre shape is valid
 [[nodiscard]] Eigen::Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad);
 
 /// Nearest point of the tee's surface to `point_mm`.

@@ -57,9 +57,8 @@ double least_size(const EllipsoidShape& shape) {
 
 double least_size(const TeeShape& shape) {
     // Between blend and rims there must be room for two rows.
-    const double blend_to_rim = std::min(0.5 * shape.run_length_mm - shape.branch_radius_mm,
-                                         shape.branch_length_mm - shape.run_radius_mm) -
-                                shape.blend_radius_mm;
+    const double blend_to_rim = std::min(0.5 * shape.run_length_mm - shape.blend_end_on_run_mm(),
+                                         shape.branch_length_mm - shape.blend_end_on_branch_mm());
     return std::min(0.5 * shape.branch_radius_mm, 0.5 * blend_to_rim);
 }
 

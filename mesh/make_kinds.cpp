@@ -60,6 +60,8 @@ constexpr std::array kTeeTable{
     MakeParameter{"run-length", kLength, kTee.run_length_mm, "whole length of the straight pipe"},
     MakeParameter{"branch-length", kLength, kTee.branch_length_mm,
                   "from the run's axis to the branch's end"},
+    MakeParameter{"lean", kAngle, kTee.lean_rad,
+                  "of the branch, from square towards one end of the run"},
 };
 constexpr std::array kCombinationTable{
     MakeParameter{"radius1", kLength, kCombination.radius1_mm, "radius of the first cylinder"},
@@ -88,7 +90,7 @@ constexpr std::array kKinds{
     MakeKind{"cone", "frustum of a cone", kConeTable},
     MakeKind{"vessel", "cylinder with ellipsoidal domes", kVesselTable},
     MakeKind{"elbow", "pipe bend with straight legs", kElbowTable},
-    MakeKind{"tee", "pipe with a branch and a rolling-ball blend", kTeeTable},
+    MakeKind{"tee", "pipe with a branch, square or leaning, and a rolling-ball blend", kTeeTable},
     MakeKind{"combination", "cylinder, cone, cylinder and dome in a row", kCombinationTable},
     MakeKind{"frame", "slender tube along line, arc, line", kFrameTable},
     MakeKind{"torus", "ring, closed or an arc of it", kTorusTable},
@@ -145,7 +147,7 @@ auto with_shape(std::string_view name, const MakeValues& values, const Use& use)
         return use(VesselShape{v[0], v[1], v[2], v[3]});
     }
     if (kind.name == "tee") {
-        return use(TeeShape{v[0], v[1], v[2], v[3], v[4]});
+        return use(TeeShape{v[0], v[1], v[2], v[3], v[4], v[5]});
     }
     if (kind.name == "combination") {
         return use(CombinationShape{v[0], v[1], v[2], v[3], v[4], v[5], v[6]});

@@ -29,10 +29,10 @@ struct Sheet {
     std::int32_t contact_count = 0;  // the curve closes over the period or within it
 };
 
-// Even steps along the contact curves; the quarters' ends are always among the angles, since equal
-// radii have a kink there.
-std::vector<double> contact_angles(const TeeShape& shape, double edge_mm) {
-    constexpr int kTable = 512;
+constexpr int kTable = 512;
+
+// Lengths along the spine from psi = 0, at kTable steps to pi / 2.
+std::vector<double> quarter_lengths(const TeeShape& shape) {
     std::vector<double> length(kTable + 1, 0.0);
     Vector3d last = tee_spine_mm(shape, 0.0);
     for (int i = 1; i <= kTable; ++i) {
@@ -40,19 +40,30 @@ std::vector<double> contact_angles(const TeeShape& shape, double edge_mm) {
         length[at(i)] = length[at(i - 1)] + (next - last).norm();
         last = next;
     }
-    const std::int32_t quarter = std::max(3, count_of(length.back(), edge_mm));
+    return length;
+}
+
+// Even steps along the contact curves; the quarters' ends are always among the angles, since equal
+// radii have a kink there.
+std::vector<double> contact_angles(const TeeShape& shape, double edge_mm) {
+    TeeShape mirrored = shape;
+    mirrored.lean_rad = -shape.lean_rad;
+    const std::vector<double> near = quarter_lengths(shape);
+    const std::vector<double> far = quarter_lengths(mirrored);
     std::vector<double> angles;
-    for (std::int32_t i = 0; i < 4 * quarter; ++i) {
-        const std::int32_t step = i % quarter;
-        const std::int32_t corner = i / quarter;
-        const bool mirrored = corner % 2 == 1;
-        const double wanted = length.back() * (mirrored ? quarter - step : step) / quarter;
-        const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
-        const double fraction = (wanted - *(above - 1)) / (*above - *(above - 1));
-        const double psi =
-            0.5 * kPi * (static_cast<double>(above - 1 - length.begin()) + fraction) / kTable;
-        const double base = 0.5 * kPi * corner;
-        angles.push_back(mirrored ? base + 0.5 * kPi - psi : base + psi);
+    for (std::int32_t corner = 0; corner < 4; ++corner) {
+        const std::vector<double>& length = corner == 0 || corner == 3 ? near : far;
+        const std::int32_t quarter = std::max(3, count_of(length.back(), edge_mm));
+        const bool from_behind = corner % 2 == 1;
+        for (std::int32_t step = 0; step < quarter; ++step) {
+            const double wanted = length.back() * (from_behind ? quarter - step : step) / quarter;
+            const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
+            const double fraction = (wanted - *(above - 1)) / (*above - *(above - 1));
+            const double psi =
+                0.5 * kPi * (static_cast<double>(above - 1 - length.begin()) + fraction) / kTable;
+            const double base = 0.5 * kPi * corner;
+            angles.push_back(from_behind ? base + 0.5 * kPi - psi : base + psi);
+        }
     }
     return angles;
 }
@@ -66,7 +77,9 @@ std::vector<std::vector<std::int32_t>> add_blend_rows(TriangleSoup& soup, const 
     for (const double psi : angles) {
         const Vector3d centre = tee_spine_mm(shape, psi);
         const Vector3d to_run = -Vector3d(centre.x(), centre.y(), 0.0).normalized();
-        const Vector3d to_branch = -Vector3d(0.0, centre.y(), centre.z()).normalized();
+        const Vector3d seen = seen_from_branch(shape, centre);
+        const Vector3d to_branch =
+            -seen_from_run(shape, Vector3d(0.0, seen.y(), seen.z()).normalized());
         // Below a micrometre the blend has vanished (equal radii): one point stands for all rows.
         const bool vanished = (to_run - to_branch).norm() * shape.blend_radius_mm < 1e-3;
         for (std::int32_t row = 0; row <= steps; ++row) {
@@ -249,17 +262,17 @@ void add_branch(TriangleSoup& soup, const TeeShape& shape, const std::vector<std
     sheet.ids = contact;
     double lowest = shape.branch_length_mm;
     for (const std::int32_t id : contact) {
-        const Vector3d& p = soup.points_mm[at(id)];
+        const Vector3d p = seen_from_branch(shape, soup.points_mm[at(id)]);
         // From +y to +z around +x: counter-clockwise seen from outside with the axis upward.
         const double arc = radius * (std::atan2(p.z(), p.y()) - kCutAngle);
         sheet.flat.emplace_back(into_period(arc, sheet.period_mm), p.x());
         lowest = std::min(lowest, p.x());
     }
-    add_lattice(soup, sheet, {lowest, shape.branch_length_mm, true}, edge_mm,
-                [&](const Vector2d& flat) {
-                    const double psi = flat.x() / radius + kCutAngle;
-                    return Vector3d(flat.y(), radius * std::cos(psi), radius * std::sin(psi));
-                });
+    add_lattice(
+        soup, sheet, {lowest, shape.branch_length_mm, true}, edge_mm, [&](const Vector2d& flat) {
+            const double psi = flat.x() / radius + kCutAngle;
+            return seen_from_run(shape, {flat.y(), radius * std::cos(psi), radius * std::sin(psi)});
+        });
     mesh_sheet(soup, sheet, true, edge_mm);
 }
 

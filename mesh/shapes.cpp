@@ -1,7 +1,12 @@
 #include "mesh/shapes.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <boost/math/tools/roots.hpp>
 
+#include "core/units.h"
+#include "mesh/analytic.h"
 #include "mesh/make_checks.h"
 
 namespace meshwind {
@@ -22,7 +27,50 @@ double folding_blend_mm(const TeeShape& shape) {
     return 0.5 * (low + high);
 }
 
+// The largest part of the blend's radius that the curve of the ball's path takes up: where it is 1
+// the blend folds.
+double fold(const TeeShape& shape) {
+    constexpr int kPlaces = 720;
+    constexpr int kAcross = 8;
+    constexpr double kStep_rad = 1e-3;
+    // Where run and branch touch at less than that the blend is as good as gone.
+    constexpr double kGone_rad = 0.1;
+    double worst = 0.0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const double psi = 2.0 * kPi * i / kPlaces;
+        const Eigen::Vector3d at = tee_spine_mm(shape, psi);
+        const Eigen::Vector3d before = tee_spine_mm(shape, psi - kStep_rad);
+        const Eigen::Vector3d after = tee_spine_mm(shape, psi + kStep_rad);
+        const Eigen::Vector3d along = (after - before).normalized();
+        Eigen::Vector3d bend = after - 2.0 * at + before;
+        bend -= bend.dot(along) * along;
+        bend *= 4.0 / (after - before).squaredNorm();
+        const Eigen::Vector3d seen = seen_from_branch(shape, at);
+        const Eigen::Vector3d to_run = -Eigen::Vector3d(at.x(), at.y(), 0.0).normalized();
+        const Eigen::Vector3d to_branch =
+            -seen_from_run(shape, Eigen::Vector3d(0.0, seen.y(), seen.z()).normalized());
+        for (int k = 0; k <= kAcross && (to_run - to_branch).norm() > kGone_rad; ++k) {
+            const double part = static_cast<double>(k) / kAcross;
+            const Eigen::Vector3d way = ((1.0 - part) * to_run + part * to_branch).normalized();
+            worst = std::max(worst, shape.blend_radius_mm * bend.dot(way));
+        }
+    }
+    return worst;
+}
+
 }  // namespace
+
+double TeeShape::blend_end_on_run_mm() const {
+    return (branch_radius_mm + blend_radius_mm +
+            (run_radius_mm + blend_radius_mm) * std::sin(lean_rad)) /
+           std::cos(lean_rad);
+}
+
+double TeeShape::blend_end_on_branch_mm() const {
+    return (run_radius_mm + blend_radius_mm +
+            (branch_radius_mm + blend_radius_mm) * std::sin(lean_rad)) /
+           std::cos(lean_rad);
+}
 
 void CylinderShape::validate() const {
     require_positive("radius", radius_mm);
@@ -102,6 +150,18 @@ void TeeShape::validate() const {
     const double limit = 0.9 * folding_blend_mm(*this);
     require(blend_radius_mm <= limit, "make.blend_too_large", "blend-radius", blend_radius_mm,
             "at most, lest the blend fold,", limit);
+    require_not_negative("lean", lean_rad);
+    require(lean_rad <= kPi / 3.0, "make.lean_too_large", "lean", deg_from_rad(lean_rad),
+            "at most, in degrees,", 60.0);
+    require(2.0 * blend_end_on_run_mm() < run_length_mm, "make.lean_too_large", "run-length",
+            run_length_mm, "more, for so much lean, than", 2.0 * blend_end_on_run_mm());
+    require(blend_end_on_branch_mm() < branch_length_mm, "make.lean_too_large", "branch-length",
+            branch_length_mm, "more, for so much lean, than", blend_end_on_branch_mm());
+    if (lean_rad > 0.0) {
+        const double taken = fold(*this);
+        require(taken <= 0.9, "make.blend_too_large", "blend-radius", blend_radius_mm,
+                "less, lest the blend fold, perhaps", 0.9 * blend_radius_mm / taken);
+    }
 }
 
 }  // namespace meshwind

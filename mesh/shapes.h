@@ -96,8 +96,15 @@ struct TeeShape {
     double blend_radius_mm = 15.0;    ///< of the ball; up to twice the branch radius always fits
     double run_length_mm = 400.0;     ///< whole length
     double branch_length_mm = 236.0;  ///< from the run's axis to the branch's end
+    double lean_rad = 0.0;  ///< of the branch, from square to the run towards +z; at most pi / 3
 
-    /// \throws InputError make.not_positive, make.branch_too_wide, make.blend_too_large
+    /// How far the blend goes on the run, towards the rim to which the branch leans, and on the
+    /// branch, from the run's axis.
+    [[nodiscard]] double blend_end_on_run_mm() const;
+    [[nodiscard]] double blend_end_on_branch_mm() const;
+
+    /// \throws InputError make.not_positive, make.negative, make.branch_too_wide,
+    /// make.blend_too_large, make.lean_too_large
     void validate() const;
 };
 

@@ -27,16 +27,18 @@ class MakeTee : public testing::TestWithParam<TeeShape> {};
 // sampled spine point and on one of the three surfaces.
 double brute_distance_mm(const TeeShape& shape, const Vector3d& p) {
     const double run = std::abs(p.head<2>().norm() - shape.run_radius_mm);
-    const double branch = std::abs(p.tail<2>().norm() - shape.branch_radius_mm);
+    const Vector3d axis(std::cos(shape.lean_rad), 0.0, std::sin(shape.lean_rad));
+    const double branch = std::abs(axis.cross(p).norm() - shape.branch_radius_mm);
     double spine = 1e9;
     constexpr int kSteps = 5000;
     for (int i = 0; i < kSteps; ++i) {
         spine = std::min(spine, (tee_spine_mm(shape, 2.0 * kPi * i / kSteps) - p).norm());
     }
-    // The spine runs at most sqrt(2) (branch + blend) per radian; half a step of it away from a
-    // sample the distance is seen too large by (step / 2)^2 / (2 blend).
-    const double step =
-        std::sqrt(2.0) * (shape.branch_radius_mm + shape.blend_radius_mm) * 2.0 * kPi / kSteps;
+    // The spine runs at most sqrt(2) (branch + blend) per radian, more where it leans; half a step
+    // of it away from a sample the distance is seen too large by (step / 2)^2 / (2 blend).
+    const double step = std::sqrt(2.0) * (1.0 + std::sin(shape.lean_rad)) /
+                        std::cos(shape.lean_rad) *
+                        (shape.branch_radius_mm + shape.blend_radius_mm) * 2.0 * kPi / kSteps;
     const double slack = step * step / (8.0 * shape.blend_radius_mm);
     EXPECT_GE(spine, shape.blend_radius_mm - kOnSurface_mm);
     const double blend = std::max(0.0, spine - shape.blend_radius_mm - slack);
@@ -90,7 +92,9 @@ TEST_P(MakeTee, EndsInCircles) {
     int branch = 0;
     for (const Vector3d& point : make_tee(shape).points_mm) {
         run += std::abs(std::abs(point.z()) - 0.5 * shape.run_length_mm) < kOnSurface_mm ? 1 : 0;
-        branch += std::abs(point.x() - shape.branch_length_mm) < kOnSurface_mm ? 1 : 0;
+        const double along =
+            point.x() * std::cos(shape.lean_rad) + point.z() * std::sin(shape.lean_rad);
+        branch += std::abs(along - shape.branch_length_mm) < kOnSurface_mm ? 1 : 0;
     }
     EXPECT_EQ(run, 2 * std::lround(2.0 * kPi * shape.run_radius_mm / 5.0));
     EXPECT_EQ(branch, std::lround(2.0 * kPi * shape.branch_radius_mm / 5.0));
@@ -100,7 +104,10 @@ INSTANTIATE_TEST_SUITE_P(
     Shapes, MakeTee,
     testing::Values(TeeShape{50, 40, 15, 400, 236}, TeeShape{50, 50, 15, 400, 236},
                     TeeShape{50, 40, 6, 400, 236}, TeeShape{50, 25, 10, 400, 236},
-                    TeeShape{50, 40, 20, 400, 236}, TeeShape{50, 49.9, 15, 400, 236}));
+                    TeeShape{50, 40, 20, 400, 236}, TeeShape{50, 49.9, 15, 400, 236},
+                    TeeShape{50, 40, 15, 400, 236, 0.25 * kPi},
+                    TeeShape{50, 30, 9, 500, 260, kPi / 3.0},
+                    TeeShape{50, 50, 15, 400, 236, kPi / 6.0}));
 
 TEST(MakeTee, IsTheSameEveryTime) {
     const TriangleSoup first = make_tee({});
@@ -166,6 +173,11 @@ TEST(MakeTee, RefusesImpossibleShapes) {
     EXPECT_EQ(code_of({50, 40, 160, 400, 236}), "make.blend_too_large");
     EXPECT_EQ(code_of({50, 40, 15, 400, 60}), "make.blend_too_large");
     EXPECT_EQ(code_of({26, 5.2, 34.8, 112, 114}, 1.2), "make.blend_too_large");  // would fold
+    EXPECT_EQ(code_of({50, 40, 15, 400, 236, 1.1}), "make.lean_too_large");
+    EXPECT_EQ(code_of({50, 40, 15, 400, 236, -0.1}), "make.negative");
+    EXPECT_EQ(code_of({50, 40, 15, 250, 236, 0.8}), "make.lean_too_large");
+    EXPECT_EQ(code_of({50, 40, 15, 400, 130, 0.8}), "make.lean_too_large");
+    EXPECT_EQ(code_of({50, 12, 14, 600, 400, 1.0}, 3.0), "make.blend_too_large");  // would fold
     EXPECT_EQ(code_of({}, 30.0), "make.edge_too_large");
     EXPECT_EQ(code_of({}, 0.0), "make.not_positive");
     EXPECT_EQ(code_of({}, std::nan("")), "make.not_positive");
