@@ -220,7 +220,8 @@ TEST(MakeMandrel, RefusesEveryNonPositiveParameter) {
     for (const MakeKind& kind : make_kinds()) {
         for (const MakeParameter& parameter : kind.parameters) {
             const std::string name(parameter.name);
-            const bool may_be_zero = name == "opening-radius" || name == "leg1" || name == "leg2";
+            const bool may_be_zero =
+                name == "opening-radius" || name == "leg1" || name == "leg2" || name == "lean";
             const std::string code = may_be_zero ? "make.negative" : "make.not_positive";
             for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
                 EXPECT_EQ(code_of(std::string(kind.name), {{name, bad}}), code) << name << bad;
