@@ -18,12 +18,14 @@ using Eigen::Vector3d;
 struct Spine {
     double run_mm;     // radius of the run's offset cylinder
     double branch_mm;  // radius of the branch's offset cylinder, <= run_mm
-    double lean_rad;
+    double lean_sin;
+    double lean_cos;
 
     explicit Spine(const TeeShape& shape)
         : run_mm(shape.run_radius_mm + shape.blend_radius_mm),
           branch_mm(shape.branch_radius_mm + shape.blend_radius_mm),
-          lean_rad(shape.lean_rad) {}
+          lean_sin(std::sin(shape.lean_rad)),
+          lean_cos(std::cos(shape.lean_rad)) {}
 
     // x^2 = run^2 - branch^2 sin^2, written without cancellation for equal radii.
     [[nodiscard]] double x(double psi) const {
@@ -47,7 +49,7 @@ struct Spine {
 private:
     // z on the axis of a branch that leans, where x is given, and so far across it.
     [[nodiscard]] double leaned(double x_mm, double across_mm) const {
-        return (x_mm * std::sin(lean_rad) + across_mm) / std::cos(lean_rad);
+        return (x_mm * lean_sin + across_mm) / lean_cos;
     }
 };
 
@@ -78,9 +80,8 @@ ShapeFoot branch_foot(const TeeShape& shape, const Vector3d& point) {
 // which is its mirror image for a branch that leans as far to the other side.
 Vector3d nearest_centre(const TeeShape& shape, double side, const Vector3d& point) {
     const Vector3d sign(1.0, std::copysign(1.0, point.y()), side);
-    TeeShape mirrored = shape;
-    mirrored.lean_rad *= side;
-    const Spine spine(mirrored);
+    Spine spine(shape);
+    spine.lean_sin *= side;
     return spine.point(nearest_psi(spine, point.cwiseProduct(sign))).cwiseProduct(sign);
 }
 
@@ -126,6 +127,13 @@ Vector3d seen_from_run(const TeeShape& shape, const Vector3d& p) {
 
 Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad) {
     return Spine(shape).point(psi_rad);
+}
+
+BlendArc blend_arc(const TeeShape& shape, double psi_rad) {
+    const Vector3d centre = tee_spine_mm(shape, psi_rad);
+    const Vector3d seen = seen_from_branch(shape, centre);
+    return {centre, -Vector3d(centre.x(), centre.y(), 0.0).normalized(),
+            -seen_from_run(shape, Vector3d(0.0, seen.y(), seen.z()).normalized())};
 }
 
 ShapeFoot tee_foot(const TeeShape& shape, const Vector3d& point_mm) {

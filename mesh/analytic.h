@@ -28,6 +28,20 @@ struct ShapeFoot {
 /// to which it leans (+z) to +y. \pre shape is valid
 [[nodiscard]] Eigen::Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad);
 
+/// The blend across the ball that stands there: from `to_run`, where it touches the run, to
+/// `to_branch`; unit, seen from its centre.
+struct BlendArc {
+    Eigen::Vector3d centre_mm;
+    Eigen::Vector3d to_run;
+    Eigen::Vector3d to_branch;
+
+    /// \param share of the way from the run to the branch
+    [[nodiscard]] Eigen::Vector3d direction(double share) const {
+        return ((1.0 - share) * to_run + share * to_branch).normalized();
+    }
+};
+[[nodiscard]] BlendArc blend_arc(const TeeShape& shape, double psi_rad);
+
 /// Nearest point of the tee's surface to `point_mm`.
 /// \pre shape is valid; the point is nearer to the surface than half the smallest radius (farther
 /// away another piece may be nearer). Accuracy: 1e-9 mm on parts of some 100 mm;

@@ -61,7 +61,7 @@ constexpr std::array kTeeTable{
     MakeParameter{"branch-length", kLength, kTee.branch_length_mm,
                   "from the run's axis to the branch's end"},
     MakeParameter{"lean", kAngle, kTee.lean_rad,
-                  "of the branch, from square towards one end of the run"},
+                  "how far the branch leans, from square towards one end of the run"},
 };
 constexpr std::array kCombinationTable{
     MakeParameter{"radius1", kLength, kCombination.radius1_mm, "radius of the first cylinder"},

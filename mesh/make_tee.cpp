@@ -75,18 +75,13 @@ std::vector<std::vector<std::int32_t>> add_blend_rows(TriangleSoup& soup, const 
     const std::int32_t steps = std::max(1, count_of(0.4 * kPi * shape.blend_radius_mm, edge_mm));
     std::vector<std::vector<std::int32_t>> rows(at(steps + 1));
     for (const double psi : angles) {
-        const Vector3d centre = tee_spine_mm(shape, psi);
-        const Vector3d to_run = -Vector3d(centre.x(), centre.y(), 0.0).normalized();
-        const Vector3d seen = seen_from_branch(shape, centre);
-        const Vector3d to_branch =
-            -seen_from_run(shape, Vector3d(0.0, seen.y(), seen.z()).normalized());
+        const BlendArc arc = blend_arc(shape, psi);
         // Below a micrometre the blend has vanished (equal radii): one point stands for all rows.
-        const bool vanished = (to_run - to_branch).norm() * shape.blend_radius_mm < 1e-3;
+        const bool vanished = (arc.to_run - arc.to_branch).norm() * shape.blend_radius_mm < 1e-3;
         for (std::int32_t row = 0; row <= steps; ++row) {
             if (row == 0 || !vanished) {
-                const double part = static_cast<double>(row) / steps;
-                const Vector3d way = ((1.0 - part) * to_run + part * to_branch).normalized();
-                soup.points_mm.push_back(centre + shape.blend_radius_mm * way);
+                const Vector3d way = arc.direction(static_cast<double>(row) / steps);
+                soup.points_mm.push_back(arc.centre_mm + shape.blend_radius_mm * way);
             }
             rows[at(row)].push_back(static_cast<std::int32_t>(soup.points_mm.size()) - 1);
         }

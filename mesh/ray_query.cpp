@@ -82,7 +82,7 @@ std::vector<Ball> balls_around(const TriangleSoup& soup) {
         const Eigen::Vector3d centre = (corner(0) + corner(1) + corner(2)) / 3.0;
         const double radius = std::max({(corner(0) - centre).norm(), (corner(1) - centre).norm(),
                                         (corner(2) - centre).norm()});
-        balls.push_back({centre, kRoundUp * radius});
+        balls.push_back({centre, radius});
     }
     return balls;
 }

@@ -12,6 +12,9 @@
 namespace meshwind {
 namespace {
 
+// Close to folding the blend's curvature has no bound: so near it may come.
+constexpr double kNearFolding = 0.9;
+
 // Blend radius at which the ball's path, where it passes the crotch, curves as tightly as the ball:
 // the blend would fold there. With b = branch + blend, a = run + blend its radius of curvature is
 // b / sqrt(1 + (b / a)^2).
@@ -27,8 +30,8 @@ double folding_blend_mm(const TeeShape& shape) {
     return 0.5 * (low + high);
 }
 
-// The largest part of the blend's radius that the curve of the ball's path takes up: where it is 1
-// the blend folds.
+// The blend's radius over the radius of curvature of the ball's path, towards the blend: where it
+// is 1 the blend folds. By differences, for branches that lean.
 double fold(const TeeShape& shape) {
     constexpr int kPlaces = 720;
     constexpr int kAcross = 8;
@@ -38,20 +41,18 @@ double fold(const TeeShape& shape) {
     double worst = 0.0;
     for (int i = 0; i < kPlaces; ++i) {
         const double psi = 2.0 * kPi * i / kPlaces;
-        const Eigen::Vector3d at = tee_spine_mm(shape, psi);
+        const BlendArc arc = blend_arc(shape, psi);
+        if ((arc.to_run - arc.to_branch).norm() < kGone_rad) {
+            continue;
+        }
         const Eigen::Vector3d before = tee_spine_mm(shape, psi - kStep_rad);
         const Eigen::Vector3d after = tee_spine_mm(shape, psi + kStep_rad);
         const Eigen::Vector3d along = (after - before).normalized();
-        Eigen::Vector3d bend = after - 2.0 * at + before;
+        Eigen::Vector3d bend = after - 2.0 * arc.centre_mm + before;
         bend -= bend.dot(along) * along;
         bend *= 4.0 / (after - before).squaredNorm();
-        const Eigen::Vector3d seen = seen_from_branch(shape, at);
-        const Eigen::Vector3d to_run = -Eigen::Vector3d(at.x(), at.y(), 0.0).normalized();
-        const Eigen::Vector3d to_branch =
-            -seen_from_run(shape, Eigen::Vector3d(0.0, seen.y(), seen.z()).normalized());
-        for (int k = 0; k <= kAcross && (to_run - to_branch).norm() > kGone_rad; ++k) {
-            const double part = static_cast<double>(k) / kAcross;
-            const Eigen::Vector3d way = ((1.0 - part) * to_run + part * to_branch).normalized();
+        for (int k = 0; k <= kAcross; ++k) {
+            const Eigen::Vector3d way = arc.direction(static_cast<double>(k) / kAcross);
             worst = std::max(worst, shape.blend_radius_mm * bend.dot(way));
         }
     }
@@ -146,8 +147,7 @@ void TeeShape::validate() const {
     require(blend_radius_mm < branch_length_mm - run_radius_mm, "make.blend_too_large",
             "blend-radius", blend_radius_mm,
             "less than the branch length less the run radius:", branch_length_mm - run_radius_mm);
-    // Close to folding the blend's curvature has no bound.
-    const double limit = 0.9 * folding_blend_mm(*this);
+    const double limit = kNearFolding * folding_blend_mm(*this);
     require(blend_radius_mm <= limit, "make.blend_too_large", "blend-radius", blend_radius_mm,
             "at most, lest the blend fold,", limit);
     require_not_negative("lean", lean_rad);
@@ -159,8 +159,8 @@ void TeeShape::validate() const {
             branch_length_mm, "more, for so much lean, than", blend_end_on_branch_mm());
     if (lean_rad > 0.0) {
         const double taken = fold(*this);
-        require(taken <= 0.9, "make.blend_too_large", "blend-radius", blend_radius_mm,
-                "less, lest the blend fold, perhaps", 0.9 * blend_radius_mm / taken);
+        require(taken <= kNearFolding, "make.blend_too_large", "blend-radius", blend_radius_mm,
+                "less, lest the blend fold, perhaps", kNearFolding * blend_radius_mm / taken);
     }
 }
 
