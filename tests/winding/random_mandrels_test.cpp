@@ -166,8 +166,8 @@ Found judge_again(const Ideal& ideal, const Piece& course) {
 }
 
 // A planner without a machine estimates clearances from a table, good to some tenths of a mm, at
-// stations 5 mm apart.
-constexpr double kRoom_mm = 1.0;
+// stations 2 mm apart.
+constexpr double kRoom_mm = 0.5;
 
 // At each station, but for those that the fibre passes over and those next to them, where it leaves
 // the wall and meets it again, there is a length at which it runs free and the head has room.
