@@ -35,6 +35,9 @@ struct LayerJob {
     std::string file;                 ///< landing points of an Imported layer; empty for all others
 };
 
+/// Each fibre more is one more time that somebody cuts it and ties it on.
+inline constexpr int kMostFibres = 9;
+
 struct Job {
     struct MandrelAxis {
         Eigen::Vector3d origin;     ///< in the file's frame and units
@@ -69,6 +72,7 @@ struct Job {
     MandrelJob mandrel;
     TowJob tow;
     std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
+    int fibres = 1;  ///< 1 .. kMostFibres; that may be wound one after the other, cut in between
     EyeJob eye;
     RedundancyRule redundancy = RedundancyRule::CentralAngle;
     ToleranceJob tolerance;

@@ -141,7 +141,7 @@ std::vector<LayerJob> read_layers(const JsonValue& value) {
 
 Job job_of(const JsonDocument& document) {
     const JsonObject root = document.root().object(
-        {"mandrel", "tow", "layers", "eye", "redundancy", "tolerance", "speed"});
+        {"mandrel", "tow", "layers", "fibres", "eye", "redundancy", "tolerance", "speed"});
     Job job;
     if (const auto mandrel = root.optional("mandrel")) {
         job.mandrel = read_mandrel(*mandrel);
@@ -151,6 +151,9 @@ Job job_of(const JsonDocument& document) {
     }
     if (const auto layers = root.optional("layers")) {
         job.layers = read_layers(*layers);
+    }
+    if (const auto fibres = root.optional("fibres")) {
+        job.fibres = static_cast<int>(fibres->integer(1, kMostFibres));
     }
     if (const auto eye = root.optional("eye")) {
         const JsonObject object = eye->object({"rule", "free_length"});
@@ -289,7 +292,8 @@ std::string job_text(const Job& job) {
     append_member(speed, "fibre", job.speed.fibre_m_min);
 
     return "{ \"mandrel\":" + mandrel_text(job.mandrel) + ",\n  \"tow\":" + tow_text(job.tow) +
-           ",\n  \"layers\":" + layers_text(job.layers) + ",\n  \"eye\":" + eye +
+           ",\n  \"layers\":" + layers_text(job.layers) +
+           ",\n  \"fibres\":" + std::to_string(job.fibres) + ",\n  \"eye\":" + eye +
            "},\n  \"redundancy\":" + json_string(word_of(job.redundancy, kRedundancyWords)) +
            ",\n  \"tolerance\":" + tolerance + "},\n  \"speed\":" + speed + "} }\n";
 }

@@ -77,10 +77,8 @@ public:
         share_.assign(path_.size(), 1.0);
         make_blocks();
         done("post");
-        const bool one_fibre = std::none_of(pieces_.begin() + 1, pieces_.end(),
-                                            [](const Piece& piece) { return piece.starts_fibre; });
         std::map<std::size_t, Rejection> wrong;
-        for (int round = 0; one_fibre; ++round) {
+        for (int round = 0;; ++round) {
             tell("verify", static_cast<double>(round) / kTighterRounds);
             found_.read = options.through_text ? options.through_text(found_) : as_run();
             found_.verification = verify_program(setup_, found_.read, planned_fibre(pieces_));

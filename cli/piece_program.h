@@ -28,7 +28,7 @@ struct PieceProgram {
     double duration_s = 0.0;
     std::vector<BindingLimit> binding;
     BlockList read;             ///< the blocks as they were wound again
-    Verification verification;  ///< of these; empty where the pieces are more than one fibre
+    Verification verification;  ///< of these
     /// Pieces that the machine cannot wind, or that the blocks do not lay as they are planned, each
     /// with the first reason.
     std::map<std::size_t, Rejection> refused;
@@ -50,7 +50,7 @@ struct PieceProgramOptions {
 
 /// Eye, axes, blocks and time law of the pieces; then the blocks are wound again, and where that
 /// shows them too coarse they are made finer, a few times. Without blocks where the machine cannot
-/// wind the pieces, unless `in_spite`. Thread-safe. \pre there are pieces
+/// wind the pieces, unless `in_spite`. Thread-safe. \pre there are pieces, all of one fibre
 [[nodiscard]] PieceProgram program_of(const Setup& setup, std::span<const Piece> pieces,
                                       const PieceProgramOptions& options = {});
 

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/fibre_files.h"
 #include "cli/report_checks.h"
 #include "cli/report_mandrel.h"
 #include "core/text_number.h"
@@ -39,6 +40,14 @@ json what_if_report(const Plan& plan) {
                        {"reachable", report_number(what_if.reachable)}});
     }
     return all;
+}
+
+json reach_report(const Plan& plan) {
+    json shares = json::array();
+    for (const double share : plan.reach_of_fibres) {
+        shares.push_back(report_number(share));
+    }
+    return shares;
 }
 
 json turns_report(const Plan& plan) {
@@ -93,6 +102,7 @@ json plan_report(const Plan& plan) {
         {"courses", plan.courses},
         {"transitions", std::max(0, static_cast<int>(plan.pieces.size()) - plan.courses)},
         {"fibres", plan.fibres},
+        {"reach_of_fibres", reach_report(plan)},
         {"fibre_length_mm", report_number(plan.fibre_length_mm)},
         {"coverage",
          {{"fraction", report_number(plan.coverage.fraction)},
@@ -122,25 +132,24 @@ json plan_report(const Plan& plan) {
 }
 
 // Furthest of an axis from its planned position for circuits that are repeated, mm or deg.
-double drift_of(const WindResult& result, std::size_t axis) {
-    const std::vector<std::int64_t>& nano = result.made.layout.drift_nano;
+double drift_of(const PieceProgram& made, std::size_t axis) {
+    const std::vector<std::int64_t>& nano = made.layout.drift_nano;
     return nano.empty() ? 0.0 : static_cast<double>(nano[axis]) / static_cast<double>(kNanoPerUnit);
 }
 
-json repeats_report(const WindResult& result) {
+json repeats_report(const PieceProgram& made) {
     json drift = json::object();
-    for (std::size_t a = 0; a < result.made.blocks.axes.size(); ++a) {
-        drift[std::string(1, result.made.blocks.axes[a].letter)] =
-            report_number(drift_of(result, a));
+    for (std::size_t a = 0; a < made.blocks.axes.size(); ++a) {
+        drift[std::string(1, made.blocks.axes[a].letter)] = report_number(drift_of(made, a));
     }
-    return {{"subprograms", result.made.layout.subprograms.size()},
-            {"calls", result.made.layout.calls()},
+    return {{"subprograms", made.layout.subprograms.size()},
+            {"calls", made.layout.calls()},
             {"drift", drift}};
 }
 
-json axes_report(const WindResult& result) {
+json axes_report(const PieceProgram& made) {
     json axes = json::object();
-    const BlockList& list = result.made.blocks;
+    const BlockList& list = made.blocks;
     for (std::size_t a = 0; a < list.axes.size(); ++a) {
         double low = list.value(0, a);
         double high = low;
@@ -155,7 +164,7 @@ json axes_report(const WindResult& result) {
             {"min", report_number(low)},
             {"max", report_number(high)},
             {"resolution", step},
-            {"max_rounding_error", 0.5 * step + drift_of(result, a)}};
+            {"max_rounding_error", 0.5 * step + drift_of(made, a)}};
     }
     return axes;
 }
@@ -169,23 +178,24 @@ json choice_report(const BlockChoice& choice) {
             {"steps_beyond", choice.beyond}};
 }
 
-json program_report(const WindResult& result) {
+json program_report(const WindResult& result, const FibreProgram& program) {
+    const PieceProgram& made = program.made;
     json binding = json::array();
-    for (const BindingLimit& limit : result.made.binding) {
+    for (const BindingLimit& limit : made.binding) {
         binding.push_back({{"limit", limit.name}, {"time_s", report_number(limit.time_s)}});
     }
-    return {{"file", result.program_written ? json(result.program_file) : json(nullptr)},
+    return {{"file", result.program_written ? json(program.file) : json(nullptr)},
             {"dialect", result.setup.machine.controller.dialect},
-            {"path_points", result.made.path_points},
-            {"blocks", result.made.blocks.blocks.size()},
-            {"choice", choice_report(result.made.choice)},
-            {"duration_s", report_number(result.made.duration_s)},
+            {"path_points", made.path_points},
+            {"blocks", made.blocks.blocks.size()},
+            {"choice", choice_report(made.choice)},
+            {"duration_s", report_number(made.duration_s)},
             {"free_length_mm",
-             {{"min", report_number(result.made.eyes.shortest_mm)},
-              {"max", report_number(result.made.eyes.longest_mm)}}},
+             {{"min", report_number(made.eyes.shortest_mm)},
+              {"max", report_number(made.eyes.longest_mm)}}},
             {"binding_limits", binding},
-            {"repeats", repeats_report(result)},
-            {"axes", axes_report(result)}};
+            {"repeats", repeats_report(made)},
+            {"axes", axes_report(made)}};
 }
 
 std::string percent(double share) {
@@ -205,6 +215,13 @@ void print_bare_wall(std::ostream& out, const WindResult& result) {
         out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
     }
     const Job& job = result.setup.job;
+    const std::vector<double>& reach = result.plan.reach_of_fibres;
+    const auto fibres = static_cast<std::size_t>(job.fibres);
+    if (reach.size() > fibres) {
+        out << "  with \"fibres\": " << fibres + 1 << " in the job courses would reach "
+            << percent(reach[fibres]) << " of the wall instead of " << percent(reach[fibres - 1])
+            << '\n';
+    }
     const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
         {WhatIf::Rule::Friction, {job.tow.friction, ""}},
         {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
@@ -230,11 +247,13 @@ std::string report_json(const WindResult& result) {
                    {"mandrel", mandrel_report(result.setup.mandrel)},
                    {"plan", plan_report(result.plan)},
                    {"checks", checks_report(result.checks)},
-                   {"program", program_report(result)},
                    {"ok", result.passed()},
                    {"timing_s", timing}};
-    if (!result.made.verification.checks.empty()) {
-        report["verification"] = verification_report(result.made.verification, result.made.blocks);
+    for (std::size_t fibre = 0; fibre < result.programs.size(); ++fibre) {
+        const FibreProgram& program = result.programs[fibre];
+        report["program" + fibre_suffix(fibre)] = program_report(result, program);
+        report["verification" + fibre_suffix(fibre)] =
+            verification_report(program.made.verification, program.made.blocks);
     }
     return report.dump(1) + "\n";
 }
@@ -243,19 +262,30 @@ void print_summary(std::ostream& out, const WindResult& result,
                    const std::filesystem::path& folder) {
     const Plan& plan = result.plan;
     if (plan.failure.empty()) {
+        std::size_t blocks = 0;
+        double duration_s = 0.0;
+        for (const FibreProgram& program : result.programs) {
+            blocks += program.made.blocks.blocks.size();
+            duration_s += program.made.duration_s;
+        }
         out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
             << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
-            << " m of fibre, " << result.made.blocks.blocks.size() << " blocks, "
-            << fixed(result.made.duration_s / 60.0, 1) << " min\n"
+            << " m of fibre, " << blocks << " blocks, " << fixed(duration_s / 60.0, 1) << " min\n"
             << "covered " << percent(plan.coverage.fraction) << " of the wall (reachable "
             << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
             << " layers on average, at most " << plan.coverage.max_layers << '\n';
     }
     print_bare_wall(out, result);
     print_checks(out, result.checks);
-    out << (result.program_written ? "program: " + (folder / result.program_file).string()
-                                   : std::string("no program written"))
-        << "\nreport:  " << (folder / "report.json").string() << '\n';
+    if (!result.program_written) {
+        out << "no program written\n";
+    }
+    for (const FibreProgram& program : result.programs) {
+        if (result.program_written) {
+            out << "program: " << (folder / program.file).string() << '\n';
+        }
+    }
+    out << "report:  " << (folder / "report.json").string() << '\n';
 }
 
 }  // namespace meshwind

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "cli/fibre_files.h"
 #include "cli/output_files.h"
 #include "cli/report_verify.h"
 #include "core/error.h"
@@ -19,10 +20,16 @@ double seconds(Clock::duration duration) {
     return std::chrono::duration<double>(duration).count();
 }
 
+// The plan's table for this program: "path-2.csv" for "program-2.ngc", if there is one.
+fs::path table_of(const VerifyRequest& request, const std::string& name) {
+    const fs::path numbered = request.plan / (name + fibre_suffix_of(request.program) + ".csv");
+    return fs::exists(numbered) ? numbered : request.plan / (name + ".csv");
+}
+
 // The plan's motion, block by block.
 Check program_check(const VerifyRequest& request, const VerifyOutcome& outcome,
                     std::optional<std::size_t>& wrong) {
-    const fs::path file = request.plan / "motion.csv";
+    const fs::path file = table_of(request, "motion");
     const MotionDifference difference = first_difference(
         outcome.setup.machine, outcome.blocks,
         read_motion_csv(read_text_file(file), file.string(), outcome.setup.machine));
@@ -56,7 +63,7 @@ VerifyOutcome run_verify(const VerifyRequest& request) {
     PlannedFibre plan;
     std::optional<std::size_t> planned_until;
     if (!request.plan.empty()) {
-        const fs::path file = request.plan / "path.csv";
+        const fs::path file = table_of(request, "path");
         plan = read_path_csv(read_text_file(file), file.string());
         outcome.checks.push_back(program_check(request, outcome, planned_until));
     }

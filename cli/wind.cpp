@@ -9,6 +9,7 @@
 #include <set>
 
 #include "cli/digest.h"
+#include "cli/fibre_files.h"
 #include "cli/layup_vtu.h"
 #include "cli/output_files.h"
 #include "cli/report.h"
@@ -127,20 +128,17 @@ private:
         if (const auto angle_deg = job.layers.front().angle_deg) {
             options.angle_rad = rad_from_deg(*angle_deg);
         }
+        options.fibres = job.fibres;
         options.seed = request_.seed;
         options.effort = request_.effort;
-        options.accept = [this](const Piece& piece) {
-            return first_of(refused_by_machine(setup_, {&piece, 1}));
+        options.accept = [this](std::span<const Piece> pieces) {
+            return first_of(refused_by_machine(setup_, pieces));
         };
-        options.wind = [this](const Piece& piece) {
-            return first_of(program_of(setup_, {&piece, 1}).refused);
+        options.wind = [this](std::span<const Piece> pieces) {
+            return first_of(program_of(setup_, pieces).refused);
         };
         options.refused = [this](std::span<const Piece> pieces) {
-            std::vector<std::size_t> refused;
-            for (const auto& [piece, reason] : wind_whole(pieces, false)) {
-                refused.push_back(piece);
-            }
-            return refused;
+            return wind_whole(pieces, false);
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         result_.plan = plan_cover(setup_.mandrel, *setup_.obstacles, options);
@@ -151,22 +149,39 @@ private:
         return refused.empty() ? Rejection::None : refused.begin()->second;
     }
 
-    // The way from a plan to its program, and back: the program is read from its text and wound
-    // again. Returns the pieces that it does not lay as they are planned.
-    const std::map<std::size_t, Rejection>& wind_whole(std::span<const Piece> pieces,
-                                                       bool in_spite) {
+    // The way from a plan to its programs, and back: each is read from its text and wound again.
+    // Returns the pieces that they do not lay as they are planned.
+    std::vector<std::size_t> wind_whole(std::span<const Piece> pieces, bool in_spite) {
         watch_.stage("plan");
+        result_.programs.clear();
+        std::vector<std::size_t> refused;
+        std::size_t before = 0;  // pieces
+        for (const std::span<const Piece> fibre : fibres_of(pieces)) {
+            FibreProgram& program = result_.programs.emplace_back();
+            program.file = program_file(result_.programs.size() - 1);
+            wind_fibre(fibre, in_spite, program);
+            for (const auto& [piece, reason] : program.made.refused) {
+                refused.push_back(before + piece);
+            }
+            before += fibre.size();
+        }
+        holds_ = refused.empty();
+        return refused;
+    }
+
+    [[nodiscard]] std::string program_file(std::size_t fibre) const {
+        return "program" + fibre_suffix(fibre) + setup_.dialect->extension();
+    }
+
+    void wind_fibre(std::span<const Piece> pieces, bool in_spite, FibreProgram& program) {
         PieceProgramOptions options;
         options.in_spite = in_spite;
-        options.through_text = [this](const PieceProgram& made) {
-            write_program(made);
-            return setup_.dialect->read(result_.program, result_.program_file, setup_.machine);
+        options.through_text = [&](const PieceProgram& made) {
+            return setup_.dialect->read(text_of(made), program.file, setup_.machine);
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         options.stage_done = [this](const char* stage) { watch_.stage(stage); };
-        result_.made = program_of(setup_, pieces, options);
-        holds_ = result_.made.refused.empty();
-        return result_.made.refused;
+        program.made = program_of(setup_, pieces, options);
     }
 
     [[nodiscard]] static std::string place_of(const EyePoint& eye) {
@@ -178,24 +193,28 @@ private:
     void check() {
         check_fibres();
         check_coverage();
-        check_eyes();
-        if (result_.plan.fibres == 1) {
-            check_program();
-        } else {
-            check_planned_slip();
+        for (std::size_t fibre = 0; fibre < result_.programs.size(); ++fibre) {
+            std::vector<Check> found = checks_of(result_.programs[fibre].made);
+            for (Check& check : found) {
+                check.name += fibre_suffix(fibre);
+                result_.checks.push_back(std::move(check));
+            }
         }
-        write_program(result_.made);  // with what failed, for --force
+        for (FibreProgram& program : result_.programs) {
+            program.text = text_of(program.made);  // with what failed, for --force
+        }
     }
 
     void check_fibres() {
-        Check check{"continuity", result_.plan.fibres == 1, {}, {}};
+        Check check{"continuity", result_.plan.fibres <= setup_.job.fibres, {}, {}};
         check.numbers = {{"fibres", static_cast<double>(result_.plan.fibres)},
+                         {"limit", static_cast<double>(setup_.job.fibres)},
                          {"worst_joint_mm", result_.plan.worst_joint_mm}};
         if (!check.ok) {
             check.words =
                 "the plan takes " + std::to_string(result_.plan.fibres) +
-                " separate fibres, one program winds one; a slimmer head, less clearance, a "
-                "longer extension or more friction gives more courses to join them";
+                " separate fibres; a slimmer head, less clearance, a longer extension or more "
+                "friction gives more courses to join them";
         }
         result_.checks.push_back(check);
     }
@@ -227,65 +246,49 @@ private:
         result_.checks.push_back(check);
     }
 
-    void check_eyes() {
-        const std::vector<std::size_t>& blocked = result_.made.eyes.blocked;
+    [[nodiscard]] std::vector<Check> checks_of(const PieceProgram& made) const {
+        std::vector<Check> checks{eye_check(made), rounding_check(made)};
+        const std::vector<Check>& found = made.verification.checks;
+        checks.insert(checks.end(), found.begin(), found.end());
+        return checks;
+    }
+
+    [[nodiscard]] Check eye_check(const PieceProgram& made) const {
+        const std::vector<std::size_t>& blocked = made.eyes.blocked;
         Check check{"eye", blocked.empty(), {}, {}};
         check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
         if (!check.ok) {
             check.words = "no free fibre length between " +
                           fixed(setup_.rule.free_fibre.min_mm, 0) + " and " +
                           fixed(setup_.rule.free_fibre.max_mm, 0) + " mm is clear at " +
-                          place_of(result_.made.eyes.path[blocked.front()]);
+                          place_of(made.eyes.path[blocked.front()]);
         }
-        result_.checks.push_back(check);
+        return check;
     }
 
-    // Several fibres make no program that could be wound again: what the plan says of itself.
-    void check_planned_slip() {
-        const Plan& plan = result_.plan;
-        const Job::TowJob& tow = setup_.job.tow;
-        Check slip{"slip", plan.worst_slip <= tow.friction, {}, {}};
-        slip.numbers = {{"limit", tow.friction}, {"worst", plan.worst_slip}};
-        Check bridging{"bridging", plan.worst_bridge_mm <= tow.bridging_tolerance_mm, {}, {}};
-        bridging.numbers = {{"limit_mm", tow.bridging_tolerance_mm},
-                            {"worst_mm", plan.worst_bridge_mm}};
-        Check laydown{"laydown", false, "not wound again: one program winds one fibre", {}};
-        for (Check* const check : {&slip, &bridging}) {
-            check->words = check->ok ? "" : "the plan exceeds the limit";
-        }
-        result_.checks.insert(result_.checks.end(), {slip, bridging, laydown});
-    }
-
-    void check_program() {
-        check_rounding();
-        const std::vector<Check>& found = result_.made.verification.checks;
-        result_.checks.insert(result_.checks.end(), found.begin(), found.end());
-    }
-
-    void check_rounding() {
-        Check check{"rounding", result_.made.read.nano == result_.made.blocks.nano, {}, {}};
-        check.numbers["blocks"] = static_cast<double>(result_.made.read.blocks.size());
+    [[nodiscard]] static Check rounding_check(const PieceProgram& made) {
+        Check check{"rounding", made.read.nano == made.blocks.nano, {}, {}};
+        check.numbers["blocks"] = static_cast<double>(made.read.blocks.size());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";
         }
-        result_.checks.push_back(check);
+        return check;
     }
 
-    void write_program(const PieceProgram& made) {
+    [[nodiscard]] std::string text_of(const PieceProgram& made) const {
         ProgramHeader header;
         header.version = kVersion;
         header.mandrel = setup_.mandrel.file;
         header.mandrel_digest = mandrel_digest_;
         header.job_digest = "sha256 " + sha256_hex(job_text(setup_.job));
-        header.fibre_length_mm = result_.plan.fibre_length_mm;
+        header.fibre_length_mm = made.eyes.path.back().s_mm;
         header.tie_on_mm = made.eyes.path.front().landing_mm;
         for (const Check& check : result_.checks) {
             if (!check.ok) {
                 header.notes.push_back("CHECK FAILED, written by force: " + check.name);
             }
         }
-        result_.program_file = "program" + setup_.dialect->extension();
-        result_.program = setup_.dialect->write(setup_.machine, made.blocks, made.layout, header);
+        return setup_.dialect->write(setup_.machine, made.blocks, made.layout, header);
     }
 
     [[nodiscard]] std::string vtu() const {
@@ -309,19 +312,29 @@ private:
         const bool planned = result_.plan.failure.empty();
         result_.program_written = planned && (result_.passed() || request_.force);
         OutputFolder& folder = *folder_;
-        if (planned) {
-            folder.add("path.csv", path_csv(result_.plan.pieces, result_.made.eyes.path));
-            folder.add("motion.csv", motion_csv(setup_.machine, result_.made.blocks));
-            folder.add("layup.vtu", vtu());
-        } else {
-            for (const char* const name : {"path.csv", "motion.csv", "layup.vtu"}) {
-                folder.withdraw(name);
+        const auto fibres = fibres_of(result_.plan.pieces);
+        for (std::size_t fibre = 0; fibre < kMostFibres; ++fibre) {
+            const std::string path_file = "path" + fibre_suffix(fibre) + ".csv";
+            const std::string motion_file = "motion" + fibre_suffix(fibre) + ".csv";
+            const bool made = planned && fibre < fibres.size();
+            if (made) {
+                const PieceProgram& program = result_.programs[fibre].made;
+                folder.add(path_file, path_csv(fibres[fibre], program.eyes.path));
+                folder.add(motion_file, motion_csv(setup_.machine, program.blocks));
+            } else {
+                folder.withdraw(path_file);
+                folder.withdraw(motion_file);
+            }
+            if (made && result_.program_written) {
+                folder.add(program_file(fibre), result_.programs[fibre].text);
+            } else {
+                folder.withdraw(program_file(fibre));
             }
         }
-        if (result_.program_written) {
-            folder.add(result_.program_file, result_.program);
+        if (planned) {
+            folder.add("layup.vtu", vtu());
         } else {
-            folder.withdraw("program" + setup_.dialect->extension());
+            folder.withdraw("layup.vtu");
         }
         watch_.stage("write");
         folder.add("report.json", report_json(result_));

@@ -27,13 +27,19 @@ struct WindRequest {
     std::function<void(const std::string& step, double share)> progress;
 };
 
+/// The program that winds one fibre of a plan.
+struct FibreProgram {
+    PieceProgram made;
+    std::string text;
+    std::string file;  ///< name, e.g. "program.ngc"
+};
+
 /// Everything that was found, for the report.
 struct WindResult {
     Setup setup;
     Plan plan;
-    PieceProgram made;         ///< of the plan
-    std::string program;       ///< text; empty when nothing can be written
-    std::string program_file;  ///< name, e.g. "program.ngc"
+    std::vector<FibreProgram> programs;  ///< one for each fibre of the plan
+    /// Of the plan, then of each program: those of a further fibre end in its number, "slip-2".
     std::vector<Check> checks;
     std::map<std::string, double> timing_s;
     bool program_written = false;
@@ -49,7 +55,8 @@ struct WindResult {
 };
 
 /// Runs the job and writes the output folder, whole or not at all: path.csv, motion.csv, layup.vtu,
-/// report.json, and the program if every check passed or `force` is set.
+/// report.json, and the program if every check passed or `force` is set. Each further fibre of the
+/// plan has program, path and motion of its own (fibre_files.h).
 /// \throws InputError, IoError for input that cannot be used; nothing is written then
 [[nodiscard]] WindResult wind(const WindRequest& request);
 

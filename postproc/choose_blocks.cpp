@@ -328,29 +328,22 @@ FoundBlock longest_block(const BlockCheck& check, std::size_t first, std::size_t
     return good;
 }
 
-bool is_tied_on(const BlockTask& task, std::size_t point) {
-    return std::binary_search(task.tied_on.begin(), task.tied_on.end(), point);
-}
-
-// Points that must be block ends: the first one, the last one of every piece, and tie-ons.
+// Points that must be block ends: the first one, and the last one of every piece.
 std::vector<std::size_t> fixed_ends(const BlockTask& task) {
     const EyePath& path = task.path;
     std::vector<std::size_t> ends;
     for (std::size_t i = 0; i < path.size(); ++i) {
         const bool stops = i + 1 == path.size() || path[i].piece != path[i + 1].piece;
-        if (i == 0 || stops || is_tied_on(task, i)) {
+        if (i == 0 || stops) {
             ends.push_back(i);
         }
     }
     return ends;
 }
 
-void add_block(BlockChoice& choice, const FoundBlock& block, bool with_fibre, bool within) {
+void add_block(BlockChoice& choice, const FoundBlock& block, bool within) {
     choice.ends.push_back(block.last);
     choice.fibre_mm.push_back(block.worst.fibre_mm);
-    if (!with_fibre) {
-        return;
-    }
     const auto raise = [](double& worst, double value) { worst = std::max(worst, value); };
     raise(choice.worst_sideways_mm, block.worst.sideways_mm);
     raise(choice.worst_angle_rad, block.worst.angle_rad);
@@ -416,9 +409,8 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
         while (choice.ends.back() < fixed[i]) {
             const std::size_t first = choice.ends.back();
             const FoundBlock block = longest_block(check, first, fixed[i], length, offset_mm);
-            const bool tied_on = is_tied_on(task, block.last);
-            add_block(choice, block, !tied_on, check.within(block.worst, offset_mm));
-            offset_mm = tied_on ? 0.0 : block.worst.offset_mm;
+            add_block(choice, block, check.within(block.worst, offset_mm));
+            offset_mm = block.worst.offset_mm;
             length = block.last - first;
         }
     }

@@ -10,7 +10,7 @@
 ///     dy/ds = (delta - y) / L,
 ///
 /// so it forgets with the free length, |y| never exceeds max |delta|, and dy/ds is its angle to the
-/// plan. Guarantee: y, integrated from each tie-on over all blocks, stays within `sideways_mm` and
+/// plan. Guarantee: y, integrated from the tie-on over all blocks, stays within `sideways_mm` and
 /// dy/ds within `angle_rad`. Where the eye rises over the tangent plane it lifts fibre off and lays
 /// it again; y is then taken as the worse of y and delta. Conditions: first order in delta and y,
 /// both small against the free length and against the surface's radii of curvature. Rounding adds
@@ -45,14 +45,11 @@ struct BlockTask {
                                                  ///< against the plan per mm; empty: as it likes
     std::span<const double> share{};  ///< per point, 0..1: part of all these tolerances that blocks
                                       ///< through the point may use; empty: 1
-    std::span<const std::size_t>
-        tied_on{};  ///< ascending points to which the machine moves without
-                    ///< fibre: those steps are blocks, and keep nothing
 };
 
 struct BlockChoice {
-    /// Points that are block ends, ascending: the first, the last of every piece, tie-ons, and what
-    /// the tolerance needs between. So no block runs over the end of a piece.
+    /// Points that are block ends, ascending: the first, the last of every piece, and what the
+    /// tolerance needs between. So no block runs over the end of a piece.
     std::vector<std::size_t> ends;
     /// One per end: length for the fibre's speed of the block that ends there. Were the fibre laid,
     /// and drawn through the eye, all along the block as fast as where it is fastest, it would be

@@ -221,16 +221,14 @@ HeadEnvelope head_envelope(const Machine& machine,
 
 CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
                                  const RayQuery& obstacles, const EyePath& path,
-                                 const JointPath& joints, const CollisionRule& rule,
-                                 std::span<const std::size_t> tied_on) {
+                                 const JointPath& joints, const CollisionRule& rule) {
     const std::vector<LinkedChunk> chunks = chunks_of(envelope);
     std::vector<char> fibre(path.size(), 0);
     std::vector<char> head(path.size(), 0);
     std::vector<double> clearance(path.size(), rule.told_mm);
     parallel_for(path.size(), kStepChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const bool checked = i > 0 && !std::binary_search(tied_on.begin(), tied_on.end(), i);
-            const std::size_t before = checked ? i - 1 : i;
+            const std::size_t before = i > 0 ? i - 1 : i;
             fibre[i] = fibre_blocked(obstacles, path[before], path[i], rule) ? 1 : 0;
             const StepSweep sweep(machine, obstacles, rule.clearance_mm, joints.row(before),
                                   joints.row(i));

@@ -53,12 +53,10 @@ struct CollisionReport {
 /// grown by all that it can move in its share of the step, is clear of the mandrel or a centre is
 /// within the clearance: nothing slips through between points (conservative to
 /// kSweepResolution_mm). The free fibre: rays from landing point to eye, so close that the eye
-/// moves at most `fibre_step_mm`. \param tied_on eye points before which the machine moves without
-/// fibre: those steps are not checked
+/// moves at most `fibre_step_mm`.
 [[nodiscard]] CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
                                                const RayQuery& obstacles, const EyePath& path,
-                                               const JointPath& joints, const CollisionRule& rule,
-                                               std::span<const std::size_t> tied_on = {});
+                                               const JointPath& joints, const CollisionRule& rule);
 
 /// Pieces and steps smaller than this are not split further and count as a hit.
 inline constexpr double kSweepResolution_mm = 0.03;

@@ -71,19 +71,7 @@ LandingPoints landing_points(std::span<const Piece> pieces) {
     return points;
 }
 
-// Ends of the fibres in the path: each is tied on anew, with a free length of its own.
-std::vector<std::size_t> fibre_ends(const EyePath& path, std::span<const Piece> pieces) {
-    std::vector<std::size_t> ends;
-    for (std::size_t i = 1; i < path.size(); ++i) {
-        if (path[i].point == 0 && pieces[static_cast<std::size_t>(path[i].piece)].starts_fibre) {
-            ends.push_back(i);
-        }
-    }
-    ends.push_back(path.size());
-    return ends;
-}
-
-// Lengths for the points of one fibre. Where the wish is free all along it is taken, which is what
+// Lengths for the points. Where the wish is free all along it is taken, which is what
 // the windows would lead to. The rules are one per piece.
 FreeLengths free_lengths(std::span<const EyePoint> path, std::span<const double> ahead_mm,
                          const RayQuery& obstacles, std::span<const FreeFibreRule> rules,
@@ -145,24 +133,15 @@ EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& o
         rules[i].preferred_mm = wish;
         rules[i].clearance_mm += more_clearance_mm.empty() ? 0.0 : more_clearance_mm[i];
     }
-    std::size_t begin = 0;
-    for (const std::size_t end : fibre_ends(path, pieces)) {
-        const FreeLengths lengths = free_lengths(
-            std::span(path).subspan(begin, end - begin),
-            std::span(points.ahead_mm).subspan(begin, end - begin), obstacles, rules, wish);
-        for (const std::size_t i : lengths.blocked) {
-            result.blocked.push_back(begin + i);
-        }
-        for (std::size_t i = begin; i < end; ++i) {
-            EyePoint& point = path[i];
-            point.free_length_mm =
-                std::min(lengths.high_mm[i - begin], std::max(lengths.low_mm[i - begin], wish));
-            point.eye_mm = point.landing_mm + point.free_length_mm * point.tangent;
-            result.shortest_mm =
-                i == 0 ? point.free_length_mm : std::min(result.shortest_mm, point.free_length_mm);
-            result.longest_mm = std::max(result.longest_mm, point.free_length_mm);
-        }
-        begin = end;
+    FreeLengths lengths = free_lengths(path, points.ahead_mm, obstacles, rules, wish);
+    result.blocked = std::move(lengths.blocked);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        EyePoint& point = path[i];
+        point.free_length_mm = std::min(lengths.high_mm[i], std::max(lengths.low_mm[i], wish));
+        point.eye_mm = point.landing_mm + point.free_length_mm * point.tangent;
+        result.shortest_mm =
+            i == 0 ? point.free_length_mm : std::min(result.shortest_mm, point.free_length_mm);
+        result.longest_mm = std::max(result.longest_mm, point.free_length_mm);
     }
     return result;
 }

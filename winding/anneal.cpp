@@ -61,10 +61,8 @@ constexpr double kBesideTurn_rad = 0.02;
 // A course costs its turn's fibre, by this share of what layers too many would.
 constexpr double kTurnShare = 0.1;
 
-// What each end costs that is not joined to another, as a share of what a course covers, and twice
-// that each part of the plan that is apart. Two ends are free: those of the fibre.
-constexpr double kOpenShare = 0.6;
-constexpr int kFreeEnds = 2;
+// What each fibre too many costs, as a share of what a course covers.
+constexpr double kFibreShare = 1.2;
 
 // What a course costs that belongs to no family of parallel ones, as a share of what a course
 // covers. Among families the layers are more even, too.
@@ -226,8 +224,7 @@ private:
 
     // What the courses leave open is worth the proposal that closes it.
     [[nodiscard]] double open_cost(const Joints& joints) const {
-        return kOpenShare * typical_ *
-               (std::max(0, joints.loose_ends() - kFreeEnds) + 2 * (joints.parts() - 1));
+        return kFibreShare * typical_ * std::max(0, joints.fibres() - options_.fibres);
     }
 
     // Of fibre off the wanted winding angle.
@@ -374,7 +371,7 @@ private:
         if (falls(kNeighbourShare)) {
             return judged(beside(courses_[one], draws), draws, std::move(proposal), scratch);
         }
-        if (courses_[one].fixed) {
+        if (courses_[one].link >= 0) {
             return proposal;
         }
         proposal.out = one;

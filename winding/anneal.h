@@ -15,6 +15,7 @@ namespace meshwind {
 
 struct AnnealOptions {
     SelectOptions select{};
+    int fibres = 1;  ///< that may lay the courses
     std::uint64_t seed = 1;
     std::int64_t proposals = 100'000;
     /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It
@@ -43,7 +44,7 @@ struct AnnealEffort {
 /// sideways, turned, steered otherwise, replaced, set one band beside another, added and dropped.
 /// The objective is the square of the layers' distance from one more than the target, summed over
 /// the samples, with `bare` for each layer short of the target, the fibre of the turns, and what
-/// keeps the courses from being joined to one fibre. Bare places are mended by members of the
+/// keeps the courses from being joined to so few fibres. Bare places are mended by members of the
 /// library, too. \param courses changed in place; footprints are those of `rules` again at the end
 /// Proposals are drawn and judged in parallel, in groups; the same for any number of threads.
 AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,

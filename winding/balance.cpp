@@ -1,9 +1,10 @@
 #include "winding/balance.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <deque>
 #include <limits>
+
+#include "winding/joints.h"
 
 namespace meshwind {
 namespace {
@@ -21,12 +22,13 @@ bool can_wind(const Member& member, bool backward) {
 class Balancer {
 public:
     Balancer(std::span<const Member> members, std::span<const char> allowed, std::size_t rims,
-             const SelectOptions& options, Selection& selection)
+             const SelectOptions& options, int fibres, Selection& selection)
         : members_(members),
           allowed_(allowed),
           rims_(rims),
           nodes_(2 * rims),
           options_(options),
+          fibres_(fibres),
           selection_(selection) {
         for (const std::int32_t i : selection.chosen) {
             laid_.push_back({i, !members[at(i)].windable_forward});
@@ -102,13 +104,12 @@ private:
         return false;
     }
 
-    [[nodiscard]] std::vector<int> surplus_arrivals() const {
-        std::vector<int> surplus(nodes_, 0);
+    [[nodiscard]] Joints joints() const {
+        Joints joints(nodes_);
         for (const LaidCourse& c : laid_) {
-            ++surplus[arrival_node(end(c))];
-            --surplus[departure_node(start(c))];
+            joints.add(members_[at(c.member)], c.backward, 1);
         }
-        return surplus;
+        return joints;
     }
 
     [[nodiscard]] double cost(std::int32_t i) const {
@@ -172,22 +173,25 @@ private:
     }
 
     // Adds the cheapest chain from a node where fibres arrive in vain to one where they are
-    // missing.
+    // missing, unless it would only close a fibre that nothing else joins.
     bool add_chain() {
-        const std::vector<int> surplus = surplus_arrivals();
-        int loose = 0;
-        for (const int s : surplus) {
-            loose += std::abs(s);
-        }
-        if (loose <= 2) {
+        const Joints joints = this->joints();
+        if (joints.fibres() <= fibres_) {
             return false;
+        }
+        const std::vector<std::size_t> part = joints.part_of();
+        std::vector<int> starts(nodes_, 0);
+        for (std::size_t node = 0; node < nodes_; ++node) {
+            starts[part[node]] += std::max(0, joints.excess(node));
         }
         const std::vector<Way> ways = cheapest_ways();
         double least = std::numeric_limits<double>::infinity();
         std::pair<std::size_t, std::size_t> best;
         for (std::size_t i = 0; i < nodes_; ++i) {
             for (std::size_t j = 0; j < nodes_; ++j) {
-                if (surplus[i] > 0 && surplus[j] < 0 && ways[i * nodes_ + j].cost < least) {
+                const bool helps = joints.excess(i) > 0 && joints.excess(j) < 0 &&
+                                   (part[i] != part[j] || starts[part[i]] > 1);
+                if (helps && ways[i * nodes_ + j].cost < least) {
                     least = ways[i * nodes_ + j].cost;
                     best = {i, j};
                 }
@@ -200,24 +204,23 @@ private:
         return true;
     }
 
-    // Where nothing can be added: drops the course that joins a node with too many departures to
-    // one with too many arrivals and bares least wall. False when there is none or no need.
+    // Where nothing can be added: drops the course without which there are fewer fibres and that
+    // bares least wall. False when there is none or no need.
     bool drop_loose() {
-        const std::vector<int> surplus = surplus_arrivals();
-        int loose = 0;
-        for (const int s : surplus) {
-            loose += std::abs(s);
-        }
+        Joints joints = this->joints();
+        const int fibres = joints.fibres();
         std::size_t best = kNone;
         std::int64_t least = 0;
-        for (std::size_t c = 0; loose > 2 && c < laid_.size(); ++c) {
-            if (surplus[departure_node(start(laid_[c]))] >= 0 ||
-                surplus[arrival_node(end(laid_[c]))] <= 0) {
+        for (std::size_t c = 0; fibres > fibres_ && c < laid_.size(); ++c) {
+            const Member& member = members_[at(laid_[c].member)];
+            joints.add(member, laid_[c].backward, -1);
+            const bool helps = joints.fibres() < fibres;
+            joints.add(member, laid_[c].backward, 1);
+            if (!helps) {
                 continue;
             }
-            const auto& footprint = members_[at(laid_[c].member)].footprint;
-            const std::int64_t bared =
-                std::count_if(footprint.begin(), footprint.end(), [&](std::int32_t sample) {
+            const std::int64_t bared = std::count_if(
+                member.footprint.begin(), member.footprint.end(), [&](std::int32_t sample) {
                     return selection_.layers[at(sample)] <= options_.target_layers;
                 });
             if (best == kNone || bared < least) {
@@ -243,6 +246,7 @@ private:
     std::size_t rims_;
     std::size_t nodes_;
     const SelectOptions& options_;
+    int fibres_;
     Selection& selection_;
     std::vector<LaidCourse> laid_;
 };
@@ -251,8 +255,9 @@ private:
 
 std::vector<LaidCourse> balance_courses(std::span<const Member> members,
                                         std::span<const char> allowed, std::size_t rims,
-                                        const SelectOptions& options, Selection& selection) {
-    return Balancer(members, allowed, rims, options, selection).run();
+                                        const SelectOptions& options, int fibres,
+                                        Selection& selection) {
+    return Balancer(members, allowed, rims, options, fibres, selection).run();
 }
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Making one continuous fibre possible: which way each course is wound, and what must be added.
+/// Making few continuous fibres possible: which way each course is wound, and what must be added.
 #pragma once
 
 #include <cstdint>
@@ -41,14 +41,14 @@ using NodePair = std::pair<std::size_t, std::size_t>;
     return {departure_node(start_of(member, backward)), arrival_node(end_of(member, backward))};
 }
 
-/// Directs the chosen courses and adds members, the cheapest chains first, until at every node as
-/// many courses arrive as depart, but for the two ends of the fibre. Where the library has no
-/// course that would help, the difference stays: the fibre is then cut there. \param selection
-/// chosen members and layers; what is added is entered into both
+/// Directs the chosen courses and adds members, the cheapest chains first, until so many fibres lay
+/// them: at every node as many courses arrive as depart, but for the fibres' ends. Where the
+/// library has no course that would help, courses are dropped; what is then left are further
+/// fibres. \param selection chosen members and layers; what is added is entered into both
 [[nodiscard]] std::vector<LaidCourse> balance_courses(std::span<const Member> members,
                                                       std::span<const char> allowed,
                                                       std::size_t rims,
-                                                      const SelectOptions& options,
+                                                      const SelectOptions& options, int fibres,
                                                       Selection& selection);
 
 }  // namespace meshwind

@@ -15,9 +15,9 @@
 #include "winding/anneal.h"
 #include "winding/coverage.h"
 #include "winding/families.h"
+#include "winding/fibre_routes.h"
 #include "winding/grow.h"
 #include "winding/lay_out.h"
-#include "winding/one_fibre.h"
 #include "winding/random.h"
 #include "winding/uncovered.h"
 #include "winding/what_if.h"
@@ -47,6 +47,9 @@ constexpr int kMaxJoins = 200;
 // none of them holds, so many.
 constexpr std::size_t kProvenForWay = 6;
 constexpr std::size_t kProvenForScarceWay = 48;
+
+// Routes of so many fibres are looked for, at most.
+constexpr std::size_t kMostFibres = 9;
 
 // An open way is taken for one with courses in plenty where the library has so many.
 constexpr std::size_t kAbound = 8;
@@ -115,7 +118,7 @@ public:
         library_size_ = members_.size();
         allowed_.assign(members_.size(), 1);
         rejection_.assign(members_.size(), Rejection::None);
-        find_route();
+        find_routes();
         choose();
         make_it_hold();
         if (order_.empty()) {
@@ -184,9 +187,9 @@ private:
         ++plan_.effort.rejected_courses;
     }
 
-    // Which ways between nodes are open to the machine, and the route that one fibre takes best.
-    // What lies off it is struck off the library.
-    void find_route() {
+    // Which ways between nodes are open to the machine, and the routes that the fibres take best.
+    // What lies off them is struck off the library.
+    void find_routes() {
         struct Trial {
             NodePair nodes;
             PlacedCourse course;
@@ -208,7 +211,7 @@ private:
             }
             tell("route", most == kProvenForWay ? 0.0 : 0.5);
             parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
-                trials[i].rejection = prove(trials[i].course, true);
+                trials[i].rejection = prove(trials[i].course);
             });
             for (const Trial& trial : trials) {
                 if (trial.rejection != Rejection::None) {
@@ -221,7 +224,12 @@ private:
         for (auto& [nodes, way] : known_) {
             way.abounds = ways.at(nodes).windable.size() >= kAbound;
         }
-        route_ = best_route(members_, known_, 2 * mandrel_.rims.size(), samples_.size());
+        routes_ =
+            best_routes(members_, known_, 2 * mandrel_.rims.size(), samples_.size(), kMostFibres);
+        for (const FibreRoute& route : routes_) {
+            plan_.reach_of_fibres.push_back(route.reach);
+        }
+        routes_.resize(std::min(routes_.size(), static_cast<std::size_t>(options_.fibres)));
         if (known_.empty()) {  // nothing of what was tried holds, wherever it leads
             const auto& rejections = plan_.effort.rejections;
             const auto most = std::max_element(rejections.begin() + 1, rejections.end());
@@ -229,11 +237,21 @@ private:
             rejection_.assign(library_size_, static_cast<Rejection>(most - rejections.begin()));
             return;
         }
-        for (const LaidCourse& link : route_.links) {
-            courses_.push_back(placed(link.member, link.backward));
-            courses_.back().fixed = true;
+        for (const FibreRoute& route : routes_) {
+            for (const LaidCourse& link : route.links) {
+                courses_.push_back(placed(link.member, link.backward));
+                courses_.back().link = link.member;
+            }
         }
         strike_off_what_is_apart();
+    }
+
+    // No more than serve to reach the wall.
+    [[nodiscard]] int fibres() const { return std::max(1, static_cast<int>(routes_.size())); }
+
+    [[nodiscard]] bool on_a_route(const NodePair& nodes) const {
+        return std::any_of(routes_.begin(), routes_.end(),
+                           [&](const FibreRoute& route) { return route.holds(nodes); });
     }
 
     void strike_off_what_is_apart() {
@@ -241,7 +259,7 @@ private:
             Member& member = members_[i];
             for (const bool backward : {false, true}) {
                 bool& windable = backward ? member.windable_backward : member.windable_forward;
-                windable = windable && route_.holds(nodes_of(member, backward));
+                windable = windable && on_a_route(nodes_of(member, backward));
             }
             if (!member.windable_forward && !member.windable_backward) {
                 strike_off(i, Rejection::Apart);
@@ -284,6 +302,7 @@ private:
     void anneal_proven(bool mending) {
         AnnealOptions annealing;
         annealing.select = options_.select;
+        annealing.fibres = fibres();
         annealing.seed = seed_of(Stream::Annealing, options_.seed) + (++annealings_ << 32U);
         annealing.proposals = mending ? kMendingProposals : options_.effort * kProposals;
         if (mending) {
@@ -291,7 +310,7 @@ private:
             annealing.bare_hot = annealing.bare_cold;
         }
         annealing.progress = [this](double share) { tell("anneal", share); };
-        annealing.way = [this](const NodePair& nodes) { return route_.holds(nodes); };
+        annealing.way = [this](const NodePair& nodes) { return on_a_route(nodes); };
         annealing.verify = [this, mending](PlacedCourse& course) {
             const Rejection rejection = prove(course, mending);
             if (rejection != Rejection::None) {
@@ -328,10 +347,10 @@ private:
     }
 
     // Adds what it takes to join the courses, and puts them in order.
-    void join_to_one_fibre() {
+    void join_to_fibres() {
         join();
         put_in_order();
-        keep_main_fibre();
+        keep_longest_fibres();
     }
 
     // The courses of the plan behind those of the library.
@@ -355,7 +374,7 @@ private:
                 selection.chosen.push_back(static_cast<std::int32_t>(i));
             }
             const std::vector<LaidCourse> laid = balance_courses(
-                members_, allowed, mandrel_.rims.size(), options_.select, selection);
+                members_, allowed, mandrel_.rims.size(), options_.select, fibres(), selection);
             if (take_proven(laid)) {
                 return;
             }
@@ -412,12 +431,10 @@ private:
         order_ = order_courses(mandrel_.rims, members_, laid, rules_.turn);
     }
 
-    void keep_main_fibre() {
-        const FibreStretch fibre = main_fibre(members_, order_);
-        plan_.effort.courses_out_of_reach =
-            static_cast<int>(order_.size() - (fibre.second - fibre.first));
-        order_ = {order_.begin() + static_cast<std::ptrdiff_t>(fibre.first),
-                  order_.begin() + static_cast<std::ptrdiff_t>(fibre.second)};
+    void keep_longest_fibres() {
+        const std::size_t all = order_.size();
+        order_ = longest_fibres(members_, order_, static_cast<std::size_t>(fibres()));
+        plan_.effort.courses_out_of_reach = static_cast<int>(all - order_.size());
     }
 
     // Plans, winds the whole, and plans again without the courses that the machine refuses in their
@@ -430,7 +447,7 @@ private:
         std::size_t least = 0;
         int in_vain = 0;
         for (int attempt = 0; attempt < kMaxAttempts && !courses_.empty(); ++attempt) {
-            join_to_one_fibre();
+            join_to_fibres();
             lay_out(rules_, members_, order_, plan_);
             const auto refused = refused_courses();
             if (refused.empty()) {
@@ -449,7 +466,7 @@ private:
         }
         courses_ = std::move(best);
         put_in_order();
-        keep_main_fibre();
+        keep_longest_fibres();
         lay_out(rules_, members_, order_, plan_);
     }
 
@@ -459,8 +476,14 @@ private:
         if (!options_.refused || order_.empty()) {
             return courses;
         }
+        std::vector<std::size_t> course_of;  // per piece: itself, or the one before the turn
+        std::size_t begun = 0;
+        for (const Piece& piece : plan_.pieces) {
+            begun += piece.kind == PieceKind::Course ? 1 : 0;
+            course_of.push_back(begun - 1);
+        }
         for (const std::size_t piece : options_.refused(plan_.pieces)) {
-            const std::size_t course = piece / 2;  // courses and turns alternate
+            const std::size_t course = course_of[piece];
             courses.emplace_back(at(order_[course].course.member) - library_size_,
                                  Rejection::InItsPlace);
         }
@@ -475,19 +498,19 @@ private:
             const PlacedCourse course = std::move(courses_[index]);
             courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(index));
             note_refused(course.member, reason);
-            if (course.fixed) {
-                replace_link(nodes_of(course.member, course.backward));
+            if (course.link >= 0) {
+                replace_link(course);
             }
         }
     }
 
     // The next course that holds in place of the link between two stages that did not.
-    void replace_link(const NodePair& nodes) {
-        std::vector<LaidCourse>& proven = known_[nodes].proven;
-        proven.erase(proven.begin());
+    void replace_link(const PlacedCourse& refused) {
+        std::vector<LaidCourse>& proven = known_[nodes_of(refused.member, refused.backward)].proven;
+        std::erase_if(proven, [&](const LaidCourse& way) { return way.member == refused.link; });
         while (!proven.empty()) {
             PlacedCourse link = placed(proven.front().member, proven.front().backward);
-            link.fixed = true;
+            link.link = proven.front().member;
             if (prove(link, true) == Rejection::None) {
                 courses_.push_back(std::move(link));
                 return;
@@ -554,7 +577,7 @@ private:
     std::vector<Rejection> rejection_;   // per member: why it is not allowed
     std::vector<PlacedCourse> courses_;  // the plan, not in order
     KnownWays known_;
-    FibreRoute route_;
+    std::vector<FibreRoute> routes_;    // one for each fibre
     std::vector<OrderedCourse> order_;  // of the pool
     std::vector<std::int32_t> layers_;  // per sample
     std::uint64_t annealings_ = 0;

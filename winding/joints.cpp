@@ -1,7 +1,6 @@
 #include "winding/joints.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <numeric>
 
 #include "winding/balance.h"
@@ -19,14 +18,6 @@ int Joints::excess(std::size_t node) const {
         excess += courses_[other * nodes_ + node] - courses_[node * nodes_ + other];
     }
     return excess;
-}
-
-int Joints::loose_ends() const {
-    int loose = 0;
-    for (std::size_t node = 0; node < nodes_; ++node) {
-        loose += std::abs(excess(node));
-    }
-    return loose;
 }
 
 std::vector<std::size_t> Joints::part_of() const {
@@ -55,13 +46,17 @@ bool Joints::has_courses(std::size_t node) const {
     return false;
 }
 
-int Joints::parts() const {
+int Joints::fibres() const {
     const std::vector<std::size_t> part = part_of();
-    int parts = 0;
+    std::vector<int> starts(nodes_, 0);
     for (std::size_t node = 0; node < nodes_; ++node) {
-        parts += part[node] == node && has_courses(node) ? 1 : 0;
+        starts[part[node]] += std::max(0, excess(node));
     }
-    return std::max(1, parts);
+    int fibres = 0;
+    for (std::size_t node = 0; node < nodes_; ++node) {
+        fibres += part[node] == node && has_courses(node) ? std::max(1, starts[node]) : 0;
+    }
+    return fibres;
 }
 
 }  // namespace meshwind

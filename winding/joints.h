@@ -18,16 +18,14 @@ public:
     /// Arrivals less departures.
     [[nodiscard]] int excess(std::size_t node) const;
 
-    /// Ends that lead nowhere: the excess of all nodes.
-    [[nodiscard]] int loose_ends() const;
-
     /// Per node the lowest one that courses join it to; its own number where there are none.
     [[nodiscard]] std::vector<std::size_t> part_of() const;
 
     [[nodiscard]] bool has_courses(std::size_t node) const;
 
-    /// Groups of nodes that no course joins; at least one.
-    [[nodiscard]] int parts() const;
+    /// Continuous fibres that the courses make: in each group of nodes that courses join as many as
+    /// start there, at least one.
+    [[nodiscard]] int fibres() const;
 
 private:
     std::size_t nodes_;

@@ -25,12 +25,7 @@ FollowedCourse followed(const CourseRules& rules, const Member& member) {
     return course;
 }
 
-Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
-                   TurnsAtRim& turns) {
-    Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, kStation_mm);
-    ++turns.turns;
-    turns.dwell_rad += turn.dwell_rad;
-    turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);
+Piece piece_of(Turn&& turn, std::int32_t rim) {
     Piece piece;
     piece.kind = PieceKind::Transition;
     piece.string.gap_mm.assign(turn.path.size(), 0.0);
@@ -40,9 +35,18 @@ Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimC
     }
     piece.worst_slip = turn.slip;
     piece.path = std::move(turn.path);
-    piece.start_rim = from.rim;
-    piece.end_rim = to.rim;
+    piece.start_rim = rim;
+    piece.end_rim = rim;
     return piece;
+}
+
+Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
+                   TurnsAtRim& turns) {
+    Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, kStation_mm);
+    ++turns.turns;
+    turns.dwell_rad += turn.dwell_rad;
+    turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);
+    return piece_of(std::move(turn), from.rim);
 }
 
 void add_piece(Piece piece, Plan& plan) {
@@ -75,6 +79,22 @@ Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
     piece.end_rim = end_of(member, backward).rim;
     thin_out(piece, kStation_mm);
     return piece;
+}
+
+std::vector<Piece> between_half_turns(const CourseRules& rules, Piece&& course,
+                                      const Member& member, bool backward) {
+    const auto half = [&](const RimCrossing& end) {
+        return half_turn(rules.mandrel.rims[at(end.rim)], end, rules.turn, kStation_mm);
+    };
+    Turn before = half(start_of(member, backward));
+    before.path = reversed(before.path);
+    std::vector<Piece> pieces;
+    pieces.push_back(piece_of(std::move(before), course.start_rim));
+    const std::int32_t end_rim = course.end_rim;
+    pieces.push_back(std::move(course));
+    pieces.push_back(piece_of(half(end_of(member, backward)), end_rim));
+    pieces.front().starts_fibre = true;
+    return pieces;
 }
 
 void lay_out(const CourseRules& rules, std::span<const Member> members,

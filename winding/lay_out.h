@@ -16,4 +16,8 @@ namespace meshwind {
 void lay_out(const CourseRules& rules, std::span<const Member> members,
              std::span<const OrderedCourse> order, Plan& plan);
 
+/// The course after the half of a turn that leads to it, and before the one that it leads to.
+[[nodiscard]] std::vector<Piece> between_half_turns(const CourseRules& rules, Piece&& course,
+                                                    const Member& member, bool backward);
+
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Putting chosen courses in order, so that one continuous fibre lays them all.
+/// Putting chosen courses in order, so that as few continuous fibres as can be lay them all.
 #pragma once
 
 #include <cstdint>

@@ -12,8 +12,10 @@ struct PlacedCourse {
     Member member;
     SurfacePath path;  ///< from end 0 to end 1
     bool backward = false;
-    bool fixed = false;  ///< stays as it is
     bool wound = false;  ///< its own program lays it as planned
+    /// Where it leads from stage to stage (fibre_routes.h): which member of the library it is. Such
+    /// a course stays as it is. -1 for all others.
+    std::int32_t link = -1;
 };
 
 /// How a course is moved: to its left, turned, and steered otherwise ahead of its seed and behind.

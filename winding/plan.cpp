@@ -30,6 +30,18 @@ const char* name_of(Rejection rejection) {
     return "";
 }
 
+std::vector<std::span<const Piece>> fibres_of(std::span<const Piece> pieces) {
+    std::vector<std::span<const Piece>> fibres;
+    for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
+        end = begin + 1;
+        while (end < pieces.size() && !pieces[end].starts_fibre) {
+            ++end;
+        }
+        fibres.push_back(pieces.subspan(begin, end - begin));
+    }
+    return fibres;
+}
+
 void thin_out(Piece& piece, double step_mm) {
     std::vector<std::size_t> kept{0};
     const std::size_t last = piece.path.size() - 1;

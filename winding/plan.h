@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,7 +90,7 @@ struct PlanEffort {
     std::array<std::int64_t, kRefusals> refusals{};
     std::int64_t proposals = 0;    ///< weighed while the courses were annealed
     std::int64_t taken = 0;        ///< of these
-    int courses_out_of_reach = 0;  ///< chosen, but not to be joined to the one fibre; left out
+    int courses_out_of_reach = 0;  ///< chosen, but no fibre joins them; left out
     int rejected_courses = 0;      ///< refused by the measured slip or by the machine
     std::array<std::int64_t, kRejections> rejections{};  ///< members of the library, by reason
 };
@@ -98,7 +99,9 @@ struct Plan {
     std::string planner;  ///< "cover"
     std::vector<Piece> pieces;
     int courses = 0;
-    int fibres = 0;  ///< continuous fibres: 1 unless the courses' ends left no other way
+    int fibres = 0;  ///< continuous fibres, one after the other
+    /// Share of the wall that courses of one fibre reach, of two, ... as far as more reach more.
+    std::vector<double> reach_of_fibres;
     double fibre_length_mm = 0.0;
     double worst_slip = 0.0;
     double worst_bridge_mm = 0.0;
@@ -115,5 +118,8 @@ struct Plan {
     PlanEffort effort;
     std::string failure;  ///< empty, or in words why nothing can be wound
 };
+
+/// The pieces of each fibre, in order.
+[[nodiscard]] std::vector<std::span<const Piece>> fibres_of(std::span<const Piece> pieces);
 
 }  // namespace meshwind

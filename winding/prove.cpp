@@ -26,8 +26,9 @@ Rejection prove_course(const CourseRules& rules, const AskMachine& machine, Plac
         return Rejection::FreeLength;
     }
     SurfacePath path = followed.path;
-    const Piece piece = piece_of(std::move(followed), exact, backward);
-    if (const Rejection rejection = machine ? machine(piece) : Rejection::None;
+    const std::vector<Piece> pieces =
+        between_half_turns(rules, piece_of(std::move(followed), exact, backward), exact, backward);
+    if (const Rejection rejection = machine ? machine(pieces) : Rejection::None;
         rejection != Rejection::None) {
         return rejection;
     }

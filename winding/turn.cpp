@@ -159,6 +159,16 @@ double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
     return positive_angle(from.sense * (to.azimuth_rad - from.azimuth_rad) - steering);
 }
 
+Turn half_turn(const Rim& rim, const RimCrossing& from, const TurnRule& rule, double step_mm) {
+    Turn turn;
+    turn.run_mm = common_run_mm(rim, from, from, rule);
+    turn.slip = slip_for(rim, from.angle_rad, turn.run_mm);
+    TurnPath path(rim, from.sense, step_mm);
+    path.steer(from.azimuth_rad, from.angle_rad, turn.slip, false);
+    turn.path = path.take();
+    return turn;
+}
+
 Turn make_turn(const Rim& rim, const RimCrossing& from, const RimCrossing& to, const TurnRule& rule,
                double step_mm) {
     Turn turn;

@@ -58,4 +58,8 @@ struct Turn {
 [[nodiscard]] Turn make_turn(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                              const TurnRule& rule, double step_mm);
 
+/// The half of a turn that a course's end needs by itself: from the rim to hoop.
+[[nodiscard]] Turn half_turn(const Rim& rim, const RimCrossing& from, const TurnRule& rule,
+                             double step_mm);
+
 }  // namespace meshwind

@@ -63,6 +63,7 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "  \"tow\":{\"width\":6, \"thickness\":0.25, \"friction\":0.2, "
               "\"bridging_tolerance\":0.5},\n"
               "  \"layers\":[{\"kind\":\"auto\", \"target_layers\":1}],\n"
+              "  \"fibres\":1,\n"
               "  \"eye\":{\"rule\":\"equal-free-length\", \"free_length\":200},\n"
               "  \"redundancy\":\"central-angle\",\n"
               "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5},\n"
@@ -86,6 +87,7 @@ TEST(Job, EveryKeyReachesItsField) {
     EXPECT_EQ(job.layers[0].target_layers, 2.0);
     EXPECT_EQ(job.layers[1].angle_deg, 54.7);
     EXPECT_EQ(job.layers[2].file, "points \"A\".csv");
+    EXPECT_EQ(job.fibres, 3);
     EXPECT_EQ(job.eye.rule, EyeRule::Cylinder);
     EXPECT_EQ(job.eye.free_length_mm, 180.0);
     EXPECT_EQ(job.redundancy, RedundancyRule::Optimal);

@@ -15,7 +15,7 @@ PATH_HEADER = ("course,kind,point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_m
                "bridge_mm,free_length_mm")
 MOTION_HEADER = "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz,course,point"
 PLAN_KEYS = {"planner", "courses", "fibre_length_mm", "coverage", "uncovered"}
-CHECK_KEYS = {"continuity": {"fibres"}, "coverage": {"limit", "fraction"},
+CHECK_KEYS = {"continuity": {"fibres", "limit"}, "coverage": {"limit", "fraction"},
               "eye": {"blocked_points"}, "rounding": {"blocks"},
               "laydown": {"limit_mm", "max_deviation_mm", "limit_deg", "max_angle_deg",
                           "end_gap_mm"},
@@ -201,6 +201,41 @@ class MainJob(program.ProgramTest):
                     for text in texts:
                         text.pop("timing_s")
                 self.assertTrue(texts[0] == texts[1], f"{name} differs between two runs")
+
+    def test_several_fibres(self):
+        """Each has a program of its own that holds; with fewer fibres no old file stays."""
+        self.make("tee", "--edge", "8", "--run-length", "240", "--branch-length", "140")
+        machine = json.loads((program.SOURCE / "machines/six_axis.json").read_text())
+        machine["fibre"]["min_free_length"] = 160
+        self.write("machine.json", json.dumps(machine))
+        files = {"program.ngc", "path.csv", "motion.csv"}
+        more = {"program-2.ngc", "path-2.csv", "motion-2.csv"}
+        covered = []
+        for fibres in 2, 1:
+            job = json.loads(JOB) | {"fibres": fibres}
+            self.write("job.json", json.dumps(job))
+            result = self.done(self.folder / "tee.stl", "--machine", "machine.json", "--job",
+                               "job.json", "-o", "out", "--json", timeout_s=600)
+            report = json.loads(result.stdout)
+            self.assertEqual(report["plan"]["fibres"], fibres)
+            self.assertGreaterEqual(len(report["plan"]["reach_of_fibres"]), 2)
+            self.assertEqual("slip-2" in report["checks"], fibres == 2)
+            written = {f.name for f in (self.folder / "out").iterdir()}
+            self.assertLessEqual(files, written)
+            self.assertEqual(written & more, more if fibres == 2 else set())
+            covered.append(report["plan"]["coverage"]["fraction"])
+            laid = 0.0
+            for number in range(1, fibres + 1):
+                suffix = "" if number == 1 else f"-{number}"
+                self.assertEqual(report["program" + suffix]["file"], f"program{suffix}.ngc")
+                verified = json.loads(self.done(
+                    "verify", f"out/program{suffix}.ngc", "--mandrel", "tee.stl", "--machine",
+                    "machine.json", "--job", "job.json", "--plan", "out", "--json").stdout)
+                self.assertTrue(verified["ok"])
+                self.assertTrue(verified["checks"]["program"]["ok"])
+                laid += verified["verification"]["fibre_length_mm"]
+            self.assertAlmostEqual(laid / report["plan"]["fibre_length_mm"], 1.0, 3)
+        self.assertGreater(covered[0], covered[1])
 
 
 if __name__ == "__main__":

@@ -259,24 +259,6 @@ TEST(ChooseBlocks, DegeneratePaths) {
     EXPECT_EQ(blocks(chosen(machine, dwell, {})), 1U);
 }
 
-TEST(ChooseBlocks, MovesWithoutFibreStandAlone) {
-    const Machine machine = six_axis();
-    EyePath path = test::helix(70.0, rad_from_deg(45.0), 200.0, 2.0, 100);
-    EyePath second = test::helix(70.0, rad_from_deg(120.0), 200.0, 2.0, 100);
-    for (EyePoint& point : second) {
-        point.piece = 1;
-        point.s_mm += path.back().s_mm;
-        path.push_back(point);
-    }
-    const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
-    const std::vector<std::size_t> tied_on{100};
-    const BlockChoice choice =
-        choose_blocks(machine, {.path = path, .joints = joints, .tied_on = tied_on}, {});
-    EXPECT_EQ(choice.ends, (std::vector<std::size_t>{0, 99, 100, 199}));
-    EXPECT_LT(choice.worst_sideways_mm, kKinematics_mm);
-    EXPECT_EQ(choice.beyond, 0U);
-}
-
 TEST(ChooseBlocks, SameForAnyNumberOfThreads) {
     const Machine machine = six_axis();
     const EyePath path = test::on_ellipsoid({.swing = 0.6, .waves = 3.0}, 500);

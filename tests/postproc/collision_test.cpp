@@ -52,10 +52,9 @@ struct Scene {
         envelope.parts.push_back(part);
     }
 
-    [[nodiscard]] CollisionReport check(const TriangleSoup& obstacle,
-                                        std::span<const std::size_t> tied_on = {}) const {
+    [[nodiscard]] CollisionReport check(const TriangleSoup& obstacle) const {
         const RayQuery obstacles({&obstacle, 1});
-        return check_collisions(machine, envelope, obstacles, path, joints, rule, tied_on);
+        return check_collisions(machine, envelope, obstacles, path, joints, rule);
     }
 
     Machine machine;
@@ -153,8 +152,6 @@ TEST(CheckCollisions, SeesTheFreeFibreMeetAWall) {
     place(1, 60.0);
     place(2, -60.0);  // across the wall, with both ends of the step beside it
     EXPECT_EQ(scene.check(kThinWall).fibre_hits, (Steps{2}));
-    const Steps tied_on{2};
-    EXPECT_TRUE(scene.check(kThinWall, tied_on).fibre_hits.empty());
 }
 
 TEST(CheckCollisions, WithoutObstaclesNearCapsTheClearance) {

@@ -183,24 +183,5 @@ TEST(EqualFreeLength, NamesThePointsWhereNoLengthIsPossible) {
     ASSERT_EQ(eyes.path.size(), pieces[0].path.size());
 }
 
-// The second fibre is tied on anew: its first length owes nothing to the last of the first.
-TEST(EqualFreeLength, StartsAFibreWithALengthOfItsOwn) {
-    std::vector<Piece> pieces{helix(40.0), helix(40.0)};
-    // Before the first fibre's eye stands a wall at 100 mm for all of it; the second is elsewhere.
-    for (PathPoint& p : pieces[1].path) {
-        p.position_mm += Vector3d(0.0, 0.0, 2000.0);
-    }
-    pieces[1].starts_fibre = true;
-    const PathPoint& last = pieces[0].path.back();
-    const TriangleSoup soup = test::box({-500.0, 110.0, -500.0}, {500.0, 120.0, 500.0});
-    ASSERT_LT(last.position_mm.y(), 100.0);
-    const RayQuery obstacles({&soup, 1});
-    const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
-    const std::size_t n = pieces[0].path.size();
-    EXPECT_TRUE(eyes.blocked.empty());
-    EXPECT_LT(eyes.path[n - 1].free_length_mm, 190.0);
-    EXPECT_EQ(eyes.path[n].free_length_mm, 200.0);
-}
-
 }  // namespace
 }  // namespace meshwind

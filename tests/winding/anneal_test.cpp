@@ -155,10 +155,10 @@ TEST(Anneal, KeepsFixedCourses) {
     const Scene& scene = tee();
     ASSERT_FALSE(scene.members.empty());
     PlacedCourse fixed = scene.placed(0);
-    fixed.fixed = true;
+    fixed.link = 0;
     const auto courses = scene.annealed({.proposals = 3'000}, {fixed});
     EXPECT_TRUE(std::any_of(courses.begin(), courses.end(), [&](const PlacedCourse& course) {
-        return course.fixed && course.member.length_mm == fixed.member.length_mm;
+        return course.link == 0 && course.member.length_mm == fixed.member.length_mm;
     }));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -96,9 +97,28 @@ TEST(BalanceCourses, LeavesOneStartAndOneEndWhereTheLibraryAllows) {
         Library after = before;
         add_all_kinds(after.members);
         const auto laid = balance_courses(after.members, std::vector<char>(after.members.size(), 1),
-                                          kRims, {}, after.selection);
+                                          kRims, {}, 1, after.selection);
         expect_consistent(before, after, laid);
         EXPECT_LE(loose_ends(after.members, laid), 2);
+    }
+}
+
+TEST(BalanceCourses, AddsNoMoreThanSoManyFibresNeed) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Library before = random_library(seed, 40, 12 + static_cast<std::int32_t>(seed % 9));
+        std::size_t last = std::numeric_limits<std::size_t>::max();
+        for (int fibres = 1; fibres <= 4; ++fibres) {
+            Library after = before;
+            add_all_kinds(after.members);
+            const auto laid =
+                balance_courses(after.members, std::vector<char>(after.members.size(), 1), kRims,
+                                {}, fibres, after.selection);
+            expect_consistent(before, after, laid);
+            EXPECT_LE(loose_ends(after.members, laid), 2 * fibres);
+            EXPECT_LE(laid.size(), last) << fibres << " fibres";
+            last = laid.size();
+        }
     }
 }
 
@@ -109,13 +129,14 @@ TEST(BalanceCourses, NeverAddsWhatIsNotAllowed) {
         Library after = before;
         std::vector<char> allowed(60, 0);
         std::fill(allowed.begin(), allowed.begin() + 15, char{1});
-        auto laid = balance_courses(after.members, allowed, kRims, {}, after.selection);
+        auto laid = balance_courses(after.members, allowed, kRims, {}, 1, after.selection);
         expect_consistent(before, after, laid);
         for (const LaidCourse& c : laid) {
             EXPECT_LT(c.member, 15);
         }
         after = before;
-        laid = balance_courses(after.members, std::vector<char>(60, 0), kRims, {}, after.selection);
+        laid =
+            balance_courses(after.members, std::vector<char>(60, 0), kRims, {}, 1, after.selection);
         EXPECT_LE(laid.size(), before.selection.chosen.size()) << "nothing may be added";
     }
 }
@@ -135,7 +156,7 @@ TEST(BalanceCourses, WindsAPairThereAndBack) {
     }
     library.selection.layers.assign(kSamples, 0);
     const auto laid =
-        balance_courses(library.members, std::vector<char>{1, 1}, kRims, {}, library.selection);
+        balance_courses(library.members, std::vector<char>{1, 1}, kRims, {}, 1, library.selection);
     ASSERT_EQ(laid.size(), 2U);
     EXPECT_NE(laid[0].backward, laid[1].backward);
     EXPECT_EQ(loose_ends(library.members, laid), 0);
@@ -143,7 +164,7 @@ TEST(BalanceCourses, WindsAPairThereAndBack) {
 
 TEST(BalanceCourses, OfNothingIsNothing) {
     Selection selection;
-    EXPECT_TRUE(balance_courses({}, {}, 2, {}, selection).empty());
+    EXPECT_TRUE(balance_courses({}, {}, 2, {}, 1, selection).empty());
 }
 
 }  // namespace

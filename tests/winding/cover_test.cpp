@@ -16,12 +16,13 @@ namespace {
 constexpr double kExtension_mm = 120.0;
 constexpr double kTable_mm = 60.0;
 
-Plan cover(const Mandrel& mandrel, int candidates) {
+Plan cover(const Mandrel& mandrel, int candidates, int fibres = 1, double min_free_mm = 40.0) {
     CoverOptions options;
+    options.fibres = fibres;
     options.tow.width_mm = 12.0;
     options.tow.friction = 0.25;
     options.turn.extension_mm = kExtension_mm;
-    options.free_fibre.min_mm = 40.0;
+    options.free_fibre.min_mm = min_free_mm;
     options.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
     options.candidates = candidates;
     options.rounds = 2;
@@ -108,6 +109,23 @@ TEST(PlanCover, CoversASmallTee) {
     expect_books_to_balance(tee(), plan);
 }
 
+// With so long a free fibre one that has gone to the branch cannot come back; others may follow it.
+constexpr double kLongFree_mm = 120.0;
+
+TEST(PlanCover, CoversMoreOfASmallTeeWithMoreFibres) {
+    const Plan one = cover(tee(), 4000, 1, kLongFree_mm);
+    const Plan more = cover(tee(), 4000, 4, kLongFree_mm);
+    ASSERT_GE(one.reach_of_fibres.size(), 2U);
+    EXPECT_EQ(one.reach_of_fibres, more.reach_of_fibres);
+    EXPECT_TRUE(std::is_sorted(one.reach_of_fibres.begin(), one.reach_of_fibres.end()));
+    EXPECT_GT(more.fibres, 1);
+    EXPECT_LE(more.fibres, 4);
+    EXPECT_GT(more.coverage.fraction, one.coverage.fraction);
+    EXPECT_EQ(fibres_of(more.pieces).size(), static_cast<std::size_t>(more.fibres));
+    expect_continuous(more);
+    expect_books_to_balance(tee(), more);
+}
+
 TEST(PlanCover, IsTheSameForAnyNumberOfThreads) {
     const Mandrel tee = test::small_tee(6.0);
     set_thread_count(1);
@@ -151,7 +169,7 @@ TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
     options.tow.width_mm = 12.0;
     options.candidates = 200;
     options.rounds = 0;
-    options.accept = [](const Piece&) { return Rejection::AxisTravel; };
+    options.accept = [](std::span<const Piece>) { return Rejection::AxisTravel; };
     const Plan plan =
         plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0, kTable_mm), options);
     const std::string reason = name_of(Rejection::AxisTravel);
@@ -209,8 +227,11 @@ void expect_no_course_steeper(const Plan& plan, double limit, Rejection reason) 
 TEST(PlanCover, KeepsOnlyCoursesWhoseOwnProgramHolds) {
     const double limit = steep();
     CoverOptions options = wide_tow();
-    options.wind = [limit](const Piece& piece) {
-        return steepness(piece) > limit ? Rejection::Laydown : Rejection::None;
+    options.wind = [limit](std::span<const Piece> pieces) {
+        const bool steep = std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+            return piece.kind == PieceKind::Course && steepness(piece) > limit;
+        });
+        return steep ? Rejection::Laydown : Rejection::None;
     };
     expect_no_course_steeper(cover_cylinder(options), limit, Rejection::Laydown);
 }

@@ -208,6 +208,26 @@ TEST(MakeTurn, TurnsByTheClosedForm) {
     }
 }
 
+// A turn between two ends alike, without a dwell, is the half turn there and back.
+TEST(HalfTurn, IsTheFirstHalfOfATurn) {
+    const Rim rim = slanted_rim();
+    const RimCrossing from = crossing(40.0, 55.0, 1);
+    const Turn half = half_turn(rim, from, kRule, kStep_mm);
+    EXPECT_NEAR(half.path.back().tangent.dot(rim.axis), 0.0, 1e-12);
+    EXPECT_EQ(half.dwell_rad, 0.0);
+    RimCrossing to = from;
+    to.sense = -1;
+    const Unrolled hoop = unrolled(rim, half.path.back().position_mm);
+    to.azimuth_rad = hoop.azimuth + difference(hoop.azimuth, from.azimuth_rad) + 1e-9;
+    const Turn whole = make_turn(rim, from, to, kRule, kStep_mm);
+    EXPECT_NEAR(whole.dwell_rad, 0.0, 1e-8);
+    EXPECT_EQ(whole.slip, half.slip);
+    EXPECT_EQ(whole.run_mm, half.run_mm);
+    for (std::size_t i = 0; i < half.path.size(); ++i) {
+        EXPECT_EQ(whole.path[i].position_mm, half.path[i].position_mm);
+    }
+}
+
 TEST(DwellAngle, IsTheSameBothWaysAndWithinOneTurn) {
     const Rim rim = slanted_rim();
     for (const Case& c : cases()) {
