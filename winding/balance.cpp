@@ -173,7 +173,8 @@ private:
     }
 
     // Adds the cheapest chain from a node where fibres arrive in vain to one where they are
-    // missing, unless it would only close a fibre that nothing else joins.
+    // missing, unless it would only close a fibre that nothing else joins; or the cheapest way
+    // there and back between courses that nothing joins.
     bool add_chain() {
         const Joints joints = this->joints();
         if (joints.fibres() <= fibres_) {
@@ -187,13 +188,24 @@ private:
         const std::vector<Way> ways = cheapest_ways();
         double least = std::numeric_limits<double>::infinity();
         std::pair<std::size_t, std::size_t> best;
+        bool and_back = false;
+        const auto weigh = [&](double cost, std::size_t i, std::size_t j, bool back) {
+            if (cost < least) {
+                least = cost;
+                best = {i, j};
+                and_back = back;
+            }
+        };
         for (std::size_t i = 0; i < nodes_; ++i) {
             for (std::size_t j = 0; j < nodes_; ++j) {
-                const bool helps = joints.excess(i) > 0 && joints.excess(j) < 0 &&
-                                   (part[i] != part[j] || starts[part[i]] > 1);
-                if (helps && ways[i * nodes_ + j].cost < least) {
-                    least = ways[i * nodes_ + j].cost;
-                    best = {i, j};
+                const bool apart = part[i] != part[j];
+                const double there = ways[i * nodes_ + j].cost;
+                if (joints.excess(i) > 0 && joints.excess(j) < 0 &&
+                    (apart || starts[part[i]] > 1)) {
+                    weigh(there, i, j, false);
+                }
+                if (apart && joints.has_courses(i) && joints.has_courses(j)) {
+                    weigh(there + ways[j * nodes_ + i].cost, i, j, true);
                 }
             }
         }
@@ -201,6 +213,9 @@ private:
             return false;
         }
         lay_way(ways, best.first, best.second);
+        if (and_back) {
+            lay_way(ways, best.second, best.first);
+        }
         return true;
     }
 

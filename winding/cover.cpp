@@ -51,6 +51,10 @@ constexpr std::size_t kProvenForScarceWay = 48;
 // Routes of so many fibres are looked for, at most.
 constexpr std::size_t kMostFibres = 9;
 
+// So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
+// each, and without one a stage is lost.
+constexpr std::size_t kMostSpares = 200;
+
 // An open way is taken for one with courses in plenty where the library has so many.
 constexpr std::size_t kAbound = 8;
 
@@ -204,9 +208,7 @@ private:
                 for (std::size_t k = 0; !known_.contains(nodes) && k < count; ++k) {
                     const std::int32_t i = way.windable[k * way.windable.size() / count];
                     const Member& member = members_[at(i)];
-                    const bool backward =
-                        !(member.windable_forward && nodes_of(member, false) == nodes);
-                    trials.push_back({nodes, {member, {}, backward, false}, i});
+                    trials.push_back({nodes, {member, {}, leads_backward(member, nodes)}, i});
                 }
             }
             tell("route", most == kProvenForWay ? 0.0 : 0.5);
@@ -238,12 +240,41 @@ private:
             return;
         }
         for (const FibreRoute& route : routes_) {
-            for (const LaidCourse& link : route.links) {
+            for (std::size_t stage = 0; stage < route.links.size(); ++stage) {
+                const LaidCourse& link = route.links[stage];
                 courses_.push_back(placed(link.member, link.backward));
-                courses_.back().link = link.member;
+                courses_.back().link = static_cast<std::int32_t>(spare_links_.size());
+                spare_links_.push_back(spares_of(route, static_cast<int>(stage), ways));
             }
         }
         strike_off_what_is_apart();
+    }
+
+    // Other courses from a stage to the next, those that have been proven last.
+    [[nodiscard]] std::vector<LaidCourse> spares_of(const FibreRoute& route, int stage,
+                                                    const Ways& ways) const {
+        std::vector<LaidCourse> proven;
+        std::vector<LaidCourse> others;
+        for (const auto& [nodes, way] : ways) {
+            if (route.stage[nodes.first] != stage || route.stage[nodes.second] != stage + 1) {
+                continue;
+            }
+            for (const std::int32_t i : way.windable) {
+                others.push_back({i, leads_backward(members_[at(i)], nodes)});
+            }
+            if (known_.contains(nodes)) {
+                const std::vector<LaidCourse>& held = known_.at(nodes).proven;
+                proven.insert(proven.end(), held.rbegin(), held.rend());
+            }
+        }
+        std::reverse(others.begin(), others.end());
+        others.insert(others.end(), proven.begin(), proven.end());
+        return others;
+    }
+
+    // Which way a windable member is wound from the first node to the second.
+    [[nodiscard]] static bool leads_backward(const Member& member, const NodePair& nodes) {
+        return !(member.windable_forward && nodes_of(member, false) == nodes);
     }
 
     // No more than serve to reach the wall.
@@ -499,23 +530,22 @@ private:
             courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(index));
             note_refused(course.member, reason);
             if (course.link >= 0) {
-                replace_link(course);
+                replace_link(course.link);
             }
         }
     }
 
     // The next course that holds in place of the link between two stages that did not.
-    void replace_link(const PlacedCourse& refused) {
-        std::vector<LaidCourse>& proven = known_[nodes_of(refused.member, refused.backward)].proven;
-        std::erase_if(proven, [&](const LaidCourse& way) { return way.member == refused.link; });
-        while (!proven.empty()) {
-            PlacedCourse link = placed(proven.front().member, proven.front().backward);
-            link.link = proven.front().member;
-            if (prove(link, true) == Rejection::None) {
-                courses_.push_back(std::move(link));
+    void replace_link(std::int32_t link) {
+        std::vector<LaidCourse>& spares = spare_links_[at(link)];
+        for (std::size_t tried = 0; !spares.empty() && tried < kMostSpares; ++tried) {
+            PlacedCourse course = placed(spares.back().member, spares.back().backward);
+            spares.pop_back();
+            course.link = link;
+            if (prove(course, true) == Rejection::None) {
+                courses_.push_back(std::move(course));
                 return;
             }
-            proven.erase(proven.begin());
         }
     }
 
@@ -577,9 +607,10 @@ private:
     std::vector<Rejection> rejection_;   // per member: why it is not allowed
     std::vector<PlacedCourse> courses_;  // the plan, not in order
     KnownWays known_;
-    std::vector<FibreRoute> routes_;    // one for each fibre
-    std::vector<OrderedCourse> order_;  // of the pool
-    std::vector<std::int32_t> layers_;  // per sample
+    std::vector<FibreRoute> routes_;                    // one for each fibre
+    std::vector<std::vector<LaidCourse>> spare_links_;  // per link: in its place, the best last
+    std::vector<OrderedCourse> order_;                  // of the pool
+    std::vector<std::int32_t> layers_;                  // per sample
     std::uint64_t annealings_ = 0;
     std::mutex refused_mutex_;
     std::vector<std::pair<std::vector<std::int32_t>, Rejection>>

@@ -13,8 +13,8 @@ struct PlacedCourse {
     SurfacePath path;  ///< from end 0 to end 1
     bool backward = false;
     bool wound = false;  ///< its own program lays it as planned
-    /// Where it leads from stage to stage (fibre_routes.h): which member of the library it is. Such
-    /// a course stays as it is. -1 for all others.
+    /// Which of the courses that lead from stage to stage (fibre_routes.h) it is: such a one stays
+    /// as it is. -1 for all others.
     std::int32_t link = -1;
 };
 

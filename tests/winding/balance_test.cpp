@@ -122,6 +122,27 @@ TEST(BalanceCourses, AddsNoMoreThanSoManyFibresNeed) {
     }
 }
 
+// Two courses, each back to where it began, on rims of their own: a way there and one back join
+// them.
+TEST(BalanceCourses, JoinsWhatIsClosedAndApart) {
+    Library library;
+    add_all_kinds(library.members);
+    library.selection.layers.assign(kSamples, 0);
+    for (std::size_t i = 0; i < library.members.size(); ++i) {
+        const auto [from, to] = nodes_of(library.members[i], false);
+        if (from == to && (from == 0 || from == 3)) {
+            library.selection.chosen.push_back(static_cast<std::int32_t>(i));
+        }
+    }
+    ASSERT_EQ(library.selection.chosen.size(), 2U);
+    const std::vector<char> allowed(library.members.size(), 1);
+    Selection two = library.selection;
+    EXPECT_EQ(balance_courses(library.members, allowed, kRims, {}, 2, two).size(), 2U);
+    const auto laid = balance_courses(library.members, allowed, kRims, {}, 1, library.selection);
+    EXPECT_EQ(laid.size(), 4U);
+    EXPECT_EQ(loose_ends(library.members, laid), 0);
+}
+
 TEST(BalanceCourses, NeverAddsWhatIsNotAllowed) {
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
