@@ -70,7 +70,9 @@ public:
             }
         };
         tell("post", 0.0);
-        leave_room(keep_clear(setup_.rule, options.in_spite));
+        CollisionRule rule = setup_.rule;
+        rule.told_mm = rule.clearance_mm + kMostBetweenBlocks_mm / kUsedRoom;
+        leave_room(keep_clear(rule, options.in_spite));
         if (!found_.refused.empty() && !options.in_spite) {
             return std::move(found_);
         }

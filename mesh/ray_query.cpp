@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <embree3/rtcore.h>
@@ -25,6 +26,9 @@ constexpr double kTableNodes = 4e5;
 
 // Keeps a bound a bound in spite of rounding.
 constexpr double kRoundUp = 1.0 + 1e-12;
+
+// And a number that was rounded to single precision on the way.
+constexpr double kRoundUpSingle = 1.0 + 1e-6;
 
 // Barycentric coordinates of the point of triangle abc nearest to p (by Voronoi regions of the
 // triangle's features). Source: ericson_2004_collision, sec. 5.1.5.
@@ -147,12 +151,30 @@ struct DistanceTable {
     double cell_mm = 0.0;
     Eigen::Array3i nodes = Eigen::Array3i::Zero();
     std::vector<float> distance_mm;
+    double cap_mm = 0.0;    // distances from here on are not told apart
+    bool complete = false;  // all nodes have their distance
 
     [[nodiscard]] std::size_t index(const Eigen::Array3i& node) const {
         return (static_cast<std::size_t>(node.z()) * static_cast<std::size_t>(nodes.y()) +
                 static_cast<std::size_t>(node.y())) *
                    static_cast<std::size_t>(nodes.x()) +
                static_cast<std::size_t>(node.x());
+    }
+
+    // A distance within which there is a triangle for certain; infinite where the table ends.
+    [[nodiscard]] double at_most_mm(const Eigen::Vector3d& query) const {
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        if (!complete) {
+            return kInfinity;
+        }
+        const Eigen::Vector3d scaled = (query - origin) / cell_mm;
+        const Eigen::Array3i node = scaled.array().round().cast<int>();
+        if ((node < 0).any() || (node >= nodes).any()) {
+            return kInfinity;
+        }
+        const auto there = static_cast<double>(distance_mm[index(node)]);
+        const double off = (scaled - node.cast<double>().matrix()).norm() * cell_mm;
+        return there < cap_mm ? kRoundUpSingle * (there + off) : kInfinity;
     }
 };
 
@@ -234,7 +256,7 @@ void RayQuery::tabulate(double reach_mm) {
     table.origin = table.parts.min() - Eigen::Vector3d::Constant(reach_mm);
     table.cell_mm = std::cbrt(size.prod() / kTableNodes);
     table.nodes = (size / table.cell_mm).array().ceil().cast<int>() + 1;
-    const double cap = 2.0 * reach_mm;
+    table.cap_mm = std::nextafter(static_cast<float>(2.0 * reach_mm), 0.0F);
     table.distance_mm.resize(table.index(table.nodes - 1) + 1);
     parallel_for(static_cast<std::size_t>(table.nodes.z()), 1, [&](std::size_t layer, std::size_t) {
         for (Eigen::Array3i node(0, 0, static_cast<int>(layer)); node.y() < table.nodes.y();
@@ -243,11 +265,12 @@ void RayQuery::tabulate(double reach_mm) {
                 const Eigen::Vector3d point =
                     table.origin + table.cell_mm * node.cast<double>().matrix();
                 // One step down: single precision must not promise more than there is.
-                table.distance_mm[table.index(node)] =
-                    std::nextafter(static_cast<float>(closest(point, cap).distance_mm), 0.0F);
+                table.distance_mm[table.index(node)] = std::nextafter(
+                    static_cast<float>(closest(point, 2.0 * reach_mm).distance_mm), 0.0F);
             }
         }
     });
+    table.complete = true;
 }
 
 double RayQuery::distance_at_least_mm(const Eigen::Vector3d& query) const {
@@ -290,12 +313,12 @@ bool RayQuery::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) 
 
 ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) const {
     Search search{&impl_->parts, &impl_->balls, query, {}};
-    search.best.distance_mm = radius_mm;
+    search.best.distance_mm = std::min(radius_mm, impl_->table.at_most_mm(query));
     RTCPointQuery point{};
     point.x = static_cast<float>(query.x());
     point.y = static_cast<float>(query.y());
     point.z = static_cast<float>(query.z());
-    point.radius = static_cast<float>(radius_mm);
+    point.radius = std::nextafter(static_cast<float>(search.best.distance_mm), INFINITY);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(impl_->scene, &point, &context, visit_triangle, &search);

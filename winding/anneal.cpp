@@ -41,6 +41,9 @@ constexpr double kBesideShare = 0.12;   // a course moved beside another; the re
 // Of the fresh courses, those from the library.
 constexpr double kLibraryShare = 0.5;
 
+// Of the fresh courses, images of others.
+constexpr double kImageShare = 0.4;
+
 // Of the courses proposed, those fitted first. A fit takes as long as three that are not; of 0,
 // 0.15, 0.3 and 1 this gave the most even plans of four tees in equal time.
 constexpr double kFitShare = 0.3;
@@ -308,6 +311,11 @@ private:
     }
 
     [[nodiscard]] Candidate fresh(Draws& draws) const {
+        if (ground_.images.size() > 0 && !courses_.empty() && draws.unit() < kImageShare) {
+            const PlacedCourse& course = courses_[draws.below(courses_.size())];
+            const std::vector<Candidate> images = ground_.images.of(course.member.candidate);
+            return images[draws.below(images.size())];
+        }
         const std::size_t place = needy_place(draws);
         const auto& passing = ground_.passing[place];
         if (draws.unit() < kLibraryShare && !passing.empty()) {

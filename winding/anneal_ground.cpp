@@ -9,6 +9,10 @@ namespace {
 
 constexpr std::size_t kSampleChunk = 256;
 
+// The image of a wall that is this near to it makes courses that are near enough: they are judged
+// like all others.
+constexpr double kSymmetryBands = 0.1;
+
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
@@ -21,7 +25,8 @@ AnnealGround::AnnealGround(const CourseRules& rules, const CoverageSamples& meas
       footprints(rules.mandrel.surface, samples, rules.tow.width_mm),
       strips(rules.mandrel.surface, samples, kStripBands * rules.tow.width_mm),
       passing(samples.size()),
-      ways(ways_between_nodes(library)) {
+      ways(ways_between_nodes(library)),
+      images(rules.mandrel, samples, kSymmetryBands * rules.tow.width_mm) {
     const NearestPoints index(samples.position_mm);
     std::vector<std::int32_t> beside(measured.size(), -1);
     parallel_for(measured.size(), kSampleChunk, [&](std::size_t begin, std::size_t end) {

@@ -8,6 +8,7 @@
 #include "winding/grow.h"
 #include "winding/library.h"
 #include "winding/samples.h"
+#include "winding/symmetry.h"
 
 namespace meshwind {
 
@@ -23,6 +24,7 @@ struct AnnealGround {
     FootprintFinder strips;                          ///< of the width that a fit needs
     std::vector<std::vector<std::int32_t>> passing;  ///< per sample: members of the library
     Ways ways;                                       ///< of the library
+    MirrorImages images;
 };
 
 }  // namespace meshwind

@@ -175,13 +175,22 @@ private:
                ": " + name_of(static_cast<Rejection>(most - rejections.begin()));
     }
 
-    // For a course that is to stay its own program is wound, too.
-    Rejection prove(PlacedCourse& course, bool to_stay = false) const {
-        const bool wind = to_stay && options_.wind;
-        const Rejection rejection =
-            prove_course(rules_, wind ? options_.wind : options_.accept, course);
-        course.wound = to_stay && rejection == Rejection::None;
+    Rejection prove(PlacedCourse& course) const {
+        return prove_course(rules_, options_.accept, Shown::BetweenHalfTurns, course);
+    }
+
+    // Of a proven course that is to stay its own program is wound.
+    Rejection wind(PlacedCourse& course) const {
+        const Rejection rejection = options_.wind && !course.wound
+                                        ? prove_course(rules_, options_.wind, Shown::Alone, course)
+                                        : Rejection::None;
+        course.wound = rejection == Rejection::None;
         return rejection;
+    }
+
+    Rejection prove_and_wind(PlacedCourse& course) const {
+        const Rejection rejection = prove(course);
+        return rejection == Rejection::None ? wind(course) : rejection;
     }
 
     void note_refused(const Member& member, Rejection reason) {
@@ -343,7 +352,7 @@ private:
         annealing.progress = [this](double share) { tell("anneal", share); };
         annealing.way = [this](const NodePair& nodes) { return on_a_route(nodes); };
         annealing.verify = [this, mending](PlacedCourse& course) {
-            const Rejection rejection = prove(course, mending);
+            const Rejection rejection = mending ? prove_and_wind(course) : prove(course);
             if (rejection != Rejection::None) {
                 FootprintFinder::Scratch scratch = footprints_.make_scratch();
                 Member refused;  // on the samples of the plan, not on those of the annealing
@@ -362,9 +371,8 @@ private:
     void keep_what_winds() {
         tell("prove", 0.0);
         std::vector<Rejection> found(courses_.size(), Rejection::None);
-        parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
-            found[i] = courses_[i].wound ? Rejection::None : prove(courses_[i], true);
-        });
+        parallel_for(courses_.size(), 1,
+                     [&](std::size_t i, std::size_t) { found[i] = wind(courses_[i]); });
         std::vector<std::pair<std::size_t, Rejection>> refused;
         for (std::size_t i = 0; i < found.size(); ++i) {
             if (found[i] != Rejection::None) {
@@ -415,31 +423,38 @@ private:
     // The courses become what is laid, if all that is new holds; else what does not is struck off
     // the library.
     bool take_proven(const std::vector<LaidCourse>& laid) {
-        std::vector<PlacedCourse> taken;
-        bool all = true;
-        for (const LaidCourse& course : laid) {
-            if (at(course.member) >= library_size_) {
-                taken.push_back(courses_[at(course.member) - library_size_]);
+        std::vector<PlacedCourse> taken(laid.size());
+        std::vector<Rejection> found(laid.size(), Rejection::None);
+        parallel_for(laid.size(), 1, [&](std::size_t i, std::size_t) {
+            const auto& [member, backward] = laid[i];
+            if (at(member) >= library_size_) {
+                taken[i] = courses_[at(member) - library_size_];
+            } else if (const auto known = joining_.find({member, backward});
+                       known != joining_.end()) {
+                taken[i] = known->second;
+            } else {
+                taken[i] = placed(member, backward);
+                found[i] = prove_and_wind(taken[i]);
+            }
+        });
+        for (std::size_t i = 0; i < laid.size(); ++i) {
+            const auto& [number, backward] = laid[i];
+            if (at(number) >= library_size_) {
                 continue;
             }
-            Member& member = members_[at(course.member)];
-            bool& windable = course.backward ? member.windable_backward : member.windable_forward;
-            if (!windable) {
-                all = false;  // struck off just before
+            if (found[i] == Rejection::None) {
+                joining_.try_emplace({number, backward}, taken[i]);
                 continue;
             }
-            PlacedCourse added = placed(course.member, course.backward);
-            const Rejection rejection = prove(added, true);
-            if (rejection == Rejection::None) {
-                taken.push_back(std::move(added));
-                continue;
-            }
-            all = false;
-            windable = false;
-            if (!member.windable_forward && !member.windable_backward) {
-                strike_off(at(course.member), rejection);
+            Member& member = members_[at(number)];
+            (backward ? member.windable_backward : member.windable_forward) = false;
+            if (!member.windable_forward && !member.windable_backward &&
+                allowed_[at(number)] != 0) {
+                strike_off(at(number), found[i]);
             }
         }
+        const bool all = std::all_of(found.begin(), found.end(),
+                                     [](Rejection r) { return r == Rejection::None; });
         if (all) {
             courses_ = std::move(taken);
         }
@@ -542,7 +557,7 @@ private:
             PlacedCourse course = placed(spares.back().member, spares.back().backward);
             spares.pop_back();
             course.link = link;
-            if (prove(course, true) == Rejection::None) {
+            if (prove_and_wind(course) == Rejection::None) {
                 courses_.push_back(std::move(course));
                 return;
             }
@@ -609,8 +624,10 @@ private:
     KnownWays known_;
     std::vector<FibreRoute> routes_;                    // one for each fibre
     std::vector<std::vector<LaidCourse>> spare_links_;  // per link: in its place, the best last
-    std::vector<OrderedCourse> order_;                  // of the pool
-    std::vector<std::int32_t> layers_;                  // per sample
+    std::map<std::pair<std::int32_t, bool>, PlacedCourse>
+        joining_;  // members that have been proven to join others, by direction
+    std::vector<OrderedCourse> order_;  // of the pool
+    std::vector<std::int32_t> layers_;  // per sample
     std::uint64_t annealings_ = 0;
     std::mutex refused_mutex_;
     std::vector<std::pair<std::vector<std::int32_t>, Rejection>>

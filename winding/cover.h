@@ -24,10 +24,8 @@ struct CoverOptions {
     int rounds = 3;                ///< of further candidates aimed at what is not reached yet
     int aimed_candidates = 4000;   ///< in each such round
     int scarce_candidates = 8000;  ///< tried near courses that go where few can be wound
-    AskMachine accept;             ///< asked of every course before it enters the plan
-    /// Asked of every course that is to stay: its own program, wound again. Refuses all that
-    /// `accept` refuses.
-    AskMachine wind;
+    AskMachine accept;  ///< asked of every course, between half turns, before it enters the plan
+    AskMachine wind;    ///< asked of every course that is to stay: its own program, wound again
     /// Asked of the whole plan: which of its pieces the machine cannot wind in their place. Those
     /// are replaced and the plan is made again, a few times.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;

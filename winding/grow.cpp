@@ -26,7 +26,7 @@ constexpr std::size_t kFirstCandidates = 500;
 constexpr double kTrustedShare = 0.7;
 
 // Candidates that are tried under other rules.
-constexpr std::uint64_t kOtherwise = 3000;
+constexpr std::uint64_t kOtherwise = 2000;
 
 // Candidates near members that one task draws.
 constexpr std::size_t kNearChunk = 32;

@@ -11,6 +11,9 @@ namespace {
 // its own following error.
 constexpr double kStation_mm = 4.0;
 
+// And in halves of turns that are only looked into: the turns themselves are checked in the end.
+constexpr double kHalfTurnStation_mm = 10.0;
+
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
@@ -81,20 +84,17 @@ Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
     return piece;
 }
 
-std::vector<Piece> between_half_turns(const CourseRules& rules, Piece&& course,
-                                      const Member& member, bool backward) {
+void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
+                    std::vector<Piece>& pieces) {
     const auto half = [&](const RimCrossing& end) {
-        return half_turn(rules.mandrel.rims[at(end.rim)], end, rules.turn, kStation_mm);
+        return half_turn(rules.mandrel.rims[at(end.rim)], end, rules.turn, kHalfTurnStation_mm);
     };
-    Turn before = half(start_of(member, backward));
+    const RimCrossing& start = start_of(member, backward);
+    const RimCrossing& end = end_of(member, backward);
+    Turn before = half(start);
     before.path = reversed(before.path);
-    std::vector<Piece> pieces;
-    pieces.push_back(piece_of(std::move(before), course.start_rim));
-    const std::int32_t end_rim = course.end_rim;
-    pieces.push_back(std::move(course));
-    pieces.push_back(piece_of(half(end_of(member, backward)), end_rim));
-    pieces.front().starts_fibre = true;
-    return pieces;
+    pieces.insert(pieces.begin(), piece_of(std::move(before), start.rim));
+    pieces.push_back(piece_of(half(end), end.rim));
 }
 
 void lay_out(const CourseRules& rules, std::span<const Member> members,

@@ -16,8 +16,9 @@ namespace meshwind {
 void lay_out(const CourseRules& rules, std::span<const Member> members,
              std::span<const OrderedCourse> order, Plan& plan);
 
-/// The course after the half of a turn that leads to it, and before the one that it leads to.
-[[nodiscard]] std::vector<Piece> between_half_turns(const CourseRules& rules, Piece&& course,
-                                                    const Member& member, bool backward);
+/// Puts a course between the half of a turn that leads to it and the half that leads on.
+/// \param pieces the course of `member`
+void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
+                    std::vector<Piece>& pieces);
 
 }  // namespace meshwind

@@ -34,12 +34,6 @@ constexpr std::size_t kCandidateChunk = 64;
 // Of the directions drawn, those at the wanted winding angle.
 constexpr double kWantedShare = 2.0 / 3.0;
 
-Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
-    const Vector3d n = smooth_normal(surface, candidate.seed);
-    const Vector3d x = n.unitOrthogonal();
-    return std::cos(candidate.angle_rad) * x + std::sin(candidate.angle_rad) * n.cross(x);
-}
-
 // Half a candidate: from its seed ahead, or behind (`side` -1) where the same curve is steered to
 // the other side of travel.
 TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, double side,
@@ -183,6 +177,12 @@ const char* name_of(Refusal refusal) {
 StringPoint string_point(const PathPoint& point, double gap_mm, double slope) {
     return {point.position_mm + gap_mm * point.normal,
             (point.tangent + slope * point.normal).normalized()};
+}
+
+Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
+    const Vector3d n = smooth_normal(surface, candidate.seed);
+    const Vector3d x = n.unitOrthogonal();
+    return std::cos(candidate.angle_rad) * x + std::sin(candidate.angle_rad) * n.cross(x);
 }
 
 double direction_angle(const Vector3d& normal, const Vector3d& tangent) {

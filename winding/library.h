@@ -64,6 +64,9 @@ struct CourseRules {
     std::optional<double> angle_rad{};  ///< wanted winding angle
 };
 
+/// The unit tangent along which a candidate leaves its seed.
+[[nodiscard]] Eigen::Vector3d direction_of(const Surface& surface, const Candidate& candidate);
+
 /// The angle of a candidate that leaves its seed along `tangent`, where the surface's normal is
 /// `normal`.
 [[nodiscard]] double direction_angle(const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent);

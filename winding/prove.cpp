@@ -7,7 +7,8 @@
 
 namespace meshwind {
 
-Rejection prove_course(const CourseRules& rules, const AskMachine& machine, PlacedCourse& course) {
+Rejection prove_course(const CourseRules& rules, const AskMachine& machine, Shown shown,
+                       PlacedCourse& course) {
     const bool backward = course.backward;
     Member exact;
     FollowedCourse followed;
@@ -26,8 +27,11 @@ Rejection prove_course(const CourseRules& rules, const AskMachine& machine, Plac
         return Rejection::FreeLength;
     }
     SurfacePath path = followed.path;
-    const std::vector<Piece> pieces =
-        between_half_turns(rules, piece_of(std::move(followed), exact, backward), exact, backward);
+    std::vector<Piece> pieces;
+    pieces.push_back(piece_of(std::move(followed), exact, backward));
+    if (shown == Shown::BetweenHalfTurns) {
+        add_half_turns(rules, exact, backward, pieces);
+    }
     if (const Rejection rejection = machine ? machine(pieces) : Rejection::None;
         rejection != Rejection::None) {
         return rejection;
