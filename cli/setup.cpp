@@ -23,6 +23,9 @@ constexpr double kRayStartEdges = 2.0;
 // way.
 constexpr double kTableReach_mm = 60.0;
 
+// Reports tell clearances up to so much more than is kept; to measure larger ones takes time.
+constexpr double kToldClearance_mm = 20.0;
+
 MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     MandrelOptions options;
     options.unit_mm = unit_mm > 0.0 ? unit_mm : mm_per(job.mandrel.units);
@@ -69,6 +72,7 @@ void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFib
 CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     CollisionRule rule;
     rule.clearance_mm = setup.job.tolerance.clearance_mm;
+    rule.told_mm = rule.clearance_mm + kToldClearance_mm;
     FreeFibreRule& free = rule.free_fibre;
     free.min_mm = setup.machine.fibre.min_free_length_mm;
     free.max_mm = setup.machine.fibre.max_free_length_mm;

@@ -29,7 +29,7 @@ struct HeadEnvelope {
                                          TriangleSoup (*load_mesh)(const std::string& file));
 
 /// Clearances beyond this are of no interest.
-inline constexpr double kClearanceCap_mm = 25.0;
+inline constexpr double kClearanceCap_mm = 100.0;
 
 struct CollisionRule {
     double clearance_mm = 5.0;   ///< kept between the head and anything

@@ -13,6 +13,7 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "winding/anneal.h"
+#include "winding/arrange.h"
 #include "winding/coverage.h"
 #include "winding/families.h"
 #include "winding/fibre_routes.h"
@@ -475,6 +476,12 @@ private:
             laid.push_back({static_cast<std::int32_t>(library_size_ + i), courses_[i].backward});
         }
         order_ = order_courses(mandrel_.rims, members_, laid, rules_.turn);
+        std::vector<double> lateness;
+        for (const OrderedCourse& course : order_) {
+            const PlacedCourse& placed = courses_[at(course.course.member) - library_size_];
+            lateness.push_back(character_of(mandrel_.surface, placed.path).lateness());
+        }
+        arrange(mandrel_.rims, members_, rules_.turn, lateness, order_);
     }
 
     void keep_longest_fibres() {
@@ -594,6 +601,7 @@ private:
                 courses.push_back(&piece.path);
             }
         }
+        plan_.places = places_of(mandrel_.surface, courses);
         plan_.family = families_of(courses, options_.tow.width_mm);
         plan_.angle = wound_angles(mandrel_.surface, courses, options_.angle_rad);
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geodesic/measure.h"
+#include "winding/arrange.h"
 #include "winding/library.h"
 #include "winding/wound_angle.h"
 
@@ -115,6 +116,7 @@ struct Plan {
     std::vector<TurnsAtRim> turns;       ///< per rim
     std::vector<std::int32_t> family;    ///< per course in winding order (families.h)
     WoundAngles angle;                   ///< of the courses
+    Places places;                       ///< of junctions and hoops in the winding order
     PlanEffort effort;
     std::string failure;  ///< empty, or in words why nothing can be wound
 };

@@ -72,7 +72,7 @@ TEST(MirrorImages, RunWhereTheImageOfTheCourseRuns) {
         const TraceResult run = trace(surface, candidate.seed, direction_of(surface, candidate),
                                       {candidate.slip_ratio, 0.0}, {.max_length_mm = 80.0});
         return run.stop == TraceStop::Length ? std::optional(run.path.back().position_mm)
-                                                : std::nullopt;
+                                             : std::nullopt;
     };
     std::vector<double> off_mm;
     for (const Candidate& candidate : scene.candidates(100, 3, 0.6)) {
