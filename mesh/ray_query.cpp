@@ -27,8 +27,8 @@ constexpr double kTableNodes = 4e5;
 // Keeps a bound a bound in spite of rounding.
 constexpr double kRoundUp = 1.0 + 1e-12;
 
-// And a number that was rounded to single precision on the way.
-constexpr double kRoundUpSingle = 1.0 + 1e-6;
+// Lengths in single precision are good to this share of the scene's size, with room to spare.
+constexpr double kSingle = 1e-6;
 
 // Barycentric coordinates of the point of triangle abc nearest to p (by Voronoi regions of the
 // triangle's features). Source: ericson_2004_collision, sec. 5.1.5.
@@ -174,7 +174,9 @@ struct DistanceTable {
         }
         const auto there = static_cast<double>(distance_mm[index(node)]);
         const double off = (scaled - node.cast<double>().matrix()).norm() * cell_mm;
-        return there < cap_mm ? kRoundUpSingle * (there + off) : kInfinity;
+        // Embree's boxes and points are in single precision.
+        const double rounding = kSingle * (parts.diagonal().norm() + query.norm());
+        return there < cap_mm ? there + off + rounding : kInfinity;
     }
 };
 

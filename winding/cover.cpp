@@ -50,7 +50,7 @@ constexpr std::size_t kProvenForWay = 6;
 constexpr std::size_t kProvenForScarceWay = 48;
 
 // Routes of so many fibres are looked for, at most.
-constexpr std::size_t kMostFibres = 9;
+constexpr std::size_t kRoutesLookedFor = 9;
 
 // So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
 // each, and without one a stage is lost.
@@ -237,7 +237,7 @@ private:
             way.abounds = ways.at(nodes).windable.size() >= kAbound;
         }
         routes_ =
-            best_routes(members_, known_, 2 * mandrel_.rims.size(), samples_.size(), kMostFibres);
+            best_routes(members_, known_, 2 * mandrel_.rims.size(), samples_.size(), kRoutesLookedFor);
         for (const FibreRoute& route : routes_) {
             plan_.reach_of_fibres.push_back(route.reach);
         }

@@ -206,6 +206,25 @@ TEST(RayQuery, ClosestAgreesWithBruteForce) {
 }
 
 // Between the radius and 1.01 of it both answers are right; nearer or farther there is one.
+// The table only says where to begin to look.
+TEST(RayQuery, ClosestIsTheSameWithATable) {
+    std::mt19937_64 random(kSeed + 6);
+    const auto parts = random_parts(random);
+    const RayQuery plain(parts);
+    const RayQuery tabulated(parts, 0.3 * kSide_mm);
+    for (int i = 0; i < 20 * kQueries; ++i) {
+        Vector3d query = random_point(random, 2.0 * kSide_mm);
+        if (i % 3 == 0) {  // on a triangle, where there is least room
+            query = plain.closest(query, 1e4).position_mm;
+        }
+        const double radius_mm = i % 2 == 0 ? 1000.0 : 10.0;
+        const ClosestPoint with = tabulated.closest(query, radius_mm);
+        const ClosestPoint without = plain.closest(query, radius_mm);
+        ASSERT_EQ(with.part < 0, without.part < 0) << "query " << i;
+        ASSERT_NEAR(with.distance_mm, without.distance_mm, 1e-4) << "query " << i;
+    }
+}
+
 TEST(RayQuery, CapsuleClearIsConservativeByOnePercent) {
     std::mt19937_64 random(kSeed + 3);
     const auto parts = random_parts(random);
