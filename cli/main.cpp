@@ -189,9 +189,10 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
     app.add_option("--machine", options.machine, "machine file")->required();
     app.add_option("--job", options.job,
                    "job file: tow, friction, extensions, tolerances; without it the defaults hold");
-    app.add_option("--plan", options.plan,
-                   "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
-                   "path-2.csv and motion-2.csv");
+    app.add_option(
+        "--plan", options.plan,
+        "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
+        "path-2.csv and motion-2.csv");
     app.add_option("--tie-on", options.tie_on,
                    "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
                    "say it");

@@ -236,8 +236,8 @@ private:
         for (auto& [nodes, way] : known_) {
             way.abounds = ways.at(nodes).windable.size() >= kAbound;
         }
-        routes_ =
-            best_routes(members_, known_, 2 * mandrel_.rims.size(), samples_.size(), kRoutesLookedFor);
+        routes_ = best_routes(members_, known_, 2 * mandrel_.rims.size(), samples_.size(),
+                              kRoutesLookedFor);
         for (const FibreRoute& route : routes_) {
             plan_.reach_of_fibres.push_back(route.reach);
         }
