@@ -64,8 +64,9 @@ constexpr double kBesideTurn_rad = 0.02;
 // A course costs its turn's fibre, by this share of what layers too many would.
 constexpr double kTurnShare = 0.1;
 
-// What each fibre too many costs, as a share of what a course covers.
-constexpr double kFibreShare = 1.2;
+// What each fibre beyond the first costs that is allowed, as a share of what a course covers:
+// somebody has to cut it and tie it on.
+constexpr double kCutShare = 0.5;
 
 // What a course costs that belongs to no family of parallel ones, as a share of what a course
 // covers. Among families the layers are more even, too.
@@ -227,7 +228,10 @@ private:
 
     // What the courses leave open is worth the proposal that closes it.
     [[nodiscard]] double open_cost(const Joints& joints) const {
-        return kFibreShare * typical_ * std::max(0, joints.fibres() - options_.fibres);
+        const int fibres = joints.fibres();
+        const int allowed = std::min(fibres, options_.fibres);
+        return typical_ *
+               (options_.fibre_share * (fibres - allowed) + kCutShare * std::max(0, allowed - 1));
     }
 
     // Of fibre off the wanted winding angle.

@@ -15,7 +15,8 @@ namespace meshwind {
 
 struct AnnealOptions {
     SelectOptions select{};
-    int fibres = 1;  ///< that may lay the courses
+    int fibres = 1;            ///< that may lay the courses
+    double fibre_share = 1.2;  ///< what each beyond them costs, as a share of what a course covers
     std::uint64_t seed = 1;
     std::int64_t proposals = 100'000;
     /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It

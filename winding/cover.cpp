@@ -52,6 +52,10 @@ constexpr std::size_t kProvenForScarceWay = 48;
 // Routes of so many fibres are looked for, at most.
 constexpr std::size_t kRoutesLookedFor = 9;
 
+// What a fibre too many costs where courses lead on to a stage from which none leads back: then it
+// cannot be mended by joining.
+constexpr double kDearFibre = 6.0;
+
 // So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
 // each, and without one a stage is lost.
 constexpr std::size_t kMostSpares = 200;
@@ -287,12 +291,19 @@ private:
         return !(member.windable_forward && nodes_of(member, false) == nodes);
     }
 
-    // No more than serve to reach the wall.
-    [[nodiscard]] int fibres() const { return std::max(1, static_cast<int>(routes_.size())); }
+    // Fibres that no route needs may go from stage to stage by other courses than the links.
+    [[nodiscard]] bool fibres_to_spare() const {
+        return static_cast<std::size_t>(options_.fibres) > std::max<std::size_t>(1, routes_.size());
+    }
+
+    [[nodiscard]] int fibres() const {
+        return fibres_to_spare() ? options_.fibres : std::max(1, static_cast<int>(routes_.size()));
+    }
 
     [[nodiscard]] bool on_a_route(const NodePair& nodes) const {
-        return std::any_of(routes_.begin(), routes_.end(),
-                           [&](const FibreRoute& route) { return route.holds(nodes); });
+        return std::any_of(routes_.begin(), routes_.end(), [&](const FibreRoute& route) {
+            return fibres_to_spare() ? route.leads(nodes) : route.holds(nodes);
+        });
     }
 
     void strike_off_what_is_apart() {
@@ -344,6 +355,7 @@ private:
         AnnealOptions annealing;
         annealing.select = options_.select;
         annealing.fibres = fibres();
+        annealing.fibre_share = fibres_to_spare() ? kDearFibre : annealing.fibre_share;
         annealing.seed = seed_of(Stream::Annealing, options_.seed) + (++annealings_ << 32U);
         annealing.proposals = mending ? kMendingProposals : options_.effort * kProposals;
         if (mending) {

@@ -16,7 +16,7 @@ struct CoverOptions {
     TurnRule turn;  ///< friction and band are taken from `tow`
     FreeFibreRule free_fibre;
     SelectOptions select;
-    int fibres = 1;  ///< that the plan may take, >= 1; no more than reach more of the wall
+    int fibres = 1;                     ///< that the plan may take, >= 1
     std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
     std::uint64_t seed = 1;
     int effort = 1;                ///< how long courses are annealed, as a multiple

@@ -28,6 +28,10 @@ struct FibreRoute {
     [[nodiscard]] bool holds(const NodePair& nodes) const {
         return stage[nodes.first] >= 0 && stage[nodes.first] == stage[nodes.second];
     }
+    /// True when a course may lead from a node to another as often as there are fibres, too.
+    [[nodiscard]] bool leads(const NodePair& nodes) const {
+        return stage[nodes.first] >= 0 && stage[nodes.first] <= stage[nodes.second];
+    }
 };
 
 /// What is known of the way between two nodes.

@@ -49,6 +49,10 @@ TEST(BestRoutes, GoThroughAllThatLinksLeadTo) {
     EXPECT_TRUE(route.holds({0, 3}));
     EXPECT_FALSE(route.holds({0, 4}));
     EXPECT_FALSE(route.holds({5, 5}));
+    EXPECT_TRUE(route.leads({0, 3}));
+    EXPECT_TRUE(route.leads({1, 4})) << "from an earlier stage to a later one";
+    EXPECT_FALSE(route.leads({4, 0}));
+    EXPECT_FALSE(route.leads({5, 5}));
 }
 
 TEST(BestRoutes, TakeTheStagesThatCoverMostWhereNoLinkHolds) {
