@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <embree3/rtcore.h>
@@ -161,22 +162,29 @@ struct DistanceTable {
                static_cast<std::size_t>(node.x());
     }
 
-    // A distance within which there is a triangle for certain; infinite where the table ends.
-    [[nodiscard]] double at_most_mm(const Eigen::Vector3d& query) const {
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        if (!complete) {
-            return kInfinity;
-        }
+    // The node nearest to a place, and how far it is; nothing where the table ends.
+    struct Near {
+        double there_mm;
+        double off_mm;
+    };
+    [[nodiscard]] std::optional<Near> nearest_node(const Eigen::Vector3d& query) const {
         const Eigen::Vector3d scaled = (query - origin) / cell_mm;
         const Eigen::Array3i node = scaled.array().round().cast<int>();
         if ((node < 0).any() || (node >= nodes).any()) {
-            return kInfinity;
+            return std::nullopt;
         }
-        const auto there = static_cast<double>(distance_mm[index(node)]);
-        const double off = (scaled - node.cast<double>().matrix()).norm() * cell_mm;
+        return Near{static_cast<double>(distance_mm[index(node)]),
+                    (scaled - node.cast<double>().matrix()).norm() * cell_mm};
+    }
+
+    // A distance within which there is a triangle for certain; infinite where that is not known.
+    [[nodiscard]] double at_most_mm(const Eigen::Vector3d& query) const {
+        const std::optional<Near> near = complete ? nearest_node(query) : std::nullopt;
+        if (!near || near->there_mm >= cap_mm) {
+            return std::numeric_limits<double>::infinity();
+        }
         // Embree's boxes and points are in single precision.
-        const double rounding = kSingle * (parts.diagonal().norm() + query.norm());
-        return there < cap_mm ? there + off + rounding : kInfinity;
+        return near->there_mm + near->off_mm + kSingle * (parts.diagonal().norm() + query.norm());
     }
 };
 
@@ -280,13 +288,9 @@ double RayQuery::distance_at_least_mm(const Eigen::Vector3d& query) const {
     if (table.distance_mm.empty()) {
         return 0.0;
     }
-    const Eigen::Vector3d scaled = (query - table.origin) / table.cell_mm;
-    const Eigen::Array3i node = scaled.array().round().cast<int>();
-    if ((node < 0).any() || (node >= table.nodes).any()) {
-        return table.parts.exteriorDistance(query);
-    }
-    const double off = (scaled - node.cast<double>().matrix()).norm() * table.cell_mm;
-    return std::max(0.0, static_cast<double>(table.distance_mm[table.index(node)]) - off);
+    const auto near = table.nearest_node(query);
+    return near ? std::max(0.0, near->there_mm - near->off_mm)
+                : table.parts.exteriorDistance(query);
 }
 
 RayQuery::~RayQuery() = default;

@@ -79,31 +79,6 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-// The random numbers of one proposal.
-class Draws {
-public:
-    Draws(std::uint64_t seed, std::int64_t proposal)
-        : seed_(seed), index_(static_cast<std::uint64_t>(proposal) << 8U) {}
-
-    double unit() { return random_unit(seed_, index_++); }
-    double either() { return unit() < 0.5 ? -1.0 : 1.0; }
-    std::size_t below(std::size_t count) {
-        return static_cast<std::size_t>(random_bits(seed_, index_++) % count);
-    }
-    // Irwin and Hall's sum of twelve: variance 1.
-    double normal() {
-        double sum = -6.0;
-        for (int i = 0; i < 12; ++i) {
-            sum += unit();
-        }
-        return sum;
-    }
-
-private:
-    std::uint64_t seed_;
-    std::uint64_t index_;
-};
-
 class Annealer {
 public:
     Annealer(const CourseRules& rules, const AnnealGround& ground, std::span<const Member> library,
@@ -317,8 +292,7 @@ private:
     [[nodiscard]] Candidate fresh(Draws& draws) const {
         if (ground_.images.size() > 0 && !courses_.empty() && draws.unit() < kImageShare) {
             const PlacedCourse& course = courses_[draws.below(courses_.size())];
-            const std::vector<Candidate> images = ground_.images.of(course.member.candidate);
-            return images[draws.below(images.size())];
+            return ground_.images.of(course.member.candidate, draws.below(ground_.images.size()));
         }
         const std::size_t place = needy_place(draws);
         const auto& passing = ground_.passing[place];
@@ -364,7 +338,7 @@ private:
 
     // Draws a proposal and judges it against the courses as they are.
     Proposal propose(std::int64_t number, Scratch& scratch) const {
-        Draws draws(options_.seed, number);
+        Draws draws(options_.seed, static_cast<std::uint64_t>(number) << 8U);
         Proposal proposal;
         proposal.chance = draws.unit();
         proposal.fit = draws.unit() < kFitShare;

@@ -181,10 +181,7 @@ private:
             return false;
         }
         const std::vector<std::size_t> part = joints.part_of();
-        std::vector<int> starts(nodes_, 0);
-        for (std::size_t node = 0; node < nodes_; ++node) {
-            starts[part[node]] += std::max(0, joints.excess(node));
-        }
+        const std::vector<int> starts = joints.starts(part);
         const std::vector<Way> ways = cheapest_ways();
         double least = std::numeric_limits<double>::infinity();
         std::pair<std::size_t, std::size_t> best;

@@ -19,6 +19,7 @@
 #include "winding/fibre_routes.h"
 #include "winding/grow.h"
 #include "winding/lay_out.h"
+#include "winding/prove_ways.h"
 #include "winding/random.h"
 #include "winding/uncovered.h"
 #include "winding/what_if.h"
@@ -44,11 +45,6 @@ constexpr std::int64_t kMendingProposals = 4'000;
 // Times that courses are added to join the others, each time some that the machine refuses.
 constexpr int kMaxJoins = 200;
 
-// Of the courses between two nodes so many are proven to know whether the way is open, and where
-// none of them holds, so many.
-constexpr std::size_t kProvenForWay = 6;
-constexpr std::size_t kProvenForScarceWay = 48;
-
 // Routes of so many fibres are looked for, at most.
 constexpr std::size_t kRoutesLookedFor = 9;
 
@@ -59,9 +55,6 @@ constexpr double kDearFibre = 6.0;
 // So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
 // each, and without one a stage is lost.
 constexpr std::size_t kMostSpares = 200;
-
-// An open way is taken for one with courses in plenty where the library has so many.
-constexpr std::size_t kAbound = 8;
 
 // Where courses reach less of the wall nothing is planned: what comes of it is no part.
 constexpr double kWorthPlanning = 0.5;
@@ -110,7 +103,7 @@ public:
         plan_.effort.refusals = library_.refusals;
         tell("library", 1.0);
         if (members_.empty()) {
-            plan_.failure = "no admissible course: " + commonest_refusal();
+            plan_.failure = "no admissible course: " + refused_most(plan_.effort);
             describe_uncovered();
             return std::move(plan_);
         }
@@ -131,7 +124,7 @@ public:
         choose();
         make_it_hold();
         if (order_.empty()) {
-            plan_.failure = "every course was refused, " + commonest_rejection();
+            plan_.failure = "every course was refused, " + rejected_most(plan_.effort);
             describe_uncovered();
             return std::move(plan_);
         }
@@ -159,38 +152,25 @@ private:
         }
     }
 
-    [[nodiscard]] std::string commonest_refusal() const {
-        const auto& refusals = plan_.effort.refusals;
-        const auto most = std::max_element(refusals.begin() + 1, refusals.end());
-        return std::to_string(*most) + " of " + std::to_string(plan_.effort.candidates) +
-               " candidates: " + name_of(static_cast<Refusal>(most - refusals.begin()));
-    }
-
     [[nodiscard]] std::string hardly_reachable() const {
         return "courses reach only " + fixed(100.0 * reached_share(library_.reached), 1) +
                " % of the wall, under " + fixed(100.0 * kWorthPlanning, 0) +
-               " % nothing is planned; refused most often, " + commonest_refusal();
-    }
-
-    // "123 of 456: the head would come too near"
-    [[nodiscard]] std::string commonest_rejection() const {
-        const auto& rejections = plan_.effort.rejections;
-        const auto most = std::max_element(rejections.begin() + 1, rejections.end());
-        return std::to_string(*most) + " of " + std::to_string(plan_.effort.rejected_courses) +
-               ": " + name_of(static_cast<Rejection>(most - rejections.begin()));
+               " % nothing is planned; refused most often, " + refused_most(plan_.effort);
     }
 
     Rejection prove(PlacedCourse& course) const {
-        return prove_course(rules_, options_.accept, Shown::BetweenHalfTurns, course);
+        return prove_course(rules_, options_.accept, course);
     }
 
     // Of a proven course that is to stay its own program is wound.
     Rejection wind(PlacedCourse& course) const {
-        const Rejection rejection = options_.wind && !course.wound
-                                        ? prove_course(rules_, options_.wind, Shown::Alone, course)
-                                        : Rejection::None;
-        course.wound = rejection == Rejection::None;
-        return rejection;
+        if (options_.wind && !course.wound) {
+            const Piece piece = piece_of(rules_, course.member, course.backward);
+            const Rejection rejection = options_.wind({&piece, 1});
+            course.wound = rejection == Rejection::None;
+            return rejection;
+        }
+        return Rejection::None;
     }
 
     Rejection prove_and_wind(PlacedCourse& course) const {
@@ -208,49 +188,22 @@ private:
     // Which ways between nodes are open to the machine, and the routes that the fibres take best.
     // What lies off them is struck off the library.
     void find_routes() {
-        struct Trial {
-            NodePair nodes;
-            PlacedCourse course;
-            std::int32_t member;
-            Rejection rejection = Rejection::None;
-        };
         const Ways ways = ways_between_nodes(members_);
-        for (const std::size_t most : {kProvenForWay, kProvenForScarceWay}) {
-            std::vector<Trial> trials;
-            for (const auto& [nodes, way] : ways) {
-                const std::size_t count = std::min(most, way.windable.size());
-                for (std::size_t k = 0; !known_.contains(nodes) && k < count; ++k) {
-                    const std::int32_t i = way.windable[k * way.windable.size() / count];
-                    const Member& member = members_[at(i)];
-                    trials.push_back({nodes, {member, {}, leads_backward(member, nodes)}, i});
-                }
-            }
-            tell("route", most == kProvenForWay ? 0.0 : 0.5);
-            parallel_for(trials.size(), 1, [&](std::size_t i, std::size_t) {
-                trials[i].rejection = prove(trials[i].course);
-            });
-            for (const Trial& trial : trials) {
-                if (trial.rejection != Rejection::None) {
-                    note_refused(members_[at(trial.member)], trial.rejection);
-                } else {
-                    known_[trial.nodes].proven.push_back({trial.member, trial.course.backward});
-                }
-            }
+        const auto [known, refused] = prove_ways(
+            members_, ways, [this](PlacedCourse& course) { return prove(course); },
+            [this](double share) { tell("route", share); });
+        for (const auto& [member, rejection] : refused) {
+            note_refused(members_[at(member)], rejection);
         }
-        for (auto& [nodes, way] : known_) {
-            way.abounds = ways.at(nodes).windable.size() >= kAbound;
-        }
-        routes_ = best_routes(members_, known_, 2 * mandrel_.rims.size(), samples_.size(),
+        routes_ = best_routes(members_, known, 2 * mandrel_.rims.size(), samples_.size(),
                               kRoutesLookedFor);
         for (const FibreRoute& route : routes_) {
             plan_.reach_of_fibres.push_back(route.reach);
         }
         routes_.resize(std::min(routes_.size(), static_cast<std::size_t>(options_.fibres)));
-        if (known_.empty()) {  // nothing of what was tried holds, wherever it leads
-            const auto& rejections = plan_.effort.rejections;
-            const auto most = std::max_element(rejections.begin() + 1, rejections.end());
+        if (known.empty()) {  // nothing of what was tried holds, wherever it leads
             allowed_.assign(library_size_, 0);
-            rejection_.assign(library_size_, static_cast<Rejection>(most - rejections.begin()));
+            rejection_.assign(library_size_, commonest_rejection(plan_.effort));
             return;
         }
         for (const FibreRoute& route : routes_) {
@@ -258,37 +211,10 @@ private:
                 const LaidCourse& link = route.links[stage];
                 courses_.push_back(placed(link.member, link.backward));
                 courses_.back().link = static_cast<std::int32_t>(spare_links_.size());
-                spare_links_.push_back(spares_of(route, static_cast<int>(stage), ways));
+                spare_links_.push_back(spare_links(members_, ways, known, route, stage));
             }
         }
         strike_off_what_is_apart();
-    }
-
-    // Other courses from a stage to the next, those that have been proven last.
-    [[nodiscard]] std::vector<LaidCourse> spares_of(const FibreRoute& route, int stage,
-                                                    const Ways& ways) const {
-        std::vector<LaidCourse> proven;
-        std::vector<LaidCourse> others;
-        for (const auto& [nodes, way] : ways) {
-            if (route.stage[nodes.first] != stage || route.stage[nodes.second] != stage + 1) {
-                continue;
-            }
-            for (const std::int32_t i : way.windable) {
-                others.push_back({i, leads_backward(members_[at(i)], nodes)});
-            }
-            if (known_.contains(nodes)) {
-                const std::vector<LaidCourse>& held = known_.at(nodes).proven;
-                proven.insert(proven.end(), held.rbegin(), held.rend());
-            }
-        }
-        std::reverse(others.begin(), others.end());
-        others.insert(others.end(), proven.begin(), proven.end());
-        return others;
-    }
-
-    // Which way a windable member is wound from the first node to the second.
-    [[nodiscard]] static bool leads_backward(const Member& member, const NodePair& nodes) {
-        return !(member.windable_forward && nodes_of(member, false) == nodes);
     }
 
     // Fibres that no route needs may go from stage to stage by other courses than the links.
@@ -442,9 +368,9 @@ private:
             const auto& [member, backward] = laid[i];
             if (at(member) >= library_size_) {
                 taken[i] = courses_[at(member) - library_size_];
-            } else if (const auto known = joining_.find({member, backward});
-                       known != joining_.end()) {
-                taken[i] = known->second;
+            } else if (const auto before = joining_.find({member, backward});
+                       before != joining_.end()) {
+                taken[i] = before->second;
             } else {
                 taken[i] = placed(member, backward);
                 found[i] = prove_and_wind(taken[i]);
@@ -541,12 +467,7 @@ private:
         if (!options_.refused || order_.empty()) {
             return courses;
         }
-        std::vector<std::size_t> course_of;  // per piece: itself, or the one before the turn
-        std::size_t begun = 0;
-        for (const Piece& piece : plan_.pieces) {
-            begun += piece.kind == PieceKind::Course ? 1 : 0;
-            course_of.push_back(begun - 1);
-        }
+        const std::vector<std::size_t> course_of = courses_of(plan_.pieces);
         for (const std::size_t piece : options_.refused(plan_.pieces)) {
             const std::size_t course = course_of[piece];
             courses.emplace_back(at(order_[course].course.member) - library_size_,
@@ -638,10 +559,9 @@ private:
     std::vector<Member>& members_ = library_.members;  // then the courses of the plan
     std::size_t library_size_ = 0;
     std::optional<AnnealGround> ground_;
-    std::vector<char> allowed_;          // per member
-    std::vector<Rejection> rejection_;   // per member: why it is not allowed
-    std::vector<PlacedCourse> courses_;  // the plan, not in order
-    KnownWays known_;
+    std::vector<char> allowed_;                         // per member
+    std::vector<Rejection> rejection_;                  // per member: why it is not allowed
+    std::vector<PlacedCourse> courses_;                 // the plan, not in order
     std::vector<FibreRoute> routes_;                    // one for each fibre
     std::vector<std::vector<LaidCourse>> spare_links_;  // per link: in its place, the best last
     std::map<std::pair<std::int32_t, bool>, PlacedCourse>

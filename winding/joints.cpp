@@ -46,15 +46,20 @@ bool Joints::has_courses(std::size_t node) const {
     return false;
 }
 
-int Joints::fibres() const {
-    const std::vector<std::size_t> part = part_of();
+std::vector<int> Joints::starts(const std::vector<std::size_t>& part) const {
     std::vector<int> starts(nodes_, 0);
     for (std::size_t node = 0; node < nodes_; ++node) {
         starts[part[node]] += std::max(0, excess(node));
     }
+    return starts;
+}
+
+int Joints::fibres() const {
+    const std::vector<std::size_t> part = part_of();
+    const std::vector<int> starting = starts(part);
     int fibres = 0;
     for (std::size_t node = 0; node < nodes_; ++node) {
-        fibres += part[node] == node && has_courses(node) ? std::max(1, starts[node]) : 0;
+        fibres += part[node] == node && has_courses(node) ? std::max(1, starting[node]) : 0;
     }
     return fibres;
 }

@@ -23,8 +23,10 @@ public:
 
     [[nodiscard]] bool has_courses(std::size_t node) const;
 
-    /// Continuous fibres that the courses make: in each group of nodes that courses join as many as
-    /// start there, at least one.
+    /// Per node that part_of() names: fibres that start in its part for want of an arrival.
+    [[nodiscard]] std::vector<int> starts(const std::vector<std::size_t>& part) const;
+
+    /// Continuous fibres that the courses make: in each part as many as start there, at least one.
     [[nodiscard]] int fibres() const;
 
 private:

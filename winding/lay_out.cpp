@@ -18,16 +18,6 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-// The course of a proven member.
-FollowedCourse followed(const CourseRules& rules, const Member& member) {
-    FollowedCourse course;
-    course.path = trace_both_ways(rules, member.candidate);
-    course.string = taut_string(course.path);
-    course.slip = measure_slip(rules.mandrel.surface, course.path, course.string,
-                               {.friction = rules.tow.friction, .method = TraceMethod::Patches});
-    return course;
-}
-
 Piece piece_of(Turn&& turn, std::int32_t rim) {
     Piece piece;
     piece.kind = PieceKind::Transition;
@@ -84,6 +74,15 @@ Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
     return piece;
 }
 
+Piece piece_of(const CourseRules& rules, const Member& member, bool backward) {
+    FollowedCourse course;
+    course.path = trace_both_ways(rules, member.candidate);
+    course.string = taut_string(course.path);
+    course.slip = measure_slip(rules.mandrel.surface, course.path, course.string,
+                               {.friction = rules.tow.friction, .method = TraceMethod::Patches});
+    return piece_of(std::move(course), member, backward);
+}
+
 void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
                     std::vector<Piece>& pieces) {
     const auto half = [&](const RimCrossing& end) {
@@ -110,7 +109,7 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
     for (std::size_t i = 0; i < order.size(); ++i) {
         const auto [member, backward] = order[i].course;
         const Member& course = members[at(member)];
-        Piece piece = piece_of(followed(rules, course), course, backward);
+        Piece piece = piece_of(rules, course, backward);
         piece.starts_fibre = fresh;
         plan.fibres += fresh ? 1 : 0;
         add_piece(std::move(piece), plan);

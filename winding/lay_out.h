@@ -11,6 +11,9 @@ namespace meshwind {
 /// A finished course as it is wound.
 [[nodiscard]] Piece piece_of(FollowedCourse&& course, const Member& member, bool backward);
 
+/// The same of a proven member, followed again.
+[[nodiscard]] Piece piece_of(const CourseRules& rules, const Member& member, bool backward);
+
 /// Lays out courses and the turns between them: the plan's pieces, fibres, turns and worst figures.
 /// \param members proven ones \param order of some of them
 void lay_out(const CourseRules& rules, std::span<const Member> members,

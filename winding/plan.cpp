@@ -1,6 +1,17 @@
 #include "winding/plan.h"
 
+#include <algorithm>
+
 namespace meshwind {
+namespace {
+
+// The first reason is none.
+std::size_t commonest(std::span<const std::int64_t> counts) {
+    return static_cast<std::size_t>(std::max_element(counts.begin() + 1, counts.end()) -
+                                    counts.begin());
+}
+
+}  // namespace
 
 const char* name_of(Rejection rejection) {
     switch (rejection) {
@@ -28,6 +39,32 @@ const char* name_of(Rejection rejection) {
             return "nothing is planned where so little of the wall is in reach";
     }
     return "";
+}
+
+std::vector<std::size_t> courses_of(std::span<const Piece> pieces) {
+    std::vector<std::size_t> courses;
+    std::size_t begun = 0;
+    for (const Piece& piece : pieces) {
+        begun += piece.kind == PieceKind::Course ? 1 : 0;
+        courses.push_back(begun - 1);
+    }
+    return courses;
+}
+
+Rejection commonest_rejection(const PlanEffort& effort) {
+    return static_cast<Rejection>(commonest(effort.rejections));
+}
+
+std::string refused_most(const PlanEffort& effort) {
+    const std::size_t most = commonest(effort.refusals);
+    return std::to_string(effort.refusals[most]) + " of " + std::to_string(effort.candidates) +
+           " candidates: " + name_of(static_cast<Refusal>(most));
+}
+
+std::string rejected_most(const PlanEffort& effort) {
+    const std::size_t most = commonest(effort.rejections);
+    return std::to_string(effort.rejections[most]) + " of " +
+           std::to_string(effort.rejected_courses) + ": " + name_of(static_cast<Rejection>(most));
 }
 
 std::vector<std::span<const Piece>> fibres_of(std::span<const Piece> pieces) {

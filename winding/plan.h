@@ -121,6 +121,16 @@ struct Plan {
     std::string failure;  ///< empty, or in words why nothing can be wound
 };
 
+/// Per piece the number of its course in winding order: its own, or of the one before the turn.
+[[nodiscard]] std::vector<std::size_t> courses_of(std::span<const Piece> pieces);
+
+/// The rejection that counts most.
+[[nodiscard]] Rejection commonest_rejection(const PlanEffort& effort);
+
+/// In words, "123 of 456 candidates: reaches no rim" and "12 of 34: the head would come too near".
+[[nodiscard]] std::string refused_most(const PlanEffort& effort);
+[[nodiscard]] std::string rejected_most(const PlanEffort& effort);
+
 /// The pieces of each fibre, in order.
 [[nodiscard]] std::vector<std::span<const Piece>> fibres_of(std::span<const Piece> pieces);
 

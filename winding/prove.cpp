@@ -7,8 +7,7 @@
 
 namespace meshwind {
 
-Rejection prove_course(const CourseRules& rules, const AskMachine& machine, Shown shown,
-                       PlacedCourse& course) {
+Rejection prove_course(const CourseRules& rules, const AskMachine& machine, PlacedCourse& course) {
     const bool backward = course.backward;
     Member exact;
     FollowedCourse followed;
@@ -29,9 +28,7 @@ Rejection prove_course(const CourseRules& rules, const AskMachine& machine, Show
     SurfacePath path = followed.path;
     std::vector<Piece> pieces;
     pieces.push_back(piece_of(std::move(followed), exact, backward));
-    if (shown == Shown::BetweenHalfTurns) {
-        add_half_turns(rules, exact, backward, pieces);
-    }
+    add_half_turns(rules, exact, backward, pieces);
     if (const Rejection rejection = machine ? machine(pieces) : Rejection::None;
         rejection != Rejection::None) {
         return rejection;

@@ -13,16 +13,11 @@ namespace meshwind {
 /// where it winds them. Pure and thread-safe.
 using AskMachine = std::function<Rejection(std::span<const Piece>)>;
 
-/// What a machine is shown of a course.
-enum class Shown {
-    Alone,
-    BetweenHalfTurns,  ///< with the halves of turns that lead to it and on from it
-};
-
-/// Follows a course accurately, by every rule, and asks the machine; without one a free length must
-/// be found all along the course. On Rejection::None the course becomes what was found, its
-/// footprint that of `rules`, windable in this direction alone; on others it is unchanged.
+/// Follows a course accurately, by every rule, and asks the machine, for the course between the
+/// halves of turns that lead to it and on from it; without one a free length must be found all
+/// along the course. On Rejection::None the course becomes what was found, its footprint that of
+/// `rules`, windable in this direction alone; on others it is unchanged.
 [[nodiscard]] Rejection prove_course(const CourseRules& rules, const AskMachine& machine,
-                                     Shown shown, PlacedCourse& course);
+                                     PlacedCourse& course);
 
 }  // namespace meshwind

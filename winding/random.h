@@ -1,6 +1,7 @@
 /// Random numbers that are the same on every machine and for any order of threads.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace meshwind {
@@ -18,6 +19,31 @@ namespace meshwind {
 [[nodiscard]] constexpr double random_unit(std::uint64_t seed, std::uint64_t index) {
     return static_cast<double>(random_bits(seed, index) >> 11U) * 0x1.0p-53;
 }
+
+/// Random numbers one after the other, from a place in those of a seed on.
+class Draws {
+public:
+    Draws(std::uint64_t seed, std::uint64_t first) : seed_(seed), index_(first) {}
+
+    double unit() { return random_unit(seed_, index_++); }
+    /// -1 or 1.
+    double either() { return unit() < 0.5 ? -1.0 : 1.0; }
+    std::size_t below(std::size_t count) {
+        return static_cast<std::size_t>(random_bits(seed_, index_++) % count);
+    }
+    /// Irwin and Hall's sum of twelve: mean 0, variance 1.
+    double normal() {
+        double sum = -6.0;
+        for (int i = 0; i < 12; ++i) {
+            sum += unit();
+        }
+        return sum;
+    }
+
+private:
+    std::uint64_t seed_;
+    std::uint64_t index_;
+};
 
 /// Streams of random numbers of one seed, so that one draw never depends on another.
 enum class Stream : std::uint64_t {

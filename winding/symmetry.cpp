@@ -137,20 +137,16 @@ void MirrorImages::add_with_products(const Matrix3d& map) {
     }
 }
 
-std::vector<Candidate> MirrorImages::of(const Candidate& candidate) const {
-    const Vector3d place = position_mm(surface_, candidate.seed) - centre_mm_;
-    const Vector3d tangent = direction_of(surface_, candidate);
-    std::vector<Candidate> images;
-    images.reserve(maps_.size());
-    for (const Matrix3d& map : maps_) {
-        const ClosestPoint nearest = wall_.closest(centre_mm_ + map * place, kFar_mm);
-        const SurfacePoint seed{nearest.face, nearest.bary};
-        // A mirror image leans to the other side of its direction of travel.
-        const double side = map.determinant();
-        images.push_back({seed, direction_angle(smooth_normal(surface_, seed), map * tangent),
-                          side * candidate.slip_ratio, side * candidate.more_behind});
-    }
-    return images;
+Candidate MirrorImages::of(const Candidate& candidate, std::size_t which) const {
+    const Matrix3d& map = maps_[which];
+    const Vector3d place = map * (position_mm(surface_, candidate.seed) - centre_mm_);
+    const ClosestPoint nearest = wall_.closest(centre_mm_ + place, kFar_mm);
+    const SurfacePoint seed{nearest.face, nearest.bary};
+    const Vector3d tangent = map * direction_of(surface_, candidate);
+    // A mirror image leans to the other side of its direction of travel.
+    const double side = map.determinant();
+    return {seed, direction_angle(smooth_normal(surface_, seed), tangent),
+            side * candidate.slip_ratio, side * candidate.more_behind};
 }
 
 }  // namespace meshwind

@@ -24,9 +24,9 @@ public:
     /// Images of a place besides itself; as many for each.
     [[nodiscard]] std::size_t size() const { return maps_.size(); }
 
-    /// The images of a candidate, one for each combination of the planes, in a fixed order. They
-    /// run near those of its course, as near as the mesh is like its own image.
-    [[nodiscard]] std::vector<Candidate> of(const Candidate& candidate) const;
+    /// An image of a candidate. It runs near that of the candidate's course, as near as the mesh is
+    /// like its own image. \param which < size(), in a fixed order
+    [[nodiscard]] Candidate of(const Candidate& candidate, std::size_t which) const;
 
 private:
     [[nodiscard]] bool keeps_the_wall(const Eigen::Matrix3d& map, std::span<const Eigen::Vector3d>,

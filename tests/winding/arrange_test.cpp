@@ -86,7 +86,32 @@ std::vector<std::int32_t> sorted_members(const std::vector<OrderedCourse>& order
     return members;
 }
 
-TEST(Arrange, KeepsTheFibresAndGains) {
+// The best that one more exchange of neighbouring stretches of a fibre would gain.
+double best_exchange(const Scene& scene, const std::vector<OrderedCourse>& order) {
+    const auto node = [&](std::size_t i) {
+        const OrderedCourse& course = order[i];
+        return departure_node(start_of(member_of(scene, course), course.course.backward));
+    };
+    const double now = worth(scene, order);
+    double best = 0.0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        for (std::size_t k = i + 2; k < order.size() && !order[k - 1].cut_after; ++k) {
+            for (std::size_t j = i + 1; j < k && !order[i].cut_after; ++j) {
+                if (node(i) == node(j) && node(j) == node(k)) {
+                    std::vector<OrderedCourse> other = order;
+                    const auto step = [&](std::size_t x) {
+                        return other.begin() + static_cast<std::ptrdiff_t>(x);
+                    };
+                    std::rotate(step(i), step(j), step(k));
+                    best = std::max(best, worth(scene, other) - now);
+                }
+            }
+        }
+    }
+    return best;
+}
+
+TEST(Arrange, KeepsTheFibresAndLeavesNothingToGain) {
     double gained = 0.0;
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -108,9 +133,10 @@ TEST(Arrange, KeepsTheFibresAndGains) {
         }
         const double more = worth(scene, order) - worth(scene, scene.order);
         EXPECT_GT(more, -1e-6);
+        EXPECT_LT(best_exchange(scene, order), 1e-6);
         gained += more;
     }
-    EXPECT_GT(gained, 30.0);
+    EXPECT_GT(gained, 0.0);
 }
 
 // Rounds from one node back to it may come in any order: where they are alike but for their

@@ -33,6 +33,13 @@ struct Scene {
                                    {{2, 0}, {false, {{6, false}}}}};
 };
 
+Scene without_links() {
+    Scene scene;
+    scene.ways.erase({0, 4});
+    scene.ways.erase({2, 0});
+    return scene;
+}
+
 std::vector<FibreRoute> routes(const Scene& scene, std::size_t most) {
     return best_routes(scene.members, scene.ways, 6, 10, most);
 }
@@ -56,20 +63,14 @@ TEST(BestRoutes, GoThroughAllThatLinksLeadTo) {
 }
 
 TEST(BestRoutes, TakeTheStagesThatCoverMostWhereNoLinkHolds) {
-    Scene scene;
-    scene.ways.erase({0, 4});
-    scene.ways.erase({2, 0});
-    const std::vector<FibreRoute> found = routes(scene, 1);
+    const std::vector<FibreRoute> found = routes(without_links(), 1);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].stage, (std::vector<int>{0, -1, -1, 0, -1, -1}));
     EXPECT_TRUE(found[0].links.empty());
 }
 
 TEST(BestRoutes, GiveWhatIsApartAFibreOfItsOwn) {
-    Scene scene;
-    scene.ways.erase({0, 4});
-    scene.ways.erase({2, 0});
-    const std::vector<FibreRoute> found = routes(scene, 5);
+    const std::vector<FibreRoute> found = routes(without_links(), 5);
     ASSERT_EQ(found.size(), 3U);
     EXPECT_EQ(found[0].stage, (std::vector<int>{0, -1, -1, 0, -1, -1}));
     EXPECT_EQ(found[0].reach, 0.4);

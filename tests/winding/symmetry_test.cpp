@@ -77,8 +77,8 @@ TEST(MirrorImages, RunWhereTheImageOfTheCourseRuns) {
     std::vector<double> off_mm;
     for (const Candidate& candidate : scene.candidates(100, 3, 0.6)) {
         const auto end = end_of(candidate);
-        for (const Candidate& image : images.of(candidate)) {
-            if (const auto other = end_of(image); end && other) {
+        for (std::size_t which = 0; which < images.size(); ++which) {
+            if (const auto other = end_of(images.of(candidate, which)); end && other) {
                 off_mm.push_back((folded(*other) - folded(*end)).norm());
             }
         }
