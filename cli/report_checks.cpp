@@ -1,12 +1,37 @@
 #include "cli/report_checks.h"
 
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "core/text_number.h"
 
 namespace meshwind {
 
 using nlohmann::json;
+
+namespace {
+
+// What a check is about, for somebody who winds. A number at its end tells the fibre.
+std::string meaning_of(const std::string& check) {
+    static const std::map<std::string, std::string> kMeanings = {
+        {"continuity", "fibres that are tied on, and how well their pieces meet"},
+        {"coverage", "wall under at least one layer"},
+        {"eye", "a clear length of free fibre everywhere"},
+        {"rounding", "the program read back is the motion that was planned"},
+        {"laydown", "the fibre comes to lie where it was planned"},
+        {"slip", "friction holds it there"},
+        {"bridging", "gap under the fibre over hollows"},
+        {"collision", "fibre and head clear of the mandrel"},
+        {"free_length", "fibre between mandrel and eye"},
+        {"limits", "axes within travel, speed and acceleration"},
+        {"payout", "speed of the fibre through the eye, and length taken back"},
+        {"program", "the program is the planned one"}};
+    const auto found = kMeanings.find(check.substr(0, check.find('-')));
+    return found == kMeanings.end() ? "" : ": " + found->second;
+}
+
+}  // namespace
 
 double report_number(double value) {
     constexpr double kDigits = 1e9;
@@ -49,7 +74,8 @@ json verification_report(const Verification& verification, const BlockList& prog
 
 void print_checks(std::ostream& out, const std::vector<Check>& checks) {
     for (const Check& check : checks) {
-        out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name;
+        out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name
+            << meaning_of(check.name) << ';';
         for (const auto& [name, value] : check.numbers) {
             std::string text;
             append_shortest(text, std::round(value * 1e4) / 1e4);
