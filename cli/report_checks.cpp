@@ -16,6 +16,7 @@ namespace {
 std::string meaning_of(const std::string& check) {
     static const std::map<std::string, std::string> kMeanings = {
         {"continuity", "fibres that are tied on, and how well their pieces meet"},
+        {"plan", "courses that can be wound"},
         {"coverage", "wall under at least one layer"},
         {"eye", "a clear length of free fibre everywhere"},
         {"rounding", "the program read back is the motion that was planned"},
@@ -75,7 +76,7 @@ json verification_report(const Verification& verification, const BlockList& prog
 void print_checks(std::ostream& out, const std::vector<Check>& checks) {
     for (const Check& check : checks) {
         out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name
-            << meaning_of(check.name) << ';';
+            << meaning_of(check.name) << (check.numbers.empty() ? "" : ";");
         for (const auto& [name, value] : check.numbers) {
             std::string text;
             append_shortest(text, std::round(value * 1e4) / 1e4);
