@@ -46,6 +46,24 @@ constexpr int kMoreClearanceRounds = 2;
 
 constexpr RedundancyPolicy kPolicy = RedundancyPolicy::CentralAngle;
 
+// From steps to the blocks that end where they do: a controller may need two for one.
+void renumber(std::vector<BindingLimit>& binding, const BlockList& steps, const BlockList& blocks) {
+    std::vector<std::size_t> block_of;
+    std::size_t block = 0;
+    for (std::size_t i = 0; i < steps.blocks.size(); ++i, ++block) {
+        while (!std::ranges::equal(blocks.row(block), steps.row(i))) {
+            ++block;
+        }
+        block_of.push_back(block);
+    }
+    for (BindingLimit& limit : binding) {
+        for (BindingStretch& stretch : limit.stretches) {
+            stretch.first = block_of[stretch.first - 1] + 1;
+            stretch.last = block_of[stretch.last];
+        }
+    }
+}
+
 class Programmer {
 public:
     Programmer(const Setup& setup, std::span<const Piece> pieces)
@@ -177,14 +195,17 @@ private:
                                        .share = share_},
                                       block_tolerance());
         const std::span<const std::size_t> ends = found_.choice.ends;
-        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
+        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0,
+                                  .corner_mm = setup_.dialect->corner_tolerance_mm(setup_.machine)};
         TimedBlocks timed =
             meshwind::make_blocks(setup_.machine, points_at(path_, ends), points_at(joints_, ends),
                                   found_.choice.fibre_mm, time);
         found_.duration_s = timed.time.duration_s;
         found_.binding = std::move(timed.time.binding);
+        BlockList prepared = setup_.dialect->prepare(timed.list);
+        renumber(found_.binding, timed.list, prepared);
         // What the program runs, repeated circuits included.
-        FoldedProgram folded = setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
+        FoldedProgram folded = setup_.dialect->fold(std::move(prepared));
         found_.blocks = std::move(folded.list);
         found_.layout = std::move(folded.layout);
     }

@@ -185,7 +185,14 @@ json program_report(const WindResult& result, const FibreProgram& program) {
     const PieceProgram& made = program.made;
     json binding = json::array();
     for (const BindingLimit& limit : made.binding) {
-        binding.push_back({{"limit", limit.name}, {"time_s", report_number(limit.time_s)}});
+        json longest = json::array();
+        for (const BindingStretch& stretch : limit.stretches) {
+            longest.push_back({{"first_block", stretch.first},
+                               {"last_block", stretch.last},
+                               {"time_s", report_number(stretch.time_s)}});
+        }
+        binding.push_back(
+            {{"limit", limit.name}, {"time_s", report_number(limit.time_s)}, {"longest", longest}});
     }
     return {{"file", result.program_written ? json(program.file) : json(nullptr)},
             {"dialect", result.setup.machine.controller.dialect},

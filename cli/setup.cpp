@@ -126,6 +126,7 @@ Verification verify_program(const Setup& setup, const BlockList& program,
                             .friction = job.tow.friction,
                             .bridging_tolerance_mm = job.tow.bridging_tolerance_mm,
                             .tow_width_mm = job.tow.width_mm,
+                            .corner_mm = setup.dialect->corner_tolerance_mm(setup.machine),
                             .laydown = {.deviation_mm = job.tolerance.laydown_mm,
                                         .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},
                             .simulation = {}};

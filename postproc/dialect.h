@@ -1,6 +1,7 @@
 /// What every controller language offers: blocks to text and text to blocks.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,12 @@ public:
     [[nodiscard]] virtual std::string name() const = 0;
     /// With the point, e.g. ".ngc".
     [[nodiscard]] virtual std::string extension() const = 0;
+
+    /// How far the controller may leave the corners between blocks, mm of the linear axes, as the
+    /// machine's header lines tell it; infinite when they do not say, for then it keeps the feed.
+    [[nodiscard]] virtual double corner_tolerance_mm(const Machine&) const {
+        return std::numeric_limits<double>::infinity();
+    }
 
     /// The blocks as the controller needs them: what it would execute wrongly is written in another
     /// way (more blocks, same positions). Tables beside the program are made from this result.

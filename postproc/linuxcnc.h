@@ -33,6 +33,8 @@ class LinuxCnc final : public Dialect {
 public:
     [[nodiscard]] std::string name() const override { return "linuxcnc"; }
     [[nodiscard]] std::string extension() const override { return ".ngc"; }
+    /// P of the last G64 of the header lines; without it, and with P0, there is none.
+    [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const override;
     [[nodiscard]] BlockList prepare(BlockList list) const override;
     [[nodiscard]] FoldedProgram fold(BlockList list) const override;
     using Dialect::write;

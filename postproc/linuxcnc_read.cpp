@@ -352,6 +352,27 @@ void check_linuxcnc_lines(const Machine& machine) {
     }
 }
 
+double LinuxCnc::corner_tolerance_mm(const Machine& machine) const {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    double tolerance_mm = kNone;
+    for (const std::string& text : machine.controller.header) {
+        NcLine line;
+        line.file = &machine.name;
+        line.split(text);
+        bool blends = false;
+        std::int64_t nano = 0;
+        for (const NcWord& word : line.words) {
+            blends = blends || (word.letter == 'G' && line.code(word) == 640);
+            nano = word.letter == 'P' ? line.nano(word) : nano;
+        }
+        if (blends) {
+            tolerance_mm =
+                nano > 0 ? static_cast<double>(nano) / static_cast<double>(kNanoPerUnit) : kNone;
+        }
+    }
+    return tolerance_mm;
+}
+
 BlockList LinuxCnc::read(std::string_view text, const std::string& file,
                          const Machine& machine) const {
     return Reader(file, machine).program(text);

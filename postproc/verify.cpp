@@ -8,7 +8,7 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "geodesic/measure.h"
-#include "postproc/time_law.h"
+#include "postproc/axis_loads.h"
 
 namespace meshwind {
 namespace {
@@ -276,10 +276,15 @@ private:
             step_s.push_back(block.duration_s);
         }
         find_travel_violations(task_.machine, joints);
-        const auto [velocity, acceleration] = axis_loads(task_.machine, joints, step_s);
+        const AxisLoads loads = axis_loads(task_.machine, joints, step_s);
         check.numbers = {{"violations", static_cast<double>(joints.violations.size())},
-                         {"velocity_ratio", velocity.ratio},
-                         {"acceleration_ratio", acceleration.ratio}};
+                         {"velocity_ratio", loads.velocity.ratio},
+                         {"acceleration_ratio", loads.acceleration.ratio},
+                         {"corner_mm", loads.linear.cut},
+                         {"corner_deg", deg_from_rad(loads.rotary.cut)}};
+        if (!std::isinf(rules_.corner_mm)) {
+            check.numbers.emplace("limit_corner_mm", rules_.corner_mm);
+        }
         if (!joints.violations.empty()) {
             const LimitViolation& first = *std::min_element(
                 joints.violations.begin(), joints.violations.end(),
@@ -290,8 +295,14 @@ private:
                      ", past its end at " + shown(joint, first.limit) + ", from " +
                      words_of(first.first) + " on");
         }
-        say_load(check, velocity, "velocity");
-        say_load(check, acceleration, "acceleration");
+        say_load(check, loads.velocity, "velocity");
+        say_load(check, loads.acceleration, "acceleration");
+        if (loads.linear.cut > rules_.corner_mm * (1.0 + kLimitSlack) && check.ok) {
+            fail(check, loads.linear.step,
+                 "the axes need " + fixed(loads.linear.cut, 3) + " mm to round the corner after " +
+                     words_of(loads.linear.step) + ", more than the controller's " +
+                     fixed(rules_.corner_mm, 3) + " mm: it will be slower than the program says");
+        }
         found_.checks.push_back(check);
     }
 

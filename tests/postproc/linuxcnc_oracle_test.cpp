@@ -154,7 +154,7 @@ TEST_F(LinuxCncOracle, OtherMachineFiles) {
     };
     replace("\"resolution\": 0.001", "\"resolution\": 0.015625");
     replace("\"resolution\": 0.001", "\"resolution\": 0.0005");
-    replace("G64 P0.02", "G91 G64 P0.05 (a mode that the start must not inherit)");
+    replace("G64 P2 Q0.01", "G91 G64 P0.05 (a mode that the start must not inherit)");
     const std::string file = (folder_ / "machine.json").string();
     save(file, text);
     const Machine machine = read_machine(file);

@@ -55,7 +55,7 @@ TEST(LinuxCnc, WritesThisProgram) {
               "(time: 0.0 s)\n"
               "(blocks: 2)\n"
               "G21 G90 G94 G17 G40 G49 G80\n"
-              "G64 P0.02\n"
+              "G64 P2 Q0.01\n"
               "(approach: rotary axes turn first, then the linear axes move together;)\n"
               "(bring the eye clear of the mandrel by hand before the start)\n"
               "G90 G0 A66.078 B-0.001 C-63.666\n"
