@@ -27,7 +27,7 @@ constexpr double kLeast_s = 1e-300;
 
 // Slowing down lengthens a step without room by the square root of what it lacks, within these, so
 // that it neither creeps nor overshoots by much.
-constexpr double kLeastSlowing = 1.01;
+constexpr double kLeastSlowing = 1.001;
 constexpr double kMostSlowing = 1.3;
 
 // Shares by which all steps may become shorter or longer at once, in turn, each for as long as it
@@ -36,7 +36,7 @@ constexpr std::array<double, 9> kShares = {0.5, 0.25, 0.12, 0.06, 0.03, 0.015, 0
 constexpr double kWorthwhile = 0.01;
 constexpr int kMostRounds = 30;
 
-// A step at its least among so many others at theirs, before and after, stays as it is.
+// What happens at a step matters to so many before and after.
 constexpr std::size_t kReach = 3;
 
 // Durations of a step to choose from: shorter, as it is, longer.
@@ -99,14 +99,27 @@ public:
     // with half of both for a ramp. Axes that are slower than beside are left to the pass the other
     // way.
     void sweep() {
+        std::vector<char> up(count_ + 2, 1);  // to be looked at: it or its neighbour has changed
+        std::vector<char> down = up;
+        const auto visit = [&](std::vector<char>& open, std::size_t m, std::size_t neighbour) {
+            if (open[m] == 0) {
+                return false;
+            }
+            open[m] = 0;
+            const bool changed = adapt(m, neighbour);
+            if (changed) {
+                up[m] = up[m + 1] = down[m] = down[m - 1] = 1;
+            }
+            return changed;
+        };
         bool changed = true;
         for (int sweeps = 0; changed && sweeps < kMostSweeps; ++sweeps) {
             changed = false;
             for (std::size_t m = 1; m <= count_; ++m) {
-                changed = adapt(m, m - 1) || changed;
+                changed = visit(up, m, m - 1) || changed;
             }
             for (std::size_t m = count_; m > 0; --m) {
-                changed = adapt(m, m + 1) || changed;
+                changed = visit(down, m, m + 1) || changed;
             }
         }
     }
@@ -114,15 +127,21 @@ public:
     // Lengthens what still has no room for its ramps or cuts a corner too far, with its
     // neighbours. It ends, for what is long enough always has.
     void slow_down() {
+        std::vector<char> open(count_ + 4, 1);  // at 1 + m: to be looked at
         for (bool changed = true; changed;) {
             changed = false;
             for (std::size_t m = 1; m <= count_; ++m) {
+                if (open[1 + m] == 0) {
+                    continue;
+                }
+                open[1 + m] = 0;
                 const double lacks = std::max(room_ratio(m), std::sqrt(corner_ratio(m)));
                 if (lacks > 1.0 + kSlack) {
                     const double longer = std::clamp(std::sqrt(lacks), kLeastSlowing, kMostSlowing);
                     duration_s_[m] *= longer;
                     duration_s_[m - 1] *= m > 1 ? std::sqrt(longer) : 1.0;
                     duration_s_[m + 1] *= m < count_ ? std::sqrt(longer) : 1.0;
+                    std::fill_n(open.begin() + static_cast<std::ptrdiff_t>(m) - 1, 5, 1);
                     changed = true;
                 }
             }
@@ -132,6 +151,7 @@ public:
     void tighten() {
         for (const double share : kShares) {
             double saved = 1.0;  // share of the time
+            changed_.assign(count_ + 2, 1);
             for (int round = 0; round < kMostRounds && saved > kWorthwhile * share; ++round) {
                 const double before_s = sum_s();
                 choose(1.0 + share);
@@ -290,21 +310,31 @@ private:
         std::array<char, kPairs> allowed{};
     };
 
-    // Where steps are at their least on all sides there is nothing to choose.
-    [[nodiscard]] bool settled(std::size_t m) const {
-        const std::size_t first = std::max<std::size_t>(m, kReach + 1) - kReach;
-        const std::size_t last = std::min(m + kReach, count_);
-        for (std::size_t n = first; n <= last; ++n) {
-            if (duration_s_[n] > least_s_[n]) {
-                return false;
-            }
+    // Marks the steps that have a choice: not those far from all that changed in the round before,
+    // and not those at their least among others at theirs.
+    void open_steps() {
+        open_.assign(count_ + 2, 0);
+        std::size_t changed = 0;  // how long ago, in steps
+        std::size_t longer = 0;
+        const auto pass = [&](std::size_t m) {
+            changed = changed_[m] != 0 ? 0 : changed + 1;
+            longer = duration_s_[m] > least_s_[m] ? 0 : longer + 1;
+            open_[m] = static_cast<char>(open_[m] | (changed <= kReach ? 1 : 0) |
+                                         (longer <= kReach ? 2 : 0));
+        };
+        changed = longer = kReach;
+        for (std::size_t m = 1; m <= count_; ++m) {
+            pass(m);
         }
-        return true;
+        changed = longer = kReach;
+        for (std::size_t m = count_; m > 0; --m) {
+            pass(m);
+        }
     }
 
     void list_durations(std::size_t m, double factor, Choices& choices) const {
         const double now_s = duration_s_[m];
-        if (m == 0 || m == count_ + 1 || settled(m)) {
+        if (open_[m] != 3) {
             choices.duration_s = {now_s};
             choices.count = 1;
         } else if (now_s <= least_s_[m]) {
@@ -354,6 +384,7 @@ private:
 
     // The best of all choices for all steps. As they are is one of them, so it never gets worse.
     void choose(double factor) {
+        open_steps();
         from_.resize(count_ + 1);
         offered_s_.resize(count_ + 1);
         std::array<Choices, 3> three;  // of the step before, this, and the next
@@ -408,6 +439,7 @@ private:
         }
         std::size_t next = 0;
         for (std::size_t m = count_; m > 0; --m) {
+            changed_[m] = duration_s_[m] != offered_s_[m][here] ? 1 : 0;
             duration_s_[m] = offered_s_[m][here];
             const std::size_t before = from_[m][here * kChoices + next];
             next = here;
@@ -478,6 +510,8 @@ private:
     std::vector<double> least_s_;        // for velocities and fibre
     std::vector<std::size_t> least_of_;  // and which of them
     std::vector<double> duration_s_;
+    std::vector<char> changed_;  // in the last round
+    std::vector<char> open_;
     std::vector<std::array<std::uint8_t, kPairs>> from_;  // choices of the step before
     std::vector<std::array<double, kChoices>> offered_s_;
 };
