@@ -161,6 +161,21 @@ TEST(LinuxCnc, ControllerLinesMustBeHarmless) {
     EXPECT_EQ(LinuxCnc().read(write(machine, list), "p.ngc", machine).nano, list.nano);
 }
 
+TEST(LinuxCnc, TakesTheCornerToleranceFromTheHeader) {
+    Machine machine = six_axis();
+    const auto tolerance_mm = [&](std::vector<std::string> header) {
+        machine.controller.header = std::move(header);
+        return LinuxCnc().corner_tolerance_mm(machine);
+    };
+    EXPECT_EQ(LinuxCnc().corner_tolerance_mm(machine), 2.0);
+    EXPECT_EQ(tolerance_mm({"g64 p.25 q1"}), 0.25);
+    EXPECT_EQ(tolerance_mm({"G64 P1", "M8", "(G64 P7) G4 P3", "G64P0.5"}), 0.5);
+    for (const char* const line : {"", "G64", "G64 P0", "G61", "G4 P3", "(G64 P1)"}) {
+        EXPECT_TRUE(std::isinf(tolerance_mm({line}))) << line;
+    }
+    EXPECT_TRUE(std::isinf(tolerance_mm({"G64 P1", "G64"})));
+}
+
 TEST(LinuxCnc, RefusesLettersFeedAndRestingBlocks) {
     const BlockList list = random_list(six_axis(), 1, 3);
     Machine machine = six_axis();
