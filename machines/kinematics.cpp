@@ -96,6 +96,26 @@ Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const doubl
     return base_from_mandrel(machine, q).inverse() * base_from_eye(machine, q);
 }
 
+Eigen::Matrix3Xd eye_moves(const Machine& machine, std::span<const double> q) {
+    const Eigen::Vector3d eye_mm = base_from_eye(machine, q).translation();
+    Eigen::Matrix3Xd moves(3, static_cast<Eigen::Index>(machine.axis_count()));
+    Eigen::Index joint = 0;
+    const auto add = [&](const std::vector<Axis>& chain, double sign) {
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        for (const Axis& axis : chain) {
+            const Eigen::Vector3d direction = pose.linear() * axis.direction;
+            const Eigen::Vector3d arm_mm = eye_mm - pose * axis.point_mm;
+            moves.col(joint) =
+                sign * (axis.type == AxisType::Linear ? direction : direction.cross(arm_mm));
+            pose = pose * exponential(axis, q[static_cast<std::size_t>(joint)]);
+            ++joint;
+        }
+    };
+    add(machine.mandrel_chain, -1.0);
+    add(machine.eye_chain, 1.0);
+    return moves;
+}
+
 SpindleWristInverse::SpindleWristInverse(const Machine& machine)
     : eye_zero_mm_(machine.eye.position_mm) {
     recognise_spindle(machine);

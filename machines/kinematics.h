@@ -31,6 +31,10 @@ namespace meshwind {
 /// inverse(base_from_mandrel) * base_from_eye.
 [[nodiscard]] Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q);
 
+/// How the eye moves against the mandrel: per axis, mm for a unit of the axis, in the directions of
+/// the machine frame; 3 x axis_count(), to first order.
+[[nodiscard]] Eigen::Matrix3Xd eye_moves(const Machine& machine, std::span<const double> q);
+
 /// Where the eye must be, mandrel frame.
 struct EyeTarget {
     Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();

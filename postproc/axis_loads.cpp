@@ -4,6 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "machines/kinematics.h"
+
 namespace meshwind {
 namespace {
 
@@ -18,32 +22,28 @@ public:
 
     // From step `last_` into `step`; a step 0 is rest.
     void enter(std::size_t step, double duration_s) {
-        double cut_mm2 = 0.0;
+        Eigen::VectorXd cut = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(speed_.size()));
+        double linear_mm2 = 0.0;
         for (std::size_t a = 0; a < joints_.axis_count; ++a) {
             const Axis& axis = machine_.axis(a);
             const double speed =
                 step == 0 ? 0.0 : (joints_.row(step)[a] - joints_.row(step - 1)[a]) / duration_s;
-            const double change = std::abs(speed - speed_[a]);
+            const double change = speed - speed_[a];
             const double ramp = ramp_s(axis, change);
             if (last_ != 0) {
                 const double used = 0.5 * (before_ramp_s_[a] + ramp) / last_s_;
                 raise(loads_.acceleration, used, last_, a);
             }
             raise(loads_.velocity, std::abs(speed) / axis.velocity, step, a);
-            if (step != 0 && last_ != 0) {
-                const double cut = change * ramp / 8.0;
-                if (axis.type == AxisType::Linear) {
-                    cut_mm2 += cut * cut;
-                } else if (cut > loads_.rotary.cut) {
-                    loads_.rotary = {cut, last_};
-                }
-            }
+            const double off = change * ramp / 8.0;
+            cut[static_cast<Eigen::Index>(a)] = off;
+            linear_mm2 += axis.type == AxisType::Linear ? off * off : 0.0;
             speed_[a] = speed;
             before_ramp_s_[a] = ramp;
         }
-        const double cut_mm = std::sqrt(cut_mm2);
-        if (cut_mm > loads_.linear.cut) {
-            loads_.linear = {cut_mm, last_};
+        if (step != 0 && last_ != 0) {
+            raise(loads_.linear, std::sqrt(linear_mm2));
+            raise(loads_.eye, (eye_moves(machine_, joints_.row(last_)) * cut).norm());
         }
         last_ = step;
         last_s_ = duration_s;
@@ -55,6 +55,12 @@ private:
     static void raise(AxisLoad& load, double ratio, std::size_t step, std::size_t joint) {
         if (ratio > load.ratio) {
             load = {ratio, step, joint};
+        }
+    }
+
+    void raise(CornerCut& cut, double mm) const {
+        if (mm > cut.mm) {
+            cut = {mm, last_};
         }
     }
 

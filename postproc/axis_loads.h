@@ -22,17 +22,17 @@ struct AxisLoad {
     std::size_t joint = 0;
 };
 
-/// How far ramps leave a corner.
+/// How far ramps leave the corner after a step.
 struct CornerCut {
-    double cut = 0.0;  ///< mm of the linear axes together, or rad of a rotary one
+    double mm = 0.0;
     std::size_t step = 0;
 };
 
 struct AxisLoads {
     AxisLoad velocity;
     AxisLoad acceleration;  ///< ramps over the room that they have
-    CornerCut linear;       ///< the worst corner of the linear axes, mm, after `step`
-    CornerCut rotary;       ///< the worst of a rotary axis, rad
+    CornerCut linear;       ///< the worst of the linear axes, together as a vector
+    CornerCut eye;          ///< the worst of the eye against the mandrel, all axes taken together
 };
 
 /// The model. Within a step every axis runs evenly, straight from point to point. About the point
@@ -44,9 +44,9 @@ struct AxisLoads {
 /// and the stop are ramps as well, and begin half a ramp early, or end as much late.
 ///
 /// At the corner the axis is off by a moment of half its ramp: |v2 - v1| * ramp / 8 without jerk,
-/// less with it. That is the largest distance; the linear axes are taken together as a vector. A
-/// controller that blends corners within this distance runs the program in its time; one that is
-/// told to stay nearer has to slow down.
+/// less with it. That is the largest distance. A controller that blends corners of the linear axes
+/// within it runs the program in its time; one that is told to stay nearer has to slow down. What
+/// all axes do together moves the eye against the mandrel (eye_moves, first order).
 /// \param step_s per step, the first is not used; steps of 0 s are passed over
 [[nodiscard]] AxisLoads axis_loads(const Machine& machine, const JointPath& joints,
                                    std::span<const double> step_s);

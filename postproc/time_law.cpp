@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/text_number.h"
+#include "machines/kinematics.h"
 
 namespace meshwind {
 namespace {
@@ -93,6 +94,7 @@ public:
         count_ = step_.size() - 1;
         add_step(0, 1.0, kFibre);
         duration_s_ = least_s_;
+        add_corners(joints);
     }
 
     // Makes each step long enough to ramp up from the one before it, and down to the one after,
@@ -194,6 +196,45 @@ private:
         }
     }
 
+    // How ramps move the eye at each corner, where that is limited.
+    void add_corners(const JointPath& joints) {
+        if (std::isinf(corner_mm_)) {
+            return;
+        }
+        eye_mm_s2_.assign((count_ + 1) * groups_ * 3, Lanes::Zero());
+        for (std::size_t m = 1; m < count_; ++m) {
+            const Eigen::Matrix3Xd moves = eye_moves(machine_, joints.row(step_[m]));
+            for (std::size_t a = 0; a < axes_; ++a) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    eye_mm_s2_[(m * groups_ + a / kLanes) * 3 +
+                               k][static_cast<Eigen::Index>(a % kLanes)] =
+                        moves(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(a)) *
+                        machine_.axis(a).acceleration / 8.0;
+                }
+            }
+        }
+    }
+
+    // The linear axes and the eye at the corner after a step.
+    struct Cut {
+        double linear_mm2 = 0.0;
+        std::array<double, 3> eye_mm{};
+
+        [[nodiscard]] double mm2() const {
+            return std::max(linear_mm2,
+                            eye_mm[0] * eye_mm[0] + eye_mm[1] * eye_mm[1] + eye_mm[2] * eye_mm[2]);
+        }
+    };
+
+    void add_cut(std::size_t m, std::size_t group, const Lanes& change_s, const Lanes& ramp_s,
+                 Cut& cut) const {
+        const Lanes moment_s2 = change_s * ramp_s;
+        cut.linear_mm2 += (cut_mm_s2_[group] * moment_s2).square().sum();
+        for (std::size_t k = 0; k < 3; ++k) {
+            cut.eye_mm[k] += (eye_mm_s2_[(m * groups_ + group) * 3 + k] * moment_s2).sum();
+        }
+    }
+
     // At rest, so far.
     void add_step(std::size_t step, double least_s, std::size_t limit) {
         step_.push_back(step);
@@ -246,10 +287,12 @@ private:
     }
 
     // Changes of velocity at full acceleration, without jerk.
+    [[nodiscard]] Lanes change_s(std::size_t m, std::size_t group) const {
+        return move_[(m + 1) * groups_ + group] / duration_s_[m + 1] -
+               move_[m * groups_ + group] / duration_s_[m];
+    }
     [[nodiscard]] Lanes at_once_s(std::size_t m, std::size_t group) const {
-        return (move_[(m + 1) * groups_ + group] / duration_s_[m + 1] -
-                move_[m * groups_ + group] / duration_s_[m])
-            .abs();
+        return change_s(m, group).abs();
     }
 
     // As axis_loads.h has it, of all lanes.
@@ -289,12 +332,11 @@ private:
         if (m == 0 || m == count_ || std::isinf(corner_mm_)) {
             return 0.0;
         }
-        double cut_mm2 = 0.0;
+        Cut cut;
         for (std::size_t g = 0; g < groups_; ++g) {
-            const Lanes jump_s = at_once_s(m, g);
-            cut_mm2 += (cut_mm_s2_[g] * jump_s * ramps_s(jump_s, g)).square().sum();
+            add_cut(m, g, change_s(m, g), ramps_s(m, g), cut);
         }
-        return std::sqrt(cut_mm2) / corner_mm_;
+        return std::sqrt(cut.mm2()) / corner_mm_;
     }
 
     // Durations of a step to choose from, and the velocities that they give.
@@ -357,17 +399,18 @@ private:
         for (std::size_t i = 0; i < here.count; ++i) {
             for (std::size_t j = 0; j < next.count; ++j) {
                 const std::size_t pair = i * kChoices + j;
-                double cut_mm2 = 0.0;
+                Cut cut;
                 for (std::size_t g = 0; g < groups_; ++g) {
-                    const Lanes jump_s =
-                        (next.velocity_s[j * groups_ + g] - here.velocity_s[i * groups_ + g]).abs();
-                    const Lanes ramp_s = ramps_s(jump_s, g);
+                    const Lanes change_s =
+                        next.velocity_s[j * groups_ + g] - here.velocity_s[i * groups_ + g];
+                    const Lanes ramp_s = ramps_s(change_s.abs(), g);
                     corner.ramp_s[pair * groups_ + g] = ramp_s;
                     if (cuts) {
-                        cut_mm2 += (cut_mm_s2_[g] * jump_s * ramp_s).square().sum();
+                        add_cut(m, g, change_s, ramp_s, cut);
                     }
                 }
-                corner.allowed[pair] = cut_mm2 <= corner_mm_ * corner_mm_ * (1.0 + kSlack) ? 1 : 0;
+                corner.allowed[pair] =
+                    cut.mm2() <= corner_mm_ * corner_mm_ * (1.0 + kSlack) ? 1 : 0;
             }
         }
     }
@@ -503,6 +546,7 @@ private:
     double corner_mm_ = kInfinity;
     std::vector<Lanes> build_up_s_;  // acceleration over jerk
     std::vector<Lanes> cut_mm_s2_;   // a corner's cut over its ramp squared; 0 of rotary axes
+    std::vector<Lanes> eye_mm_s2_;   // of the eye, corners x groups x 3; none without a limit
     bool limited_jerk_ = false;
     std::size_t count_ = 0;
     std::vector<std::size_t> step_;      // of the path

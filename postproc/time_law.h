@@ -15,8 +15,8 @@ namespace meshwind {
 
 struct TimeLawOptions {
     double fibre_speed_mm_s = 500.0;  ///< > 0 (30 m/min); the machine's max_speed holds besides
-    /// > 0: how far the linear axes may leave a corner (axis_loads.h). What the controller is told,
-    /// Dialect::corner_tolerance_mm.
+    /// > 0: how far ramps may take the linear axes, and the eye against the mandrel, off a corner
+    /// (axis_loads.h). What the controller is told, Dialect::corner_tolerance_mm.
     double corner_mm = std::numeric_limits<double>::infinity();
 };
 
@@ -45,8 +45,7 @@ struct TimedPath {
 /// Durations, short in sum, with
 ///  - |dq| <= velocity * T for every axis,
 ///  - fibre_mm <= fibre speed * T,
-///  - axis_loads: acceleration ratio at most 1, corners of the linear axes cut by at most
-///    `corner_mm`.
+///  - axis_loads: acceleration ratio at most 1, corners cut by at most `corner_mm`.
 /// Of three neighbouring steps each constraint ties the durations together, so the best choice out
 /// of a few durations a step is found exactly, by dynamic programming along the path. First every
 /// step that has no room for its ramps is slowed down, with its neighbours; then all steps may

@@ -280,8 +280,8 @@ private:
         check.numbers = {{"violations", static_cast<double>(joints.violations.size())},
                          {"velocity_ratio", loads.velocity.ratio},
                          {"acceleration_ratio", loads.acceleration.ratio},
-                         {"corner_mm", loads.linear.cut},
-                         {"corner_deg", deg_from_rad(loads.rotary.cut)}};
+                         {"corner_mm", loads.linear.mm},
+                         {"corner_eye_mm", loads.eye.mm}};
         if (!std::isinf(rules_.corner_mm)) {
             check.numbers.emplace("limit_corner_mm", rules_.corner_mm);
         }
@@ -297,11 +297,12 @@ private:
         }
         say_load(check, loads.velocity, "velocity");
         say_load(check, loads.acceleration, "acceleration");
-        if (loads.linear.cut > rules_.corner_mm * (1.0 + kLimitSlack) && check.ok) {
-            fail(check, loads.linear.step,
-                 "the axes need " + fixed(loads.linear.cut, 3) + " mm to round the corner after " +
-                     words_of(loads.linear.step) + ", more than the controller's " +
-                     fixed(rules_.corner_mm, 3) + " mm: it will be slower than the program says");
+        const CornerCut& corner = loads.linear.mm > loads.eye.mm ? loads.linear : loads.eye;
+        if (corner.mm > rules_.corner_mm * (1.0 + kLimitSlack) && check.ok) {
+            fail(check, corner.step,
+                 "rounding the corner after " + words_of(corner.step) + " takes " +
+                     fixed(corner.mm, 3) + " mm, more than the controller's " +
+                     fixed(rules_.corner_mm, 3) + " mm");
         }
         found_.checks.push_back(check);
     }

@@ -97,6 +97,24 @@ void expect_round_trip(const Machine& machine, unsigned seed) {
     }
 }
 
+TEST(Kinematics, EyeMovesAreTheDifferencesOfThePose) {
+    const Machine machine = six_axis();
+    const std::vector<double> q{0.7, 120.0, 15.0, 230.0, 1.1, -0.4};
+    const Eigen::Matrix3Xd moves = eye_moves(machine, q);
+    const Eigen::Matrix3d base = base_from_mandrel(machine, q).linear();
+    for (std::size_t a = 0; a < q.size(); ++a) {
+        constexpr double kStep = 1e-4;  // central differences: error of its square
+        std::vector<double> more = q;
+        std::vector<double> less = q;
+        more[a] += kStep;
+        less[a] -= kStep;
+        const Eigen::Vector3d difference = mandrel_from_eye(machine, more).translation() -
+                                           mandrel_from_eye(machine, less).translation();
+        const auto column = moves.col(static_cast<Eigen::Index>(a));
+        EXPECT_LT((base * difference / (2.0 * kStep) - column).norm(), 1e-5) << a;
+    }
+}
+
 TEST(SpindleWristInverse, RoundTripSixAxes) {
     expect_round_trip(six_axis(), 1);
 }

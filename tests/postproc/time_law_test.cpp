@@ -396,7 +396,7 @@ TEST(TimeLaw, AnAxisThatRampsAboutTheCornersRunsTheProgram) {
         const double rest_mm = std::max(std::pow(moves_mm.front() / time_s.front(), 2),
                                         std::pow(moves_mm.back() / time_s.back(), 2)) /
                                axis.acceleration / 8.0;
-        EXPECT_LT(result.off, std::max(loads.linear.cut, rest_mm) + 0.02);
+        EXPECT_LT(result.off, std::max(loads.linear.mm, rest_mm) + 0.02);
         EXPECT_LT(result.off_at_end, 0.02);
     }
 }
@@ -409,8 +409,8 @@ TEST(TimeLaw, CornersAreCutNoFartherThanTold) {
         const TimedPath time = time_path(machine, no_fibre(path), path,
                                          {.fibre_speed_mm_s = 500.0, .corner_mm = corner_mm});
         const CornerCut cut = axis_loads(machine, path, time.step_s).linear;
-        EXPECT_LE(cut.cut, corner_mm * (1.0 + 1e-6));
-        EXPECT_GT(cut.cut, corner_mm < 5.0 ? 0.99 * corner_mm : 0.0);
+        EXPECT_LE(cut.mm, corner_mm * (1.0 + 1e-6));
+        EXPECT_GT(cut.mm, corner_mm < 5.0 ? 0.99 * corner_mm : 0.0);
         EXPECT_GT(time.duration_s, before_s);
         before_s = time.duration_s;
         EXPECT_EQ(time.binding[0].name == "corner", corner_mm < 5.0);
@@ -453,9 +453,9 @@ TEST(AxisLoads, MeasuresOneCornerByHand) {
     EXPECT_EQ(loads.acceleration.step, 2U);
     EXPECT_EQ(loads.acceleration.joint, 1U);
     EXPECT_NEAR(loads.velocity.ratio, 0.4, 1e-12);
-    EXPECT_NEAR(loads.linear.cut, 3.75, 1e-12);
+    EXPECT_NEAR(loads.linear.mm, 3.75, 1e-12);
     EXPECT_EQ(loads.linear.step, 1U);
-    EXPECT_EQ(loads.rotary.cut, 0.0);
+    EXPECT_NEAR(loads.eye.mm, 3.75, 1e-12);
 }
 
 TEST(TimeLaw, JerkTakesTimeAndIsNamed) {

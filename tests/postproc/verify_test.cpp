@@ -332,13 +332,13 @@ Job rushed() {
 
 TEST(Verify, SeesCornersThatTheControllerMayNotCut) {
     Job job(helix(240.0));
-    const double cut_mm = check_of(job.verified(), "limits").numbers.at("corner_mm");
+    const double cut_mm = check_of(job.verified(), "limits").numbers.at("corner_eye_mm");
     EXPECT_GT(cut_mm, 0.0);
     EXPECT_EQ(check_of(job.verified(), "limits").numbers.count("limit_corner_mm"), 0U);
     job.rules.corner_mm = 1.01 * cut_mm;
     EXPECT_EQ(failed(job.verified()), "");
     job.rules.corner_mm = 0.5 * cut_mm;
-    (void)expect_fails(job, "limits", "the axes need ");
+    (void)expect_fails(job, "limits", "rounding the corner after ");
     EXPECT_EQ(check_of(job.verified(), "limits").numbers.at("limit_corner_mm"), 0.5 * cut_mm);
 }
 
