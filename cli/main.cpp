@@ -15,6 +15,7 @@
 #include "cli/inspect.h"
 #include "cli/job.h"
 #include "cli/make_command.h"
+#include "cli/post_command.h"
 #include "cli/project_files.h"
 #include "cli/refine_command.h"
 #include "cli/report.h"
@@ -148,16 +149,11 @@ void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
         ->capture_default_str();
 }
 
-int run_wind(const WindOptions& options, const Common& common) {
+// Runs the main job, shows what came of it.
+int run_main_job(const std::string& name, WindRequest& request, const Common& common) {
     Progress progress(common.quiet);
-    WindRequest request;
-    request.mandrel = find_input(options.mandrel);
-    request.machine = find_input(options.machine);
-    request.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
-    request.out = options.out;
     request.unit_mm = unit_mm(common.units);
     request.seed = common.seed;
-    request.effort = options.effort;
     request.force = common.force;
     request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
     const WindResult result = wind(request);
@@ -167,7 +163,40 @@ int run_wind(const WindOptions& options, const Common& common) {
     } else if (!common.quiet) {
         print_summary(std::cout, result, request.out);
     }
-    return exit_code(options.mandrel, result.checks);
+    return exit_code(name, result.checks);
+}
+
+int run_wind(const WindOptions& options, const Common& common) {
+    WindRequest request;
+    request.mandrel = find_input(options.mandrel);
+    request.machine = find_input(options.machine);
+    request.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
+    request.out = options.out;
+    request.effort = options.effort;
+    return run_main_job(options.mandrel, request, common);
+}
+
+int run_post(const PostOptions& options, const Common& common) {
+    WindRequest request = wind_request(options);
+    return run_main_job(options.points, request, common);
+}
+
+void add_post(CLI::App& app, PostOptions& options) {
+    app.add_option("points", options.points, "table of landing points, CSV")->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->required();
+    app.add_option("--machine", options.machine, "machine file")->required();
+    app.add_option("--job", options.job,
+                   "job file: tow, eye rule, extensions, tolerances; its layers are not read");
+    app.add_option("--frame", options.frame,
+                   "axes of the table: those of the mandrel's file, or the mandrel frame of "
+                   "meshwind's own tables, in mm")
+        ->check(CLI::IsMember({"file", "mandrel"}))
+        ->capture_default_str();
+    app.add_option("--within", options.within_mm,
+                   "points further off the mandrel than so many mm are refused")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("-o,--out", options.out, "output folder")->capture_default_str();
 }
 
 constexpr const char* kVerifyHelp =
@@ -456,6 +485,9 @@ int run(int argc, char** argv) {
     WindOptions named_wind_options;
     CLI::App* wind_command = app.add_subcommand("wind", "the main job");
     add_wind_options(*wind_command, named_wind_options, true);
+    PostOptions post_options;
+    CLI::App* post_command = app.add_subcommand("post", kPostHelp);
+    add_post(*post_command, post_options);
     VerifyOptions verify_options;
     CLI::App* verify_command = app.add_subcommand("verify", kVerifyHelp);
     add_verify(*verify_command, verify_options);
@@ -477,8 +509,8 @@ int run(int argc, char** argv) {
     study->require_subcommand(1);
     CLI::App* mesh_size = study->add_subcommand("mesh-size", kMeshSizeHelp);
     add_mesh_size(*mesh_size, study_request);
-    for (CLI::App* command :
-         {wind_command, verify_command, inspect, make, trace_command, validate, study, mesh_size}) {
+    for (CLI::App* command : {wind_command, post_command, verify_command, inspect, make,
+                              trace_command, validate, study, mesh_size}) {
         command->fallthrough();
     }
 
@@ -499,6 +531,9 @@ int run(int argc, char** argv) {
     }
     if (wind_command->parsed()) {
         return run_wind(named_wind_options, common);
+    }
+    if (post_command->parsed()) {
+        return run_post(post_options, common);
     }
     if (verify_command->parsed()) {
         return run_verify_command(verify_options, common);

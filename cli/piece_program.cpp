@@ -134,7 +134,8 @@ private:
             }
             const bool only_head =
                 refused == 0 && report.fibre_hits.empty() && !report.head_hits.empty();
-            if (!only_head || round == kMoreClearanceRounds) {
+            const bool by_rule = setup_.job.eye.rule != EyeRule::Adaptive;
+            if (!only_head || by_rule || round == kMoreClearanceRounds) {
                 return std::move(report.clearance_mm);
             }
             for (const auto& [piece, reason] : found_.refused) {
@@ -145,8 +146,8 @@ private:
 
     void solve_motion(std::span<const double> more_clearance_mm) {
         found_.refused.clear();
-        found_.eyes = equal_free_length(pieces_, *setup_.obstacles, setup_.rule.free_fibre,
-                                        more_clearance_mm);
+        found_.eyes = eye_path(pieces_, setup_.job.eye, *setup_.obstacles, setup_.rule.free_fibre,
+                               more_clearance_mm);
         path_ = refine_path(setup_.machine, found_.eyes.path, kPolicy, block_tolerance());
         joints_ = solve_joints(setup_.machine, path_, kPolicy);
         found_.path_points = path_.size();

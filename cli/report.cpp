@@ -201,6 +201,18 @@ json program_report(const WindResult& result, const FibreProgram& program) {
             {"axes", axes_report(made)}};
 }
 
+json import_report(const ImportFit& fit) {
+    return {{"file", fit.file},
+            {"frame", fit.mandrel_frame ? "mandrel" : "file"},
+            {"points", fit.points},
+            {"repeated_points", fit.repeated},
+            {"joins", fit.joins},
+            {"worst_mm", report_number(fit.worst_mm)},
+            {"worst_line", fit.worst_line},
+            {"mean_mm", report_number(fit.mean_mm)},
+            {"limit_mm", report_number(fit.limit_mm)}};
+}
+
 std::string percent(double share) {
     return fixed(100.0 * share, 2) + " %";
 }
@@ -252,6 +264,9 @@ std::string report_json(const WindResult& result) {
                    {"checks", checks_report(result.checks)},
                    {"ok", result.passed()},
                    {"timing_s", timing}};
+    if (result.import) {
+        report["import"] = import_report(*result.import);
+    }
     for (std::size_t fibre = 0; fibre < result.programs.size(); ++fibre) {
         const FibreProgram& program = result.programs[fibre];
         report["program" + fibre_suffix(fibre)] = program_report(result, program);
@@ -274,9 +289,16 @@ void print_summary(std::ostream& out, const WindResult& result,
         out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
             << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
             << " m of fibre, " << blocks << " blocks, " << fixed(duration_s / 60.0, 1) << " min\n"
-            << "covered " << percent(plan.coverage.fraction) << " of the wall (reachable "
-            << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
-            << " layers on average, at most " << plan.coverage.max_layers << '\n';
+            << "covered " << percent(plan.coverage.fraction) << " of the wall"
+            << (result.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")")
+            << ", " << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
+            << plan.coverage.max_layers << '\n';
+        if (result.import) {
+            const ImportFit& fit = *result.import;
+            out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
+                << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
+                << " mm in line " << fit.worst_line << '\n';
+        }
     }
     print_bare_wall(out, result);
     print_checks(out, result.checks);

@@ -388,6 +388,7 @@ EyePoint point_between(const EyePoint& from, const EyePoint& to, double share) {
     point.binormal = at.binormal;
     point.eye_mm = at.eye_mm();
     point.free_length_mm = at.free_length_mm;
+    point.azimuth_rad += share * (to.azimuth_rad - from.azimuth_rad);
     return point;
 }
 

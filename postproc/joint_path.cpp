@@ -79,7 +79,8 @@ std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) 
     for (std::size_t i = 0; i < path.size(); ++i) {
         const bool moves = i == 0 || policy == RedundancyPolicy::CentralAngle;
         if (moves && eye_radius_mm(path[i]) > kLeastEyeRadius_mm) {
-            const double central = -std::atan2(path[i].eye_mm.y(), path[i].eye_mm.x());
+            const double central =
+                path[i].azimuth_rad - std::atan2(path[i].eye_mm.y(), path[i].eye_mm.x());
             turn += std::remainder(central - turn, 2.0 * kPi);
         }
         turns[i] = turn;
