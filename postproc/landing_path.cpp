@@ -31,6 +31,9 @@ constexpr double kNormalCosine = 0.5;
 // under a place so far, as a share of the way, towards the next point.
 constexpr double kInward = 0.05;
 
+// A table in steps of the stations' distance is left as it is, its rounding and its arcs aside.
+constexpr double kSameStep = 1e-3;
+
 // Furthest from the origin that a place is looked for: 1000 km.
 constexpr double kFarAway_mm = 1e9;
 
@@ -134,15 +137,6 @@ LandingPaths::Landing LandingPaths::landing_of(const LandingRow& row) const {
     }
     if (row.normal) {
         landing.normal = (options_.mandrel_from_table.linear() * *row.normal).normalized();
-        if (landing.normal->dot(walker.normal()) < kNormalCosine) {
-            fail("import.normal", row.line,
-                 "the normal is " +
-                     fixed(deg_from_rad(std::acos(
-                               std::clamp(landing.normal->dot(walker.normal()), -1.0, 1.0))),
-                           1) +
-                     " deg from that of the mandrel there; give outward normals of this mandrel, "
-                     "or leave them out");
-        }
     }
     return landing;
 }
@@ -205,6 +199,18 @@ std::vector<Vector3d> LandingPaths::tangents_of(const std::vector<Landing>& stre
     return tangents;
 }
 
+// On an edge the wall has two normals: that of the station counts.
+void LandingPaths::check_normal(const Landing& landing, const Vector3d& normal) const {
+    if (!landing.normal || landing.normal->dot(normal) >= kNormalCosine) {
+        return;
+    }
+    const double off_rad = std::acos(std::clamp(landing.normal->dot(normal), -1.0, 1.0));
+    fail("import.normal", landing.line,
+         "the normal is " + fixed(deg_from_rad(off_rad), 1) +
+             " deg from that of the mandrel there; give outward normals of this mandrel, or leave "
+             "them out");
+}
+
 void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path) const {
     const std::vector<Vector3d> tangents = tangents_of(stretch);
     double s_mm = path.empty() ? 0.0 : path.back().s_mm;
@@ -216,6 +222,7 @@ void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path
     const auto add_end = [&](const Landing& end, const Landing& next, const Vector3d& tangent) {
         add(end.position_mm + kInward * (next.position_mm - end.position_mm), tangent);
         path.back().position_mm = end.position_mm;
+        check_normal(end, path.back().normal);
     };
     add_end(stretch[0], stretch[1], tangents[0]);
     for (std::size_t i = 1; i < stretch.size(); ++i) {
@@ -223,7 +230,8 @@ void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path
                           tangents[i]);
         const double start_mm = s_mm;
         const double whole_mm = cubic.length_mm(0.0, 1.0);
-        const int parts = std::max(1, static_cast<int>(std::ceil(whole_mm / kLandingStation_mm)));
+        const int parts =
+            std::max(1, static_cast<int>(std::ceil(whole_mm / kLandingStation_mm - kSameStep)));
         for (int k = 1; k < parts; ++k) {
             const double share = static_cast<double>(k) / parts;
             s_mm = start_mm + cubic.length_mm(0.0, share);
@@ -232,6 +240,7 @@ void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path
         s_mm = start_mm + whole_mm;
         if (i + 1 < stretch.size()) {
             add(stretch[i].position_mm, tangents[i]);
+            check_normal(stretch[i], path.back().normal);
         } else {
             add_end(stretch[i], stretch[i - 1], tangents[i]);
         }

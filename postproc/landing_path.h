@@ -55,6 +55,7 @@ private:
     [[nodiscard]] std::vector<std::vector<Landing>> stretches_of(const LandingCourse& course);
     [[nodiscard]] std::vector<Eigen::Vector3d> tangents_of(
         const std::vector<Landing>& stretch) const;
+    void check_normal(const Landing& landing, const Eigen::Vector3d& normal) const;
     void append(const std::vector<Landing>& stretch, SurfacePath& path) const;
     [[noreturn]] void fail(const char* code, int line, const std::string& words) const;
 
