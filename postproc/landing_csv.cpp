@@ -9,28 +9,31 @@ constexpr CsvErrors kErrors{
     .column = "import.column",
     .number = "import.number",
     .column_mend =
-        "its first line names the columns: x_mm,y_mm,z_mm or x,y,z, and perhaps course "
-        "and nx,ny,nz"};
+        "its first line names the columns: x_mm,y_mm,z_mm or x,y,z, and perhaps course, "
+        "nx,ny,nz and tx,ty,tz"};
 
 using Columns = std::array<std::size_t, 3>;
 
-std::optional<Columns> normal_columns(const CsvTable& table) {
-    if (!table.find("nx") && !table.find("ny") && !table.find("nz")) {
+// Columns "nx", "ny", "nz" for "n", if there is any of them.
+std::optional<Columns> vector_columns(const CsvTable& table, const std::string& letter) {
+    if (!table.find(letter + "x") && !table.find(letter + "y") && !table.find(letter + "z")) {
         return std::nullopt;
     }
-    return Columns{table.column("nx"), table.column("ny"), table.column("nz")};
+    return Columns{table.column(letter + "x"), table.column(letter + "y"),
+                   table.column(letter + "z")};
 }
 
-LandingRow row_of(const CsvTable& table, const Columns& position,
-                  const std::optional<Columns>& normal) {
-    LandingRow row{table.line(), table.vector(position), {}};
-    if (normal) {
-        row.normal = table.vector(*normal);
-        if (row.normal->isZero(0.0)) {
-            table.fail("import.number", "the normal is 0,0,0; leave nx,ny,nz out if not known");
-        }
+std::optional<Eigen::Vector3d> direction(const CsvTable& table,
+                                         const std::optional<Columns>& columns) {
+    if (!columns) {
+        return std::nullopt;
     }
-    return row;
+    const Eigen::Vector3d vector = table.vector(*columns);
+    if (vector.isZero(0.0)) {
+        table.fail("import.number",
+                   "a normal or tangent is 0,0,0; leave its columns out if it is not known");
+    }
+    return vector;
 }
 
 }  // namespace
@@ -42,7 +45,8 @@ LandingTable read_landing_csv(std::string_view text, const std::string& file) {
     const std::string unit = landing.in_mm ? "_mm" : "";
     const Columns position{table.column("x" + unit), table.column("y" + unit),
                            table.column("z" + unit)};
-    const std::optional<Columns> normal = normal_columns(table);
+    const std::optional<Columns> normal = vector_columns(table, "n");
+    const std::optional<Columns> tangent = vector_columns(table, "t");
     const std::optional<std::size_t> course = table.find("course");
     const std::optional<std::size_t> kind = table.find("kind");
     std::vector<LandingCourse>& courses = landing.courses;
@@ -63,7 +67,8 @@ LandingTable read_landing_csv(std::string_view text, const std::string& file) {
             }
             courses.push_back({name, kind && table.cell(*kind) == "transition", {}});
         }
-        courses.back().rows.push_back(row_of(table, position, normal));
+        courses.back().rows.push_back({table.line(), table.vector(position),
+                                       direction(table, normal), direction(table, tangent)});
     }
     check_last();
     return landing;

@@ -14,7 +14,8 @@ namespace meshwind {
 struct LandingRow {
     int line = 0;  ///< of the file, counted from 1
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    std::optional<Eigen::Vector3d> normal{};  ///< as given, any length but 0
+    std::optional<Eigen::Vector3d> normal{};   ///< as given, any length but 0
+    std::optional<Eigen::Vector3d> tangent{};  ///< direction of travel, any length but 0
 };
 
 /// Rows that belong together, in order.
@@ -31,8 +32,8 @@ struct LandingTable {
 
 /// Columns `x_mm,y_mm,z_mm` or `x,y,z` in any order among others; `course`, where there is one: a
 /// new course begins where its cell changes; `kind` with the word "transition" for what only leads
-/// from one course to the next; `nx,ny,nz`. Other columns are not read, so path.csv and the tables
-/// of `meshwind trace` can be read.
+/// from one course to the next; outward normals `nx,ny,nz`; directions of travel `tx,ty,tz`. Other
+/// columns are not read, so path.csv and the tables of `meshwind trace` can be read.
 /// \param file name for messages
 /// \throws InputError import.column, import.number, import.empty, each with file and line
 [[nodiscard]] LandingTable read_landing_csv(std::string_view text, const std::string& file);

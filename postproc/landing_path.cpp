@@ -110,6 +110,7 @@ struct LandingPaths::Landing {
     Vector3d position_mm;
     double moved_mm;
     std::optional<Vector3d> normal;  // as given, mandrel frame, unit
+    std::optional<Vector3d> tangent;
 };
 
 LandingPaths::LandingPaths(const Surface& wall, const LandingOptions& options)
@@ -128,15 +129,21 @@ LandingPaths::Landing LandingPaths::landing_of(const LandingRow& row) const {
         fail("import.too_far", row.line, "the point lies beyond any part; give one near it");
     }
     const FieldWalker walker = nearest(wall_, facets_, given);
-    Landing landing{row.line, walker.position_mm(), (walker.position_mm() - given).norm(), {}};
+    Landing landing{row.line, walker.position_mm(), (walker.position_mm() - given).norm(), {}, {}};
     if (landing.moved_mm > options_.farthest_mm) {
         fail("import.too_far", row.line,
              "the point is " + fixed(landing.moved_mm, 3) + " mm off the mandrel, more than " +
                  fixed(options_.farthest_mm, 3) +
                  " mm; is it this mandrel, and is --frame right? --within allows more");
     }
+    const auto turned = [&](const Vector3d& direction) -> Vector3d {
+        return (options_.mandrel_from_table.linear() * direction).normalized();
+    };
     if (row.normal) {
-        landing.normal = (options_.mandrel_from_table.linear() * *row.normal).normalized();
+        landing.normal = turned(*row.normal);
+    }
+    if (row.tangent) {
+        landing.tangent = turned(*row.tangent);
     }
     return landing;
 }
@@ -186,6 +193,25 @@ std::vector<Vector3d> LandingPaths::tangents_of(const std::vector<Landing>& stre
         tangents.push_back(parabola_tangent(p(i - 1), p(i), p(i + 1)));
     }
     tangents.emplace_back(-parabola_end_tangent(p(n - 1), p(n - 2), p(n - 3)));
+    check_turns(stretch, tangents);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (const auto& given = stretch[i].tangent) {
+            const double off_rad = std::acos(std::clamp(given->dot(tangents[i]), -1.0, 1.0));
+            if (off_rad > kTangentOff_rad) {
+                fail("import.tangent", stretch[i].line,
+                     "the tangent is " + fixed(deg_from_rad(off_rad), 1) +
+                         " deg from the way that the points take; give directions of travel in "
+                         "the frame of the points, or leave them out");
+            }
+            tangents[i] = *given;
+        }
+    }
+    return tangents;
+}
+
+void LandingPaths::check_turns(const std::vector<Landing>& stretch,
+                               const std::vector<Vector3d>& tangents) const {
+    const std::size_t n = stretch.size();
     for (std::size_t i = 1; i < n; ++i) {
         const double turn = std::acos(std::clamp(tangents[i - 1].dot(tangents[i]), -1.0, 1.0));
         if (turn > kMostLandingTurn_rad) {
@@ -196,7 +222,6 @@ std::vector<Vector3d> LandingPaths::tangents_of(const std::vector<Landing>& stre
                      " deg; give the points in order and closer together");
         }
     }
-    return tangents;
 }
 
 // On an edge the wall has two normals: that of the station counts.
@@ -214,13 +239,18 @@ void LandingPaths::check_normal(const Landing& landing, const Vector3d& normal) 
 void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path) const {
     const std::vector<Vector3d> tangents = tangents_of(stretch);
     double s_mm = path.empty() ? 0.0 : path.back().s_mm;
-    // The station of the wall under a place, at `s_mm`.
-    const auto add = [&](const Vector3d& place_mm, const Vector3d& tangent) {
-        path.push_back(nearest(wall_, facets_, place_mm).station(tangent));
+    const auto add = [&](const FieldWalker& place, const Vector3d& tangent) {
+        path.push_back(place.station(tangent));
         path.back().s_mm = s_mm;
     };
+    const auto at = [&](const Vector3d& place_mm) { return nearest(wall_, facets_, place_mm); };
     const auto add_end = [&](const Landing& end, const Landing& next, const Vector3d& tangent) {
-        add(end.position_mm + kInward * (next.position_mm - end.position_mm), tangent);
+        const FieldWalker inside =
+            at(end.position_mm + kInward * (next.position_mm - end.position_mm));
+        FieldWalker here = inside;
+        const bool same_side = here.move_under(end.position_mm) &&
+                               here.normal().dot(inside.normal()) > std::cos(kEdge_rad);
+        add(same_side ? here : inside, tangent);
         path.back().position_mm = end.position_mm;
         check_normal(end, path.back().normal);
     };
@@ -235,11 +265,11 @@ void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path
         for (int k = 1; k < parts; ++k) {
             const double share = static_cast<double>(k) / parts;
             s_mm = start_mm + cubic.length_mm(0.0, share);
-            add(cubic.place(share), cubic.rate(share));
+            add(at(cubic.place(share)), cubic.rate(share));
         }
         s_mm = start_mm + whole_mm;
         if (i + 1 < stretch.size()) {
-            add(stretch[i].position_mm, tangents[i]);
+            add(at(stretch[i].position_mm), tangents[i]);
             check_normal(stretch[i], path.back().normal);
         } else {
             add_end(stretch[i], stretch[i - 1], tangents[i]);

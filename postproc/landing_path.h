@@ -34,7 +34,9 @@ struct LandingMoves {
 /// Each point goes to the nearest place of the wall. Its tangent is that of the parabola through
 /// it and its two neighbours, (P3 - P2) d1 / d2 + (P2 - P1) d2 / d1 with the distances d1 and d2,
 /// laid into the wall: second order at any spacing, where fu_2009_post_processing, sec. 1, takes
-/// chords. At both ends it is that of the parabola through the three last points. Stations are
+/// chords. At both ends it is that of the parabola through the three last points. Tangents that
+/// the table gives are taken instead, for they come from whoever knows the path between the points;
+/// they must agree with the parabola's within kTangentOff_rad. Stations are
 /// kLandingStation_mm apart at most: between two points they are on the cubic with their tangents,
 /// laid on the wall. Normals and kn are the wall's, kg is left at 0.
 class LandingPaths {
@@ -42,8 +44,8 @@ public:
     /// \param wall outlives this
     LandingPaths(const Surface& wall, const LandingOptions& options);
 
-    /// \throws InputError import.too_far, import.sparse, import.normal, import.empty, each with the
-    /// line of the file
+    /// \throws InputError import.too_far, import.sparse, import.normal, import.tangent,
+    /// import.empty, each with the line of the file
     [[nodiscard]] SurfacePath through(const LandingCourse& course);
 
     [[nodiscard]] const LandingMoves& moves() const { return moves_; }
@@ -55,6 +57,8 @@ private:
     [[nodiscard]] std::vector<std::vector<Landing>> stretches_of(const LandingCourse& course);
     [[nodiscard]] std::vector<Eigen::Vector3d> tangents_of(
         const std::vector<Landing>& stretch) const;
+    void check_turns(const std::vector<Landing>& stretch,
+                     const std::vector<Eigen::Vector3d>& tangents) const;
     void check_normal(const Landing& landing, const Eigen::Vector3d& normal) const;
     void append(const std::vector<Landing>& stretch, SurfacePath& path) const;
     [[noreturn]] void fail(const char* code, int line, const std::string& words) const;
@@ -70,6 +74,8 @@ inline constexpr double kLandingStation_mm = 4.0;
 
 /// From point to point a fibre turns no more than this: through fewer points no curve is known.
 inline constexpr double kMostLandingTurn_rad = 0.8;
+
+inline constexpr double kTangentOff_rad = 0.3;
 
 /// Direction of travel at the middle of three points by the parabola through them, unit.
 /// \pre neighbours differ

@@ -51,12 +51,18 @@ TEST(LandingCsv, ReadsEveryColumnInAnyOrderAmongOthers) {
     EXPECT_TRUE(table.courses[1].transition);
     EXPECT_EQ(table.courses[2].name, "A");
     EXPECT_FALSE(table.courses[2].transition);
+    EXPECT_FALSE(table.courses[0].rows[0].tangent.has_value());
+    EXPECT_EQ(read_landing_csv("x,y,z,tx,ty,tz\n1,2,3,0,2,0\n1,3,3,0,2,0\n", "points.csv")
+                  .courses[0]
+                  .rows[1]
+                  .tangent,
+              Eigen::Vector3d(0.0, 2.0, 0.0));
 }
 
 TEST(LandingCsv, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(error_of("1,2,3\n4,5,6\n", "import.column"),
               "points.csv:1: has no column 'x'; its first line names the columns: x_mm,y_mm,z_mm "
-              "or x,y,z, and perhaps course and nx,ny,nz");
+              "or x,y,z, and perhaps course, nx,ny,nz and tx,ty,tz");
     error_of("", "import.column");
     error_of("x_mm,y,z\n1,2,3\n4,5,6\n", "import.column");
     error_of("x,y,z,nx,ny\n1,2,3,0,0\n4,5,6,0,0\n", "import.column");
