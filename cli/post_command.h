@@ -11,11 +11,10 @@ namespace meshwind {
 inline constexpr const char* kPostHelp =
     "A program for landing points made elsewhere.\n"
     "The table has columns x_mm,y_mm,z_mm (or x,y,z in the units of the mandrel's file), perhaps\n"
-    "course and nx,ny,nz; its rows are in winding order. The points are laid on the mandrel, "
-    "courses\n"
-    "that do not meet are joined over it, and from there on everything is as for a planned "
-    "mandrel:\n"
-    "the same checks, the same output folder, exit code 1 and no program where a check fails.\n"
+    "course, nx,ny,nz and tx,ty,tz; its rows are in winding order. The points are laid on the\n"
+    "mandrel, courses that do not meet are joined over it, and from there on all is as for a\n"
+    "planned mandrel: the same checks, the same output folder, exit code 1 and no program where\n"
+    "a check fails.\n"
     "  meshwind post points.csv --mandrel tee.stl --machine six_axis.json\n"
     "  meshwind post meshwind-out/path.csv --frame mandrel --mandrel tee.stl --machine "
     "six_axis.json";
