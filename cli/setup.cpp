@@ -69,6 +69,15 @@ void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFib
     }
 }
 
+void check_free_length(const FreeFibreRule& free, double length_mm, const std::string& place) {
+    if (length_mm < free.min_mm || length_mm > free.max_mm) {
+        throw InputError("job.free_length", place,
+                         fixed(length_mm, 1) + " mm is outside the " + fixed(free.min_mm, 1) +
+                             " to " + fixed(free.max_mm, 1) +
+                             " mm of the machine; choose a length between");
+    }
+}
+
 CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     CollisionRule rule;
     rule.clearance_mm = setup.job.tolerance.clearance_mm;
@@ -77,11 +86,12 @@ CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     free.min_mm = setup.machine.fibre.min_free_length_mm;
     free.max_mm = setup.machine.fibre.max_free_length_mm;
     free.preferred_mm = setup.job.eye.free_length_mm;
-    if (free.preferred_mm < free.min_mm || free.preferred_mm > free.max_mm) {
-        throw InputError("job.free_length", job_file.string() + ": /eye/free_length",
-                         fixed(free.preferred_mm, 1) + " mm is outside the " +
-                             fixed(free.min_mm, 1) + " to " + fixed(free.max_mm, 1) +
-                             " mm of the machine; choose a length between");
+    const std::string eye = job_file.string() + ": /eye/";
+    check_free_length(free, free.preferred_mm, eye + "free_length");
+    const std::vector<LengthPiece>& lengths = setup.job.eye.lengths;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        check_free_length(free, lengths[i].free_length_mm,
+                          eye + "lengths/" + std::to_string(i) + "/free_length");
     }
     describe_head(setup.machine, setup.envelope, free);
     free.clearance_mm = rule.clearance_mm + kBetweenBlocks_mm;

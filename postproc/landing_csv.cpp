@@ -9,8 +9,8 @@ constexpr CsvErrors kErrors{
     .column = "import.column",
     .number = "import.number",
     .column_mend =
-        "its first line names the columns: x_mm,y_mm,z_mm or x,y,z, and perhaps course, "
-        "nx,ny,nz and tx,ty,tz"};
+        "its first line names the columns, commas between: x_mm,y_mm,z_mm or x,y,z, and "
+        "perhaps course, nx,ny,nz and tx,ty,tz"};
 
 using Columns = std::array<std::size_t, 3>;
 

@@ -171,7 +171,12 @@ class BadInput(program.ProgramTest):
                            ('{"eye": {"free_length": 5}}', "/eye/free_length"),
                            ('{"eye": {"free_length": 900}}', "/eye/free_length"),
                            ('{"mandrel": {"keep_regions": [77]}}', "77"),
-                           ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "/layers/0"),
+                           ('{"eye": {"rule": "equal-free-length", "lengths": [{"course": 0, '
+                            '"free_length": 900}]}}', "/eye/lengths/0/free_length"),
+                           ('{"eye": {"rule": "cylinder"}}', "radius"),
+                           ('{"eye": {"radius": 200}}', "/eye/radius"),
+                           ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "x.csv"),
+                           ('{"layers": [{"kind": "hoop"}]}', "/layers/0/kind"),
                            ('{"mandrel": {"turn": "pins"}}', "/mandrel/turn")):
             with self.subTest(text):
                 self.refused_job(text, word)

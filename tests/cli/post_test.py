@@ -235,6 +235,24 @@ class Post(program.ProgramTest):
         self.assertIn("not within the cylinder of 40.00 mm", result.stderr)
         self.assertFalse((self.folder / "out" / "program.ngc").exists())
 
+    def test_plans_by_a_strict_rule(self):
+        mandrel = self.make("cylinder", "--radius", "30", "--length", "150", "--edge", "6")
+        job = {"tow": {"width": 12}, "mandrel": {"extension": 80},
+               "eye": {"rule": "cylinder", "radius": 180}}
+        self.done("wind", mandrel, "--machine", MACHINE, "--job",
+                  self.write("job.json", json.dumps(job)), timeout_s=300)
+        eyes = [math.hypot(float(r["ex_mm"]), float(r["ey_mm"]))
+                for r in self.rows("meshwind-out/motion.csv")]
+        self.assertGreater(len(eyes), 10)
+        for eye in eyes:
+            self.assertAlmostEqual(eye, 180, delta=0.1)
+        job["eye"] = {"rule": "equal-free-length", "lengths": [{"course": 0, "free_length": 250}]}
+        result = self.run_program("wind", mandrel, "--machine", MACHINE, "--job",
+                                  self.write("job.json", json.dumps(job)))
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("/eye/lengths", result.stderr)
+        self.assertIn("meshwind post", result.stderr)
+
     def test_tee_of_the_mesh_post_processing_paper(self):
         """fu_2009_post_processing, sec. 2.1 (3): the branch reaches 236 mm from the spindle. Fibre
         that runs round the run at its root comes near it with 200 mm of free fibre, and passes

@@ -61,8 +61,8 @@ TEST(LandingCsv, ReadsEveryColumnInAnyOrderAmongOthers) {
 
 TEST(LandingCsv, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(error_of("1,2,3\n4,5,6\n", "import.column"),
-              "points.csv:1: has no column 'x'; its first line names the columns: x_mm,y_mm,z_mm "
-              "or x,y,z, and perhaps course, nx,ny,nz and tx,ty,tz");
+              "points.csv:1: has no column 'x'; its first line names the columns, commas between: "
+              "x_mm,y_mm,z_mm or x,y,z, and perhaps course, nx,ny,nz and tx,ty,tz");
     error_of("", "import.column");
     error_of("x_mm,y,z\n1,2,3\n4,5,6\n", "import.column");
     error_of("x,y,z,nx,ny\n1,2,3,0,0\n4,5,6,0,0\n", "import.column");
