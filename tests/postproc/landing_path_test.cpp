@@ -19,10 +19,10 @@ using Eigen::Vector3d;
 constexpr double kRadius_mm = 70.0;
 
 const Surface& cylinder() {
-    static const Surface surface =
+    static const Surface kSurface =
         test::frozen(make_mandrel("cylinder", {{"radius", kRadius_mm}, {"length", 400.0}},
                                   {.edge_mm = 6.0, .irregular = true}));
-    return surface;
+    return kSurface;
 }
 
 // A helix of 45 deg from (R, 0, -100).
