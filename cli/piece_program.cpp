@@ -156,6 +156,11 @@ private:
         for (const LimitViolation& violation : joints_.violations) {
             refuse(path_[violation.point], Rejection::AxisTravel);
         }
+        for (const JointNote& note : joints_.notes) {
+            if (note.kind == JointNoteKind::EyeOutOfReach) {
+                refuse(path_[note.first], Rejection::AxisTravel);
+            }
+        }
     }
 
     void leave_room(std::vector<double> clearance_mm) {
