@@ -79,12 +79,11 @@ EyeTarget target_of(const EyePoint& point) {
     return {.eye_mm = point.eye_mm, .tangent = point.tangent, .binormal = point.binormal};
 }
 
-JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
-                std::span<const double> turns_rad) {
+JointPath solve_from(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
+                     std::span<const double> turns_rad, std::vector<double> joints) {
     JointPath result;
     result.axis_count = machine.axis_count();
     result.joints.resize(path.size() * result.axis_count);
-    std::vector<double> joints(result.axis_count, 0.0);
     for (std::size_t i = 0; i < path.size(); ++i) {
         const WristState state = inverse.solve(target_of(path[i]), turns_rad[i], joints, joints);
         std::copy(joints.begin(), joints.end(),
@@ -106,6 +105,50 @@ JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath
     }
     find_travel_violations(machine, result);
     return result;
+}
+
+// Points beyond the travel of one axis, and flips.
+std::size_t troubles(const JointPath& path, char letter) {
+    std::size_t count = 0;
+    for (const LimitViolation& violation : path.violations) {
+        count += violation.axis == letter ? violation.last - violation.first + 1 : 0;
+    }
+    for (const JointNote& note : path.notes) {
+        count += note.kind == JointNoteKind::WristFlip ? 1 : 0;
+    }
+    return count;
+}
+
+// From all axes at zero. A head roll with end stops that runs into one on the way may start half a
+// turn or a turn further back: the roller is the same.
+JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
+                std::span<const double> turns_rad) {
+    const std::vector<double> zero(machine.axis_count(), 0.0);
+    JointPath best = solve_from(machine, inverse, path, turns_rad, zero);
+    std::size_t roll = machine.mandrel_chain.size();
+    while (roll < machine.axis_count() && machine.axis(roll).type != AxisType::Rotary) {
+        ++roll;
+    }
+    if (roll == machine.axis_count()) {
+        return best;
+    }
+    const Axis& axis = machine.axis(roll);
+    if (!std::isfinite(axis.min) && !std::isfinite(axis.max)) {
+        return best;
+    }
+    for (const double half_turns : {1.0, -1.0, 2.0, -2.0}) {
+        const std::size_t least = troubles(best, axis.letter);
+        if (least == 0) {
+            break;
+        }
+        std::vector<double> start = zero;
+        start[roll] = half_turns * kPi;
+        JointPath other = solve_from(machine, inverse, path, turns_rad, start);
+        if (troubles(other, axis.letter) < least) {
+            best = std::move(other);
+        }
+    }
+    return best;
 }
 
 }  // namespace

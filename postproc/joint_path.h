@@ -71,9 +71,11 @@ inline constexpr double kLeastEyeRadius_mm = 1e-6;
 [[nodiscard]] std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy);
 
 /// Axis values with the spindle turns given (n values). Steps of the wrist are the smallest
-/// possible, starting from all axes at zero. Source: fu_2009_post_processing, machine transform;
-/// the turn has the opposite sign of its C, which counts the eye around the mandrel. Machines of
-/// any class (machines/eye_inverse.h); what the axes do not reach is noted.
+/// possible, starting from all axes at zero, or where a head roll with end stops would run into one
+/// or flip, from up to a turn further on or back, whichever has the least of both. Source:
+/// fu_2009_post_processing, machine transform; the turn has the opposite sign of its C, which
+/// counts the eye around the mandrel. Machines of any class (machines/eye_inverse.h); what the axes
+/// do not reach is noted.
 [[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
                                      std::span<const double> turns_rad);
 

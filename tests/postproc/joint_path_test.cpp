@@ -147,6 +147,38 @@ TEST(JointPath, TwoAxesWindThePublishedTube) {
     EXPECT_NEAR(longer.worst_miss_mm, std::hypot(40.0, 80.0 * std::sin(k45)) - 58.31, 1e-9);
 }
 
+// A roll that goes from 80 to 170 degrees fits between stops at 110 when it starts at -100.
+TEST(JointPath, RollStartsWhereItsStopsAreNotInTheWay) {
+    const Machine machine = read_machine(kSource + "/machines/hobby_grbl.json");
+    EyePath path;
+    for (int i = 0; i <= 90; ++i) {
+        const double a = rad_from_deg(80.0 + i);
+        EyePoint point;
+        point.eye_mm = {60.0, 0.0, 0.0};
+        point.tangent = {0.0, std::cos(a), std::sin(a)};
+        point.binormal = {0.0, -std::sin(a), std::cos(a)};
+        path.push_back(point);
+    }
+    const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
+    EXPECT_TRUE(joints.violations.empty());
+    EXPECT_TRUE(joints.notes.empty());
+    EXPECT_NEAR(value(machine, joints, 0, 'Z'), rad_from_deg(-100.0), 1e-12);
+    EXPECT_NEAR(value(machine, joints, 90, 'Z'), rad_from_deg(-10.0), 1e-12);
+    EXPECT_LT(joints.worst_twist_rad, 1e-12);
+    // 80 to 310 degrees does not fit: one flip is left, and it is told with its size.
+    for (int i = 91; i <= 230; ++i) {
+        const double a = rad_from_deg(80.0 + i);
+        path.push_back(path.back());
+        path.back().tangent = {0.0, std::cos(a), std::sin(a)};
+        path.back().binormal = {0.0, -std::sin(a), std::cos(a)};
+    }
+    const JointPath longer = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
+    EXPECT_TRUE(longer.violations.empty());
+    ASSERT_EQ(longer.notes.size(), 1u);
+    EXPECT_EQ(longer.notes[0].kind, JointNoteKind::WristFlip);
+    EXPECT_NEAR(longer.notes[0].measure, kPi, rad_from_deg(2.0));
+}
+
 // A machine without closed form runs the same path: the head swings before it rolls.
 TEST(JointPath, ChainsWithoutClosedFormAreSolvedNumerically) {
     Machine machine = six_axis();
