@@ -36,8 +36,24 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     return options;
 }
 
-// The head as planning sees it: a ball around the eye that holds every part which turns with the
-// last wrist axis, however that turns, and the other parts as capsules on the line away from the
+// True when some axis that carries the part turns it off the line away from the spindle; a roll
+// about that line does not.
+bool swings(const Machine& machine, char link) {
+    constexpr double kParallel = 1e-9;
+    for (const Axis& axis : machine.eye_chain) {
+        if (axis.type == AxisType::Rotary &&
+            axis.direction.cross(machine.eye.exit).norm() > kParallel) {
+            return true;
+        }
+        if (axis.letter == link) {
+            break;
+        }
+    }
+    return false;
+}
+
+// The head as planning sees it: a ball around the eye that holds every part which turns with a
+// wrist axis, however that turns, and the other parts as capsules on the line away from the
 // spindle, on which the central-angle policy keeps them.
 void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFibreRule& rule) {
     const Eigen::Vector3d& eye = machine.eye.position_mm;
@@ -61,7 +77,7 @@ void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFib
             arm.radius_mm =
                 std::max(arm.radius_mm, (point - eye - along * outward).norm() + thickness);
         }
-        if (part.link == machine.eye_chain.back().letter) {
+        if (swings(machine, part.link)) {
             rule.head_radius_mm = std::max(rule.head_radius_mm, reach);
         } else {
             rule.arm.push_back(arm);
