@@ -104,7 +104,7 @@ std::string spindle_words(const SpindleWristInverse& inverse) {
 
 std::string general_words(const Machine& machine) {
     std::string words =
-        count_words(machine.mandrel_chain.size(), "axis", "axes") + " move the mandrel, ";
+        count_words(machine.mandrel_chain.size(), "axis moves", "axes move") + " the mandrel, ";
     words += machine.eye_chain.empty() ? "the eye stands still"
                                        : std::to_string(machine.eye_chain.size()) + " the eye";
     if (ArmInverse::recognise(machine)) {

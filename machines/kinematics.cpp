@@ -204,9 +204,10 @@ bool SpindleWristInverse::reaches_all() const {
     if (linear_count_ != 2) {
         return linear_count_ == 3;
     }
-    const Eigen::Vector3d normal = machine_from_linear_.col(0).cross(machine_from_linear_.col(1));
-    const double offset = normal.normalized().dot(eye_zero_mm_);
-    return std::abs(normal.normalized().z()) < kParallel && std::abs(offset) < kPointTolerance_mm;
+    const Eigen::Vector3d normal =
+        machine_from_linear_.col(0).cross(machine_from_linear_.col(1)).normalized();
+    return sign_along(normal, Eigen::Vector3d::UnitY()) != 0.0 &&
+           std::abs(eye_zero_mm_.y()) < kPointTolerance_mm;
 }
 
 void SpindleWristInverse::recognise_wrist(const Machine& machine) {

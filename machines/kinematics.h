@@ -127,8 +127,8 @@ public:
     [[nodiscard]] std::size_t linear_axes() const { return linear_count_; }
     [[nodiscard]] bool has_roll() const { return has_roll_; }
     [[nodiscard]] bool has_swing() const { return has_swing_; }
-    /// True when the eye reaches any height and any distance from the spindle axis, at one turn at
-    /// least.
+    /// True when the eye reaches any height and any distance from the spindle axis with its exit
+    /// towards the axis: three linear axes, or two that span the plane y = 0.
     [[nodiscard]] bool reaches_all() const;
 
 private:

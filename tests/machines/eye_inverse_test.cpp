@@ -296,6 +296,10 @@ TEST(MachineClass, NamesTheShippedMachines) {
         EXPECT_EQ(machine_class(shipped(name)).refusal, "");
         EXPECT_NO_THROW(require_main_job(shipped(name)));
     }
+    Machine sideways = shipped("four_axis");  // carriage and height, no cross feed
+    sideways.eye_chain[1].direction = Vector3d::UnitY();
+    EXPECT_TRUE(machine_class(sideways).closed_form);
+    EXPECT_THROW(require_main_job(sideways), InputError);
     for (const char* name : {"two_axis", "hobby_grbl", "robot_kr16"}) {
         EXPECT_NE(machine_class(shipped(name)).refusal, "");
         EXPECT_THROW(require_main_job(shipped(name)), InputError);
