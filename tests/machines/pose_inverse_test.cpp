@@ -1,5 +1,6 @@
 #include "machines/pose_inverse.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -285,6 +286,51 @@ TEST(PoseInverse, OutOfReachIsSaidWithItsDistance) {
     EXPECT_NEAR(state.residual_rad, error.rad, 1e-9);
     // The flange at best stands 1611 + 158 mm from axis 1 towards it.
     EXPECT_GT(state.residual_mm, 5000.0 - 1611.0 - 158.0 - 1.0);
+}
+
+// Published frame through the ring head (petru_2016_frames): two straight arms and a quarter bend
+// of 140 mm in which the frame turns by 180 degrees about its axis; the frame's own axes assumed:
+// its origin on the flange, the first arm out of it. The axis point at length l stands in the head.
+Isometry3d frame_in_head(const Machine& machine, double l) {
+    const double radius = 140.0 / (0.5 * kPi);
+    const double bend = std::clamp((l - 550.0) / 140.0, 0.0, 1.0);
+    const double angle = 0.5 * kPi * bend;
+    const Vector3d along(std::sin(angle), 0.0, std::cos(angle));
+    const Vector3d corner(radius * (1.0 - std::cos(angle)), 0.0,
+                          std::min(l, 550.0) + radius * std::sin(angle));
+    const Vector3d point = corner + std::max(l - 690.0, 0.0) * along;
+    const Vector3d across = AngleAxisd(-kPi * bend, along) * Vector3d::UnitY();
+    Eigen::Matrix3d frame;
+    frame << along, across, along.cross(across);
+    Eigen::Matrix3d head;
+    head << machine.eye.exit, machine.eye.roller, machine.eye.exit.cross(machine.eye.roller);
+    Isometry3d pose = Isometry3d::Identity();
+    pose.linear() = head * frame.transpose();
+    pose.translation() = machine.eye.position_mm - pose.linear() * point;
+    return pose;
+}
+
+TEST(Kr16, CarriesThePublishedFrameThroughTheHead) {
+    const Machine machine = kr16();
+    const PoseInverse inverse(machine);
+    std::vector<double> joints{-1.5, -1.2, 1.2, 0.0, 0.3, 0.0};
+    for (int i = 0; i <= 1050; ++i) {
+        const Isometry3d pose = frame_in_head(machine, i);
+        const PoseState state = inverse.solve(pose, joints, joints);
+        expect_reached(machine, state, joints, pose);
+        ASSERT_TRUE(state.within_limits) << i;
+        ASSERT_TRUE(i == 0 || !state.flip) << i;
+        ASSERT_GT(state.singular, 0.3) << i;
+        // By the link table: the axis point is in the head, the frame runs through it.
+        const Isometry3d flange = flange_by_links(joints);
+        ASSERT_LT((flange.translation() - pose.translation()).norm(), 1e-8);
+    }
+    // Flange at the published end of the passage, l = 1050: frame_in_head against the recomputed
+    // table of the paper.
+    const Vector3d last(-360.873231869, 620.873231869, 990.0);
+    EXPECT_LT((frame_in_head(machine, 1050.0).translation() - last).norm(), 1e-8);
+    const Vector3d bent(-1000.0, 618.069128216, 1405.013355653);  // l = 620
+    EXPECT_LT((frame_in_head(machine, 620.0).translation() - bent).norm(), 1e-8);
 }
 
 // Without the closed form: the wrist's axes pass each other.
