@@ -19,6 +19,13 @@ constexpr double kParallel = 1e-9;
 constexpr double kLeastVolume = 1e-3;
 constexpr double kPointTolerance_mm = 1e-9;
 
+Eigen::Isometry3d pose_of(const MandrelMount& mount) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() << mount.x, mount.z.cross(mount.x), mount.z;
+    pose.translation() = mount.origin_mm;
+    return pose;
+}
+
 Eigen::Isometry3d exponential(const Axis& axis, double value) {
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
     if (axis.type == AxisType::Linear) {
@@ -70,26 +77,46 @@ Eigen::Isometry3d base_from_mandrel(const Machine& machine, std::span<const doub
     for (std::size_t i = 0; i < machine.mandrel_chain.size(); ++i) {
         pose = pose * exponential(machine.mandrel_chain[i], q[i]);
     }
-    return pose;
+    return machine.mount ? pose * pose_of(*machine.mount) : pose;
 }
 
 Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double> q, char link) {
     assert(q.size() == machine.axis_count());
-    const std::size_t first = machine.mandrel_chain.size();
+    const std::size_t eye = machine.mandrel_chain.size();
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    for (std::size_t i = 0; i < machine.eye_chain.size(); ++i) {
-        pose = pose * exponential(machine.eye_chain[i], q[first + i]);
-        if (machine.eye_chain[i].letter == link) {
+    for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
+        if (joint == eye) {
+            pose.setIdentity();
+        }
+        pose = pose * exponential(machine.axis(joint), q[joint]);
+        if (machine.axis(joint).letter == link) {
             return pose;
         }
     }
-    assert(false && "link is not in the eye chain");
+    assert(false && "link is in neither chain");
     return pose;
 }
 
 Eigen::Isometry3d base_from_eye(const Machine& machine, std::span<const double> q) {
-    return base_from_link(machine, q, machine.eye_chain.back().letter) *
-           Eigen::Translation3d(machine.eye.position_mm);
+    const Eigen::Translation3d eye(machine.eye.position_mm);
+    return machine.eye_chain.empty()
+               ? Eigen::Isometry3d(eye)
+               : base_from_link(machine, q, machine.eye_chain.back().letter) * eye;
+}
+
+std::vector<PlacedAxis> placed_axes(const Machine& machine, std::span<const double> q) {
+    assert(q.size() == machine.axis_count());
+    std::vector<PlacedAxis> placed;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
+        if (joint == machine.mandrel_chain.size()) {
+            pose.setIdentity();
+        }
+        const Axis& axis = machine.axis(joint);
+        placed.push_back({axis.type, pose.linear() * axis.direction, pose * axis.point_mm});
+        pose = pose * exponential(axis, q[joint]);
+    }
+    return placed;
 }
 
 Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q) {

@@ -1,12 +1,14 @@
 /// Forward kinematics of any machine and the closed-form inverse of the spindle-and-wrist class.
 ///
 /// Joint vectors: mandrel chain, then eye chain, each from the base outward; mm and rad. The
-/// mandrel frame is the machine frame carried along by the mandrel chain: both coincide at zero.
+/// mandrel frame is carried along by the mandrel chain; at zero it is the machine frame, unless the
+/// machine has a mount.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -15,12 +17,13 @@
 
 namespace meshwind {
 
-/// Product of exponentials of the mandrel chain. \pre q has machine.axis_count() entries
+/// Pose of the mandrel frame: product of exponentials of the mandrel chain, then the mount. \pre q
+/// has machine.axis_count() entries
 [[nodiscard]] Eigen::Isometry3d base_from_mandrel(const Machine& machine,
                                                   std::span<const double> q);
 
-/// The same of the eye chain up to and with axis `link`: it carries what is given "at zero" to
-/// where it is. \pre `link` is a letter of the eye chain
+/// Product of exponentials of one chain up to and with axis `link`: it carries what is given "at
+/// zero" to where it is. \pre `link` is a letter of either chain
 [[nodiscard]] Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double> q,
                                                char link);
 
@@ -30,6 +33,17 @@ namespace meshwind {
 
 /// inverse(base_from_mandrel) * base_from_eye.
 [[nodiscard]] Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q);
+
+/// An axis where the joints have brought it, base frame.
+struct PlacedAxis {
+    AxisType type = AxisType::Linear;
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
+};
+
+/// All axes of both chains in the order of the joint vector: the columns of the spatial Jacobian.
+[[nodiscard]] std::vector<PlacedAxis> placed_axes(const Machine& machine,
+                                                  std::span<const double> q);
 
 /// Where the eye must be, mandrel frame.
 struct EyeTarget {
