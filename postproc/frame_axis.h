@@ -33,11 +33,11 @@ struct AxisFrame {
 
 /// A curve through all stations with their tangents. Between two of them it is the cubic of
 /// Hermite whose end speeds are chord / cos^2(turn of the tangent / 4): on an arc of circle that is
-/// off by 4/27 sin^6(turn / 4) of the radius. The reference is carried along without turning about
-/// the tangent (double reflection, wang_2008_rotation_minimizing) and turned evenly by what is then
-/// missing at the next station; the turn grows evenly.
-/// Accuracy: the arc of 89 mm radius given every 10 mm is met within 1e-7 mm across and 5e-4 mm
-/// along the axis (frame_axis_test.cpp).
+/// off by 2/27 sin^6(q) / cos^2(q) of the radius with q = turn / 4. The reference is carried along
+/// without turning about the tangent (double reflection, wang_2008_rotation_minimizing) and turned
+/// evenly by what is then missing at the next station; the turn grows evenly. Accuracy: the arc of
+/// 89 mm radius given every 10 mm is met within 1e-7 mm across and 5e-4 mm along the axis
+/// (frame_axis_test.cpp).
 class FrameAxis {
 public:
     /// \pre two stations or more, neighbours apart, vectors as AxisStation says

@@ -1,6 +1,6 @@
 /// A frame that is carried through a fixed ring head: poses, points of the program, ring speed.
 ///
-/// Source: petru_2018_frames, sec. 2. Its iteration over the poses gives the same as the closed
+/// Source: petru_2016_frames, sec. 2. Its iteration over the poses gives the same as the closed
 /// form used here. "Base" is the frame in which the head stands, the machine frame.
 #pragma once
 
