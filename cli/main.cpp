@@ -12,12 +12,14 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/carry_command.h"
 #include "cli/inspect.h"
 #include "cli/job.h"
 #include "cli/make_command.h"
 #include "cli/project_files.h"
 #include "cli/refine_command.h"
 #include "cli/report.h"
+#include "cli/report_carry.h"
 #include "cli/report_mandrel.h"
 #include "cli/report_study.h"
 #include "cli/report_verify.h"
@@ -411,6 +413,53 @@ int run_mesh_size(StudyRequest& request, const Common& common) {
     return kDone;
 }
 
+struct CarryOptionsText {
+    std::string axis, machine = "robot_kr16.json", out = "meshwind-out", tool = "0,0,0,0,0,0";
+    CarryRequest request;
+};
+
+void add_carry(CLI::App& app, CarryOptionsText& text) {
+    CarryRequest& request = text.request;
+    app.add_option("axis", text.axis,
+                   "table of the frame's axis: x_mm,y_mm,z_mm and perhaps tx,ty,tz, rx,ry,rz, "
+                   "turn_deg")
+        ->required();
+    app.add_option("--machine", text.machine, "machine file")->capture_default_str();
+    app.add_option("--tool", text.tool,
+                   "X,Y,Z,A,B,C: where the table's frame is on the flange, mm and degrees")
+        ->capture_default_str();
+    const auto number = [&](const char* name, double& value, const char* help) {
+        app.add_option(name, value, help)->capture_default_str();
+    };
+    number("--speed", request.speed_mm_s, "passage of the axis through the head, mm/s");
+    number("--tolerance", request.tolerance_mm, "of the axis from the centre of the head, mm");
+    number("--tolerance-angle", request.tolerance_deg, "of the frame's turn, degrees");
+    number("--tube-radius", request.tube_radius_mm, "of the frame, mm");
+    number("--ring-radius", request.ring_radius_mm, "clear opening of the rings, mm");
+    number("--ring-distance", request.ring_distance_mm, "between the two rings, mm");
+    number("--angle", request.angle_deg, "of the rings' fibres from the axis, degrees");
+    app.add_option("--tows", request.tows, "on each ring")->capture_default_str();
+    app.add_option("--tow-width", request.tow_width_mm, "mm; for the share of the tube covered");
+    app.add_option("--name", request.name, "of the program")->capture_default_str();
+    app.add_option("-o,--out", text.out, "output folder")->capture_default_str();
+}
+
+int run_carry_command(CarryOptionsText& text, const Common& common) {
+    CarryRequest& request = text.request;
+    request.axis = find_input(text.axis);
+    request.machine = find_input(text.machine);
+    request.out = text.out;
+    request.tool = tool_of(text.tool);
+    request.force = common.force;
+    const CarryOutcome outcome = run_carry(request);
+    if (common.json) {
+        std::cout << carry_json(outcome);
+    } else if (!common.quiet) {
+        print_carry(std::cout, outcome);
+    }
+    return exit_code(text.axis, outcome.checks);
+}
+
 // A machine file names its schema; everything else is read as a job.
 int run_validate(const std::string& name, const Common& common) {
     const std::string file = find_input(name).string();
@@ -472,13 +521,16 @@ int run(int argc, char** argv) {
     std::string validate_file;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
     validate->add_option("file", validate_file, "JSON file")->required();
+    CarryOptionsText carry_text;
+    CLI::App* carry = app.add_subcommand("carry", "a frame on a robot through a fixed ring head");
+    add_carry(*carry, carry_text);
     StudyRequest study_request;
     CLI::App* study = app.add_subcommand("study", "studies of accuracy");
     study->require_subcommand(1);
     CLI::App* mesh_size = study->add_subcommand("mesh-size", kMeshSizeHelp);
     add_mesh_size(*mesh_size, study_request);
-    for (CLI::App* command :
-         {wind_command, verify_command, inspect, make, trace_command, validate, study, mesh_size}) {
+    for (CLI::App* command : {wind_command, verify_command, inspect, make, trace_command, validate,
+                              carry, study, mesh_size}) {
         command->fallthrough();
     }
 
@@ -521,6 +573,9 @@ int run(int argc, char** argv) {
     }
     if (trace_command->parsed()) {
         return run_trace_command(trace_text, angle->count() > 0, common);
+    }
+    if (carry->parsed()) {
+        return run_carry_command(carry_text, common);
     }
     if (mesh_size->parsed()) {
         return run_mesh_size(study_request, common);

@@ -27,7 +27,11 @@ std::string meaning_of(const std::string& check) {
         {"free_length", "fibre between mandrel and eye"},
         {"limits", "axes within travel, speed and acceleration"},
         {"payout", "speed of the fibre through the eye, and length taken back"},
-        {"program", "the program is the planned one"}};
+        {"program", "the program is the planned one"},
+        {"ring", "the frame clear of the rings"},
+        {"reach", "every pose within the robot's reach"},
+        {"wrist", "no axis that jumps"},
+        {"interpolation", "the axis in the middle of the head between the points"}};
     const auto found = kMeanings.find(check.substr(0, check.find('-')));
     return found == kMeanings.end() ? "" : ": " + found->second;
 }

@@ -104,7 +104,9 @@ private:
             lin_error(head_, axis_, from_s_mm, to_s_mm, pose(from_s_mm), pose(to_s_mm));
         const double share = share_of(error, tolerance_);
         // The last move of a table may be shorter; two halves of it would be too.
-        if (share > kKeptShare && to_s_mm - from_s_mm > 2.0 * kShortestMove_mm) {
+        const double length_mm = to_s_mm - from_s_mm;
+        if ((share > kKeptShare || length_mm > tolerance_.longest_mm) &&
+            length_mm > 2.0 * kShortestMove_mm) {
             const double half = middle(from_s_mm, to_s_mm);
             append(from_s_mm, half);
             append(half, to_s_mm);

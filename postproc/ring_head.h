@@ -82,7 +82,8 @@ inline constexpr int kErrorSamples = 8;
 struct CarryTolerance {
     double distance_mm = 0.2;  ///< > 0
     double angle_rad =
-        rad_from_deg(0.2);  ///< > 0; for the turn of the whole frame, so for the tilt
+        rad_from_deg(0.2);     ///< > 0; for the turn of the whole frame, so for the tilt
+    double longest_mm = 25.0;  ///< > 0; longer moves are halved: each has but one speed
 };
 
 /// Places of the axis whose poses become points of the program.
