@@ -150,7 +150,9 @@ private:
                 const double way_mm = (to.translation() - from.translation()).norm();
                 const double time_s = result_.planned.step_s[i];
                 if (way_mm < kLeastWay_mm) {
-                    turn_deg_s = deg_from_rad(turn_between(from, to)) / time_s;
+                    const SwivelSpin turns = swivel_and_spin(from, to);
+                    turn_deg_s =
+                        deg_from_rad(std::max(turns.swivel_rad, std::abs(turns.spin_rad))) / time_s;
                 } else {
                     path_mm_s = way_mm / time_s;
                 }

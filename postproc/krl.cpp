@@ -33,7 +33,8 @@ constexpr std::string_view kAdvance = "$ADVANCE=3";
 constexpr std::string_view kOrientation = "$ORI_TYPE=#VAR";
 constexpr std::string_view kApproximation = "$APO.CDIS=0.5000";
 constexpr std::string_view kPathSpeed = "$VEL.CP=";
-constexpr std::string_view kTurnSpeed = "$VEL.ORI1=";
+constexpr std::string_view kSwivelSpeed = "$VEL.ORI1=";
+constexpr std::string_view kSpinSpeed = "$VEL.ORI2=";
 
 std::int64_t rounded_nano(double value, std::int64_t step_nano) {
     const double steps = value * static_cast<double>(kNanoPerUnit) / static_cast<double>(step_nano);
@@ -173,8 +174,12 @@ private:
             program_.start_nano = aggregate(kAxisNames, "");
         } else if (take(kPathSpeed)) {
             path_nano_m_s_ = speed();
-        } else if (take(kTurnSpeed)) {
+        } else if (take(kSwivelSpeed)) {
             turn_nano_deg_s_ = speed();
+            need();
+            if (!take(kSpinSpeed) || speed() != turn_nano_deg_s_) {
+                not_understood(line_text_, "$VEL.ORI2 of the value of $VEL.ORI1 behind it");
+            }
         } else if (take("LIN ")) {
             move();
         } else {
@@ -343,9 +348,11 @@ std::string write_krl(const KrlProgram& program, const std::vector<std::string>&
         }
         if (move.turn_nano_deg_s != turn) {
             turn = move.turn_nano_deg_s;
-            text += kTurnSpeed;
-            append_nano(text, turn, kTurnSpeedDecimals);
-            text += '\n';
+            for (const std::string_view name : {kSwivelSpeed, kSpinSpeed}) {
+                text += name;
+                append_nano(text, turn, kTurnSpeedDecimals);
+                text += '\n';
+            }
         }
         append_frame(text, "LIN ", move.to);
         text += i == 0 || i + 1 == program.moves.size() ? "\n" : " C_DIS\n";
@@ -367,9 +374,10 @@ std::vector<double> durations_s(const KrlProgram& program) {
         const Eigen::Isometry3d from = pose_of(program.moves[i - 1].to);
         const Eigen::Isometry3d to = pose_of(move.to);
         const double way_mm = (to.translation() - from.translation()).norm();
-        durations[i] =
-            std::max(way_mm / (kMmPerM * value_of(move.path_nano_m_s)),
-                     deg_from_rad(turn_between(from, to)) / value_of(move.turn_nano_deg_s));
+        const SwivelSpin turns = swivel_and_spin(from, to);
+        const double turn_rad = std::max(turns.swivel_rad, std::abs(turns.spin_rad));
+        durations[i] = std::max(way_mm / (kMmPerM * value_of(move.path_nano_m_s)),
+                                deg_from_rad(turn_rad) / value_of(move.turn_nano_deg_s));
     }
     return durations;
 }

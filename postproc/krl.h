@@ -11,8 +11,9 @@
 ///     $ORI_TYPE=#VAR
 ///     $APO.CDIS=0.5000
 ///     PTP {A1 0.00000,..,A6 0.00000}       all six, so that the block coincidence is defined
-///     $VEL.CP=0.020000                     m/s; only where it changes, as $VEL.ORI1 in deg/s
+///     $VEL.CP=0.020000                     m/s; only where it changes, as the next two, in deg/s
 ///     $VEL.ORI1=400.0000
+///     $VEL.ORI2=400.0000
 ///     LIN {X ..,Y ..,Z ..,A ..,B ..,C ..}           exact stop at the start
 ///     HALT                                 tie the fibre on
 ///     LIN {..} C_DIS                       and so on; the last without C_DIS
@@ -47,12 +48,13 @@ struct KrlFrame {
 
 [[nodiscard]] Eigen::Isometry3d pose_of(const KrlFrame& frame);
 
-/// A linear move to a frame; the robot moves with whichever of the two is reached first.
+/// A linear move to a frame; the slowest of way, swivel and spin (ring_head.h) sets its time.
 struct KrlMove {
     KrlFrame to;
-    std::int64_t path_nano_m_s = 0;    ///< $VEL.CP, 1e-9 m/s, a multiple of 1e-6 m/s, > 0
-    std::int64_t turn_nano_deg_s = 0;  ///< $VEL.ORI1, 1e-9 deg/s, a multiple of 1e-4 deg/s, > 0
-    std::int32_t line = 0;             ///< of the file it was read from; 0 when planned
+    std::int64_t path_nano_m_s = 0;  ///< $VEL.CP, 1e-9 m/s, a multiple of 1e-6 m/s, > 0
+    std::int64_t turn_nano_deg_s =
+        0;                  ///< $VEL.ORI1 and 2, 1e-9 deg/s, a multiple of 1e-4 deg/s, > 0
+    std::int32_t line = 0;  ///< of the file it was read from; 0 when planned
 
     friend bool operator==(const KrlMove& a, const KrlMove& b) {
         return a.to == b.to && a.path_nano_m_s == b.path_nano_m_s &&

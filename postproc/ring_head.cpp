@@ -197,12 +197,30 @@ EulerZyx euler_zyx(const Matrix3d& q, const std::optional<EulerZyx>& previous) {
     return largest_step(*previous, other) < largest_step(*previous, near) ? other : near;
 }
 
-Isometry3d lin_between(const Isometry3d& from, const Isometry3d& to, double share) {
+SwivelSpin swivel_and_spin(const Isometry3d& from, const Isometry3d& to) {
+    const Vector3d start = from.linear().col(0);
+    const Vector3d end = to.linear().col(0);
+    const Matrix3d swivelled =
+        Eigen::Quaterniond::FromTwoVectors(start, end).toRotationMatrix() * from.linear();
+    const Matrix3d spin = swivelled.transpose() * to.linear();
+    return {angle_between(start, end), std::atan2(spin(2, 1), spin(1, 1))};
+}
+
+Isometry3d lin_between(const Isometry3d& from, const Isometry3d& to, double share, TurnLaw law) {
     Isometry3d pose = Isometry3d::Identity();
-    pose.linear() = Eigen::Quaterniond(from.linear())
-                        .slerp(share, Eigen::Quaterniond(to.linear()))
-                        .toRotationMatrix();
     pose.translation() = from.translation() + share * (to.translation() - from.translation());
+    if (law == TurnLaw::OneAxis) {
+        pose.linear() = Eigen::Quaterniond(from.linear())
+                            .slerp(share, Eigen::Quaterniond(to.linear()))
+                            .toRotationMatrix();
+        return pose;
+    }
+    const Eigen::Quaterniond swivel =
+        Eigen::Quaterniond::FromTwoVectors(from.linear().col(0), to.linear().col(0));
+    const double spin_rad = swivel_and_spin(from, to).spin_rad;
+    pose.linear() = Eigen::Quaterniond::Identity().slerp(share, swivel).toRotationMatrix() *
+                    from.linear() *
+                    Eigen::AngleAxisd(share * spin_rad, Vector3d::UnitX()).toRotationMatrix();
     return pose;
 }
 
@@ -222,7 +240,10 @@ CarryError lin_error(const RingHead& head, const FrameAxis& axis, double from_s_
     CarryError worst;
     for (const double s : samples_between(axis, from_s_mm, to_s_mm)) {
         const double share = (s - from_s_mm) / (to_s_mm - from_s_mm);
-        worst = worse(worst, carry_error(head, lin_between(from, to, share), axis.at(s)));
+        const AxisFrame wanted = axis.at(s);
+        for (const TurnLaw law : {TurnLaw::OneAxis, TurnLaw::SwivelAndSpin}) {
+            worst = worse(worst, carry_error(head, lin_between(from, to, share, law), wanted));
+        }
     }
     return worst;
 }

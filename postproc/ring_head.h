@@ -51,10 +51,27 @@ struct EulerZyx {
 /// Below this cosine of b, a is rounding noise; keeping it turns R by no more than this.
 inline constexpr double kSingularCosine = 1e-10;
 
-/// What a controller's linear move does: the origin on a straight line, the orientation about one
-/// axis by the shorter way, both evenly. \param share 0 .. 1
+/// How a controller turns the flange in a linear move, evenly in both cases.
+enum class TurnLaw {
+    OneAxis,        ///< about one axis by the shorter way, as the paper takes it
+    SwivelAndSpin,  ///< the tool's X on a great circle, and about X by what is then missing (KUKA)
+};
+
+/// What a controller's linear move does: the origin on a straight line, the orientation by `law`.
+/// Over a swivel and a spin of a few degrees the laws differ by an eighth of their product (rad).
+/// \param share 0 .. 1
 [[nodiscard]] Eigen::Isometry3d lin_between(const Eigen::Isometry3d& from,
-                                            const Eigen::Isometry3d& to, double share);
+                                            const Eigen::Isometry3d& to, double share,
+                                            TurnLaw law = TurnLaw::OneAxis);
+
+/// Angles of the second law, rad: of the swivel >= 0, of the spin signed.
+struct SwivelSpin {
+    double swivel_rad = 0.0;
+    double spin_rad = 0.0;
+};
+
+[[nodiscard]] SwivelSpin swivel_and_spin(const Eigen::Isometry3d& from,
+                                         const Eigen::Isometry3d& to);
 
 /// Angle of the rotation between two poses, rad.
 [[nodiscard]] double turn_between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
@@ -69,7 +86,8 @@ struct CarryError {
 [[nodiscard]] CarryError carry_error(const RingHead& head, const Eigen::Isometry3d& pose,
                                      const AxisFrame& axis);
 
-/// The worst on a linear move between the poses at two places; the axis passes evenly meanwhile.
+/// The worst on a linear move between the poses at two places, by either law, since controllers
+/// differ; the axis passes evenly meanwhile.
 /// Measured at kErrorSamples places in each step between stations and as many in the move at least;
 /// an error that is a parabola between its ends is seen to (1 - 1 / kErrorSamples^2) of its top or
 /// better. \pre from_s_mm < to_s_mm

@@ -53,6 +53,7 @@ TEST(Krl, WritesThisProgram) {
               "PTP {A1 10.00000,A2 -90.00000,A3 90.00000,A4 0.00000,A5 -0.00001,A6 0.00500}\n"
               "$VEL.CP=0.020000\n"
               "$VEL.ORI1=400.0000\n"
+              "$VEL.ORI2=400.0000\n"
               "LIN {X -1000.0000,Y 0.0000,Z 990.0000,A 180.00000,B 0.00000,C 0.00000}\n"
               "; tie the fibre on, then start again; the rings turn from here on\n"
               "HALT\n"
@@ -80,7 +81,7 @@ TEST(Krl, ReadsBackToTheLastDigit) {
     const std::string text = write_krl(program, {"a comment"});
     const KrlProgram read = read_krl(text, "small.src");
     EXPECT_EQ(read, program);
-    EXPECT_EQ(read.moves[0].line, 14);
+    EXPECT_EQ(read.moves[0].line, 15);
     EXPECT_EQ(write_krl(read, {"a comment"}), text);
     EXPECT_EQ(durations_s(read), durations_s(program));
 }
@@ -124,15 +125,16 @@ TEST(Krl, RefusesWhatItDoesNotWrite) {
     };
     EXPECT_EQ(refusal(good), "accepted");
     EXPECT_EQ(refusal(""), "krl.no_end p.src:0");
-    EXPECT_EQ(refusal(good.substr(0, good.size() - 4)), "krl.no_end p.src:18");
+    EXPECT_EQ(refusal(good.substr(0, good.size() - 4)), "krl.no_end p.src:19");
     EXPECT_EQ(with("DEF small( )", "DEF 7small( )"), "krl.not_understood p.src:2");
     EXPECT_EQ(with("BAS(#INITMOV,0)", "BAS(#VEL_CP,1)"), "krl.not_understood p.src:3");
-    EXPECT_EQ(with("LIN {X -1000", "SLIN {X -1000"), "krl.not_understood p.src:13");
-    EXPECT_EQ(with("X -1000.0000", "X -1000.0e0"), "krl.number p.src:13");
-    EXPECT_EQ(with("X -1000.0000", "X"), "krl.not_understood p.src:13");
-    EXPECT_EQ(with("} C_DIS", "} C_PTP"), "krl.not_understood p.src:16");
-    EXPECT_EQ(with("$VEL.CP=0.020000\n", ""), "krl.no_motion p.src:12");
+    EXPECT_EQ(with("LIN {X -1000", "SLIN {X -1000"), "krl.not_understood p.src:14");
+    EXPECT_EQ(with("X -1000.0000", "X -1000.0e0"), "krl.number p.src:14");
+    EXPECT_EQ(with("X -1000.0000", "X"), "krl.not_understood p.src:14");
+    EXPECT_EQ(with("} C_DIS", "} C_PTP"), "krl.not_understood p.src:17");
+    EXPECT_EQ(with("$VEL.CP=0.020000\n", ""), "krl.no_motion p.src:13");
     EXPECT_EQ(with("$VEL.CP=0.020000", "$VEL.CP=-0.02"), "krl.number p.src:11");
+    EXPECT_EQ(with("ORI2=400", "ORI2=300"), "krl.not_understood p.src:13");
     KrlProgram name = small_program();
     name.name = "a program";
     EXPECT_THROW((void)write_krl(name, {}), InputError);
