@@ -30,7 +30,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text_number.h"
-#include "machines/kinematics.h"
+#include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
 #include "postproc/dialect.h"
 #include "version.h"
@@ -470,15 +470,21 @@ int run_validate(const std::string& name, const Common& common) {
     const nlohmann::json text = nlohmann::json::parse(in, nullptr, false);
     const bool machine =
         text.is_object() && (text.contains("schema") || text.contains("eye_chain"));
+    std::string more;
     if (machine) {
         const Machine read = read_machine(file);
-        const SpindleWristInverse inverse(read);
         (void)make_dialect(read.controller.dialect);
+        const MachineClass what = machine_class(read);
+        more = "class         " + what.words + "\nfreedom       " +
+               std::to_string(read.axis_count()) +
+               " axes: " + std::to_string(read.mandrel_chain.size()) + " of the mandrel, " +
+               std::to_string(read.eye_chain.size()) + " of the eye\nmain job      " +
+               (what.refusal.empty() ? "can be run" : "cannot be run: " + what.refusal) + "\n";
     } else {
         (void)read_job(file);
     }
     if (!common.quiet) {
-        std::cout << name << ": a valid " << (machine ? "machine" : "job") << " file\n";
+        std::cout << name << ": a valid " << (machine ? "machine" : "job") << " file\n" << more;
     }
     return kDone;
 }

@@ -132,8 +132,11 @@ private:
             for (const std::size_t point : report.head_hits) {
                 refuse(path_[point], Rejection::HeadHit);
             }
-            const bool only_head =
-                refused == 0 && report.fibre_hits.empty() && !report.head_hits.empty();
+            for (const std::size_t point : report.body_hits) {
+                refuse(path_[point], Rejection::HeadHit);
+            }
+            const bool only_head = refused == 0 && report.fibre_hits.empty() &&
+                                   report.body_hits.empty() && !report.head_hits.empty();
             if (!only_head || round == kMoreClearanceRounds) {
                 return std::move(report.clearance_mm);
             }
@@ -155,6 +158,11 @@ private:
         }
         for (const LimitViolation& violation : joints_.violations) {
             refuse(path_[violation.point], Rejection::AxisTravel);
+        }
+        for (const JointNote& note : joints_.notes) {
+            if (note.kind == JointNoteKind::EyeOutOfReach) {
+                refuse(path_[note.first], Rejection::AxisTravel);
+            }
         }
     }
 

@@ -90,12 +90,20 @@ CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     return rule;
 }
 
-std::unique_ptr<RayQuery> obstacles_of(const Mandrel& mandrel, double extension_mm) {
+TriangleSoup read_triangles_of(const std::string& file) {
+    return read_triangles(file);
+}
+
+std::unique_ptr<RayQuery> obstacles_of(const Machine& machine, const Mandrel& mandrel,
+                                       double extension_mm) {
     std::vector<TriangleSoup> parts{mandrel.whole};
     for (const Rim& rim : mandrel.rims) {
         if (extension_mm > 0.0) {
             parts.push_back(extension_of(rim, extension_mm));
         }
+    }
+    for (TriangleSoup& body : bodies_on_mandrel(machine, read_triangles_of)) {
+        parts.push_back(std::move(body));
     }
     return std::make_unique<RayQuery>(parts, kTableReach_mm);
 }
@@ -109,11 +117,10 @@ Setup read_setup(const SetupRequest& request) {
         setup.job = read_job(request.job);
     }
     setup.dialect = make_dialect(setup.machine.controller.dialect);
-    setup.envelope =
-        head_envelope(setup.machine, [](const std::string& file) { return read_triangles(file); });
+    setup.envelope = head_envelope(setup.machine, read_triangles_of);
     setup.mandrel = load_mandrel(request.mandrel, mandrel_options(setup.job, request.unit_mm));
     setup.rule = collision_rule(setup, request.job);
-    setup.obstacles = obstacles_of(setup.mandrel, setup.job.mandrel.extension_mm);
+    setup.obstacles = obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm);
     setup.wall = std::make_unique<LaydownWall>(
         extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
     return setup;

@@ -17,7 +17,7 @@
 #include "core/text_file.h"
 #include "core/text_number.h"
 #include "core/units.h"
-#include "machines/kinematics.h"
+#include "machines/eye_inverse.h"
 #include "postproc/choose_blocks.h"
 #include "postproc/dialect.h"
 #include "postproc/motion_csv.h"
@@ -111,7 +111,7 @@ private:
         setup_ = read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
         mandrel_digest_ = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
         refuse_what_is_not_offered(setup_.job, request_.job);
-        const SpindleWristInverse inverse(setup_.machine);       // refuses what cannot be solved
+        require_main_job(setup_.machine);
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         watch_.stage("import");
     }

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 
 #include "core/units.h"
-#include "machines/kinematics.h"
+#include "machines/eye_inverse.h"
 
 namespace meshwind {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr double kNearSingularSine = 0.0175;
 // An eye this near to the axis asks for a quarter turn of the spindle per few mm of path.
 constexpr double kNearAxis_mm = 5.0;
+// Places that are missed by less are rounding of positions of some metres over a thousand turns.
+constexpr double kReached_mm = 1e-6;
 // Axis::resolution_nano counts these per mm or degree.
 constexpr double kNanoPerUnit = 1e9;
 
@@ -27,8 +30,9 @@ void note(JointPath& path, JointNoteKind kind, std::size_t point, double measure
                                      [kind](const JointNote& other) { return other.kind == kind; });
     if (latest != path.notes.rend() && latest->last + 1 == point) {
         latest->last = point;
-        latest->measure = kind == JointNoteKind::WristFlip ? std::max(latest->measure, measure)
-                                                           : std::min(latest->measure, measure);
+        const bool most = kind == JointNoteKind::WristFlip || kind == JointNoteKind::EyeOutOfReach;
+        latest->measure =
+            most ? std::max(latest->measure, measure) : std::min(latest->measure, measure);
     } else {
         path.notes.push_back({.kind = kind, .first = point, .last = point, .measure = measure});
     }
@@ -71,6 +75,39 @@ void find_violations(const Axis& axis, std::size_t joint, JointPath& path) {
     }
 }
 
+EyeTarget target_of(const EyePoint& point) {
+    return {.eye_mm = point.eye_mm, .tangent = point.tangent, .binormal = point.binormal};
+}
+
+JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
+                std::span<const double> turns_rad) {
+    JointPath result;
+    result.axis_count = machine.axis_count();
+    result.joints.resize(path.size() * result.axis_count);
+    std::vector<double> joints(result.axis_count, 0.0);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const WristState state = inverse.solve(target_of(path[i]), turns_rad[i], joints, joints);
+        std::copy(joints.begin(), joints.end(),
+                  result.joints.begin() + static_cast<std::ptrdiff_t>(i * result.axis_count));
+        result.worst_twist_rad = std::max(result.worst_twist_rad, state.twist_rad);
+        result.worst_miss_mm = std::max(result.worst_miss_mm, state.residual_mm);
+        if (state.singular_sine < kNearSingularSine) {
+            note(result, JointNoteKind::WristNearSingular, i, state.singular_sine);
+        }
+        if (state.flip && i > 0) {
+            note(result, JointNoteKind::WristFlip, i, state.flip_rad);
+        }
+        if (eye_radius_mm(path[i]) < kNearAxis_mm) {
+            note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
+        }
+        if (state.residual_mm > kReached_mm) {
+            note(result, JointNoteKind::EyeOutOfReach, i, state.residual_mm);
+        }
+    }
+    find_travel_violations(machine, result);
+    return result;
+}
+
 }  // namespace
 
 std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) {
@@ -90,32 +127,8 @@ std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) 
 JointPath solve_joints(const Machine& machine, const EyePath& path,
                        std::span<const double> turns_rad) {
     assert(turns_rad.size() == path.size());
-    const SpindleWristInverse inverse(machine);
-    JointPath result;
-    result.axis_count = machine.axis_count();
-    result.joints.resize(path.size() * result.axis_count);
-    std::vector<double> joints(result.axis_count, 0.0);
-    const std::size_t roll = machine.mandrel_chain.size() + 3;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        const double roll_before = joints[roll];
-        const EyeTarget target{
-            .eye_mm = path[i].eye_mm, .tangent = path[i].tangent, .binormal = path[i].binormal};
-        const WristState state = inverse.solve(target, turns_rad[i], joints, joints);
-        std::copy(joints.begin(), joints.end(),
-                  result.joints.begin() + static_cast<std::ptrdiff_t>(i * result.axis_count));
-        result.worst_twist_rad = std::max(result.worst_twist_rad, state.twist_rad);
-        if (state.singular_sine < kNearSingularSine) {
-            note(result, JointNoteKind::WristNearSingular, i, state.singular_sine);
-        }
-        if (state.flip && i > 0) {
-            note(result, JointNoteKind::WristFlip, i, std::abs(joints[roll] - roll_before));
-        }
-        if (eye_radius_mm(path[i]) < kNearAxis_mm) {
-            note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
-        }
-    }
-    find_travel_violations(machine, result);
-    return result;
+    const std::unique_ptr<EyeInverse> inverse = make_eye_inverse(machine);
+    return solve(machine, *inverse, path, turns_rad);
 }
 
 void find_travel_violations(const Machine& machine, JointPath& path) {
@@ -125,7 +138,14 @@ void find_travel_violations(const Machine& machine, JointPath& path) {
 }
 
 JointPath solve_joints(const Machine& machine, const EyePath& path, RedundancyPolicy policy) {
-    return solve_joints(machine, path, spindle_turns(path, policy));
+    const std::unique_ptr<EyeInverse> inverse = make_eye_inverse(machine);
+    std::vector<double> turns = spindle_turns(path, policy);
+    double before = 0.0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        turns[i] = inverse->forced_turn(target_of(path[i]), before).value_or(turns[i]);
+        before = turns[i];
+    }
+    return solve(machine, *inverse, path, turns);
 }
 
 }  // namespace meshwind

@@ -32,8 +32,9 @@ struct LimitViolation {
 
 enum class JointNoteKind {
     WristNearSingular,   ///< measure: least WristState::singular_sine of the run
-    WristFlip,           ///< measure: step of the roll joint in rad, above a quarter turn
+    WristFlip,           ///< measure: step of the wrist joint in rad, above a quarter turn
     EyeNearSpindleAxis,  ///< measure: least distance of the run in mm
+    EyeOutOfReach,       ///< measure: largest distance of the run in mm between eye and eye point
 };
 
 /// Something about a run of neighbouring points that slows the machine or hints at a bad set-up.
@@ -50,6 +51,8 @@ struct JointPath {
     std::vector<LimitViolation> violations;
     std::vector<JointNote> notes;
     double worst_twist_rad = 0.0;  ///< largest angle between roller and binormal; 0 with A and B
+    /// Largest distance of the eye from where it should be; 0 with three linear axes.
+    double worst_miss_mm = 0.0;
 
     [[nodiscard]] std::size_t size() const {
         return axis_count == 0 ? 0 : joints.size() / axis_count;
@@ -69,15 +72,16 @@ inline constexpr double kLeastEyeRadius_mm = 1e-6;
 
 /// Axis values with the spindle turns given (n values). Steps of the wrist are the smallest
 /// possible, starting from all axes at zero. Source: fu_2009_post_processing, machine transform;
-/// the turn has the opposite sign of its C, which counts the eye around the mandrel. \throws
-/// InputError machine.missing_axis, machine.unsupported_chain
+/// the turn has the opposite sign of its C, which counts the eye around the mandrel. Machines of
+/// any class (machines/eye_inverse.h); what the axes do not reach is noted.
 [[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
                                      std::span<const double> turns_rad);
 
 /// Appends the runs of points beyond an axis' travel to `path.violations`.
 void find_travel_violations(const Machine& machine, JointPath& path);
 
-/// The same with the turns of a policy.
+/// The same with the turns of a policy, or where axes are missing with those that the eye points
+/// force (EyeInverse::forced_turn).
 [[nodiscard]] JointPath solve_joints(const Machine& machine, const EyePath& path,
                                      RedundancyPolicy policy);
 

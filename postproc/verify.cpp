@@ -220,14 +220,20 @@ private:
                          place_words(laid.samples[sample].landing_mm));
             }
         };
-        for (const auto* const hits : {&report.fibre_hits, &report.head_hits}) {
+        if (!task_.envelope.bodies.empty()) {
+            check.numbers["body_hits"] = static_cast<double>(report.body_hits.size());
+        }
+        for (const auto* const hits : {&report.fibre_hits, &report.head_hits, &report.body_hits}) {
             for (const std::size_t sample : *hits) {
                 note_coarse(laid.block[sample]);
             }
         }
-        say(report.fibre_hits, "the free fibre meets the mandrel");
-        say(report.head_hits, "the head comes within " + fixed(rules_.collision.clearance_mm, 1) +
-                                  " mm of the mandrel");
+        const std::string what =
+            task_.envelope.bodies.empty() ? "the mandrel" : "the mandrel or a body";
+        say(report.fibre_hits, "the free fibre meets " + what);
+        say(report.head_hits,
+            "the head comes within " + fixed(rules_.collision.clearance_mm, 1) + " mm of " + what);
+        say(report.body_hits, "the mandrel meets a body that does not turn with it");
         found_.checks.push_back(check);
     }
 

@@ -135,7 +135,15 @@ class BadInput(program.ProgramTest):
             with self.subTest("without " + letter):
                 machine = without(letter)
                 machine["eye"]["envelope"] = bare["eye"]["envelope"]
-                self.refused_machine(machine, "axis" if letter == "A" else "axes")
+                file = self.write("machine.json", json.dumps(machine))
+                # valid each; whether the main job can be run with it is told
+                said = self.done("validate", file).stdout
+                if letter in "YA":
+                    self.assertIn("can be run", said)
+                else:
+                    self.assertIn("cannot be run", said)
+                    self.refused("cylinder.stl", "--machine", file, "-o", self.folder / "out",
+                                 word="axes")
         with self.subTest("no spindle"):
             self.refused_machine(changed(lambda m: m.update(mandrel_chain=[])), "mandrel")
         with self.subTest("unknown key"):

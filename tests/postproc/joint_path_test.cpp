@@ -90,6 +90,78 @@ TEST(JointPath, RoundTripOverStrokesAndOffAxisBodies) {
     }
 }
 
+// Four axes have no Y; on strokes by central angle none is needed, and "hold" cannot be had.
+TEST(JointPath, FourAxesFollowStrokesAtAnyPolicy) {
+    const Machine machine = read_machine(kSource + "/machines/four_axis.json");
+    const EyePath path = test::strokes(70.0, 200.0, 2.0, 400.0, 4);
+    for (const RedundancyPolicy policy : {RedundancyPolicy::CentralAngle, RedundancyPolicy::Hold}) {
+        const JointPath joints = solve_joints(machine, path, policy);
+        EXPECT_LT(joints.worst_miss_mm, 1e-9);
+        EXPECT_TRUE(joints.violations.empty());
+        EXPECT_TRUE(joints.notes.empty());
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const Eigen::Isometry3d eye = mandrel_from_eye(machine, joints.row(i));
+            ASSERT_LT((eye.translation() - path[i].eye_mm).norm(), 1e-9);
+            ASSERT_LT(std::abs((eye.linear() * machine.eye.roller).dot(path[i].tangent)), 1e-9);
+        }
+    }
+}
+
+TEST(JointPath, FourAxesSayWhatAGivenTurnMisses) {
+    const Machine machine = read_machine(kSource + "/machines/four_axis.json");
+    const EyePath path = test::helix(70.0, k45, 200.0, 5.0, 50);
+    std::vector<double> turns = spindle_turns(path, RedundancyPolicy::CentralAngle);
+    constexpr double kOff_rad = 0.1;
+    for (std::size_t i = 20; i < 30; ++i) {
+        turns[i] += kOff_rad;
+    }
+    const JointPath joints = solve_joints(machine, path, turns);
+    ASSERT_EQ(joints.notes.size(), 1u);
+    EXPECT_EQ(joints.notes[0].kind, JointNoteKind::EyeOutOfReach);
+    EXPECT_EQ(joints.notes[0].first, 20u);
+    EXPECT_EQ(joints.notes[0].last, 29u);
+    EXPECT_NEAR(joints.notes[0].measure, 157.797338 * std::sin(kOff_rad), 1e-5);
+    EXPECT_EQ(joints.notes[0].measure, joints.worst_miss_mm);
+}
+
+// Published two-axis example: tube of radius 40 at 45 degrees, the eye at 58.31 from the axis; its
+// regular part of 251 mm takes 359.53102 degrees of the mandrel.
+TEST(JointPath, TwoAxesWindThePublishedTube) {
+    const Machine machine = read_machine(kSource + "/machines/two_axis.json");
+    const double reach = std::sqrt(58.31 * 58.31 - 40.0 * 40.0);  // along the tangent plane
+    const double free_mm = reach / std::sin(k45);
+    const double step = 251.0 / std::cos(k45) / 100.0;
+    const JointPath joints = solve_joints(machine, test::helix(40.0, k45, free_mm, step, 101),
+                                          RedundancyPolicy::CentralAngle);
+    EXPECT_LT(joints.worst_miss_mm, 1e-9);
+    const double turned = value(machine, joints, 100, 'X') - value(machine, joints, 0, 'X');
+    EXPECT_NEAR(std::abs(deg_from_rad(turned)), 359.53102, 1e-4);
+    EXPECT_NEAR(value(machine, joints, 0, 'Y'), reach, 1e-9);
+    EXPECT_NEAR(value(machine, joints, 100, 'Y') - value(machine, joints, 0, 'Y'), 251.0, 1e-9);
+
+    // A longer free fibre wants the eye further out than it is.
+    const JointPath longer = solve_joints(machine, test::helix(40.0, k45, 80.0, step, 101),
+                                          RedundancyPolicy::CentralAngle);
+    ASSERT_EQ(longer.notes.size(), 1u);
+    EXPECT_EQ(longer.notes[0].kind, JointNoteKind::EyeOutOfReach);
+    EXPECT_NEAR(longer.worst_miss_mm, std::hypot(40.0, 80.0 * std::sin(k45)) - 58.31, 1e-9);
+}
+
+// A machine without closed form runs the same path: the head swings before it rolls.
+TEST(JointPath, ChainsWithoutClosedFormAreSolvedNumerically) {
+    Machine machine = six_axis();
+    std::swap(machine.eye_chain[3], machine.eye_chain[4]);
+    const EyePath path = test::helix(70.0, k45, 200.0, 5.0, 200);
+    const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);
+    EXPECT_LT(joints.worst_miss_mm, 1e-9);
+    EXPECT_LT(joints.worst_twist_rad, 1e-9);
+    EXPECT_TRUE(joints.violations.empty());
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Eigen::Isometry3d eye = mandrel_from_eye(machine, joints.row(i));
+        ASSERT_LT((eye.translation() - path[i].eye_mm).norm(), 1e-9);
+    }
+}
+
 TEST(JointPath, HoldKeepsTheSpindleStill) {
     const Machine machine = six_axis();
     const EyePath path = test::helix(70.0, k45, 200.0, 5.0, 200);
