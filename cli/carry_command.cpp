@@ -50,6 +50,7 @@ void check_numbers(const CarryRequest& request) {
     positive("--tube-radius", request.tube_radius_mm);
     positive("--ring-radius", request.ring_radius_mm);
     positive("--ring-distance", request.ring_distance_mm);
+    positive("--clearance", request.clearance_mm);
     positive("--tow-width", request.tow_width_mm.value_or(1.0));
     positive("--tows", request.tows);
     if (!(request.angle_deg >= 0.0 && request.angle_deg < 90.0)) {
@@ -66,7 +67,7 @@ void check_machine(const Machine& machine, const std::string& file) {
              "carrying takes six rotary axes in the mandrel chain and none in the eye chain, as "
              "robot_kr16.json has");
     }
-    if (machine.controller.dialect != "krl") {
+    if (machine.controller.dialect != kCarryDialect) {
         fail("carry.dialect", file + ": /controller/dialect",
              "programs for carrying are written for \"krl\" alone");
     }
@@ -220,6 +221,7 @@ private:
         check_reach();
         check_limits();
         check_wrist();
+        check_clearance();
         check_interpolation();
         check_rounding();
     }
@@ -299,6 +301,20 @@ private:
             "an axis jumps by more than a quarter turn" + at_sample(joints.first_flip) +
                 " of the axis; mount the frame in another way",
             {{"flips", static_cast<double>(joints.flips)}, {"least_singular", joints.singular}});
+    }
+
+    void check_clearance() {
+        const CarryRequest& request = result_.request;
+        const auto found =
+            frame_clearance(result_.machine, *axis_, result_.samples, request.tube_radius_mm);
+        if (!found) {
+            return;
+        }
+        add("clearance", found->least_mm >= request.clearance_mm,
+            "the frame comes within " + fixed(found->least_mm, 2) + " mm of body " +
+                std::to_string(found->body + 1) + " of the machine file" +
+                at_sample(found->sample) + " of the axis; mount the frame in another way",
+            {{"least_mm", found->least_mm}, {"limit_mm", request.clearance_mm}});
     }
 
     // Of the frames that were read back, not of those that were planned.

@@ -17,6 +17,9 @@
 
 namespace meshwind {
 
+/// The dialect of machines that carry; its programs are no lists of axis blocks (dialect.h).
+inline constexpr const char* kCarryDialect = "krl";
+
 struct CarryRequest {
     std::filesystem::path axis;     ///< table of postproc/frame_axis.h
     std::filesystem::path machine;  ///< its eye stands still: the centre of the head
@@ -28,8 +31,9 @@ struct CarryRequest {
     double tube_radius_mm = 20.0;
     double ring_radius_mm = 40.0;
     double ring_distance_mm = 70.0;
-    double angle_deg = 45.0;  ///< wanted of the rings' fibres, one ring to each side
-    int tows = 12;            ///< on each ring
+    double clearance_mm = 5.0;  ///< of the frame from bodies on the machine's base
+    double angle_deg = 45.0;    ///< wanted of the rings' fibres, one ring to each side
+    int tows = 12;              ///< on each ring
     std::optional<double> tow_width_mm;
     /// Frame of the axis' table on the robot's flange: x, y, z in mm, a, b, c in deg.
     std::array<double, 6> tool{};
@@ -64,8 +68,9 @@ struct CarryOutcome {
     double turns_per_mm = 0.0;       ///< of a ring, for the wanted angle
     std::array<RingResult, 2> ring;  ///< right-handed, left-handed
     double longitudinal_deg = 0.0;   ///< largest lean of fibres along the axis, of the frame's turn
-    std::vector<Check> checks;       ///< ring, reach, limits, wrist, interpolation, rounding
-    bool written = false;            ///< the program
+    std::vector<Check>
+        checks;  ///< ring, reach, limits, wrist, clearance (with bodies), interpolation, rounding
+    bool written = false;  ///< the program
 
     [[nodiscard]] bool passed() const;
     [[nodiscard]] double total_s() const;

@@ -437,6 +437,8 @@ void add_carry(CLI::App& app, CarryOptionsText& text) {
     number("--tube-radius", request.tube_radius_mm, "of the frame, mm");
     number("--ring-radius", request.ring_radius_mm, "clear opening of the rings, mm");
     number("--ring-distance", request.ring_distance_mm, "between the two rings, mm");
+    number("--clearance", request.clearance_mm,
+           "of the frame from the machine's bodies on its base, mm");
     number("--angle", request.angle_deg, "of the rings' fibres from the axis, degrees");
     app.add_option("--tows", request.tows, "on each ring")->capture_default_str();
     app.add_option("--tow-width", request.tow_width_mm, "mm; for the share of the tube covered");
@@ -473,7 +475,9 @@ int run_validate(const std::string& name, const Common& common) {
     std::string more;
     if (machine) {
         const Machine read = read_machine(file);
-        (void)make_dialect(read.controller.dialect);
+        if (read.controller.dialect != kCarryDialect) {
+            (void)make_dialect(read.controller.dialect);
+        }
         const MachineClass what = machine_class(read);
         more = "class         " + what.words + "\nfreedom       " +
                std::to_string(read.axis_count()) +

@@ -118,7 +118,7 @@ std::string carry_json(const CarryOutcome& outcome) {
         {"checks", checks_report(outcome.checks)},
         {"program",
          {{"file", outcome.written ? json(outcome.request.name + ".src") : json(nullptr)},
-          {"dialect", "krl"},
+          {"dialect", kCarryDialect},
           {"moves", outcome.program.moves.size()},
           {"duration_s", report_number(outcome.total_s())}}},
         {"ok", outcome.passed()}};

@@ -31,6 +31,7 @@ std::string meaning_of(const std::string& check) {
         {"ring", "the frame clear of the rings"},
         {"reach", "every pose within the robot's reach"},
         {"wrist", "no axis that jumps"},
+        {"clearance", "the frame clear of what stands on the base"},
         {"interpolation", "the axis in the middle of the head between the points"}};
     const auto found = kMeanings.find(check.substr(0, check.find('-')));
     return found == kMeanings.end() ? "" : ": " + found->second;

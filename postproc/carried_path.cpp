@@ -6,12 +6,14 @@
 #include <tuple>
 
 #include "machines/arm_inverse.h"
+#include "postproc/chunk.h"
 #include "postproc/ring_head.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Isometry3d;
+using Eigen::Vector3d;
 
 // Starts: of an arm those that its closed form gives, else where the search from zero leads.
 std::vector<std::vector<double>> starts(const Machine& machine, const Isometry3d& pose) {
@@ -91,6 +93,21 @@ double piece_of(const std::vector<CarriedSample>& samples, std::size_t i) {
     return samples[i].share - (samples[i - 1].move == samples[i].move ? samples[i - 1].share : 0.0);
 }
 
+// How far the axis can be from the chords of its stations: an arc's sagitta, twice for a curve
+// whose turn is not even.
+double most_sag_mm(const FrameAxis& axis) {
+    double sag_mm = 0.0;
+    for (std::size_t i = 1; i < axis.stations().size(); ++i) {
+        const AxisStation& from = axis.stations()[i - 1];
+        const AxisStation& to = axis.stations()[i];
+        const Vector3d chord = (to.point_mm - from.point_mm).normalized();
+        const double turn = std::max(std::acos(std::clamp(chord.dot(from.tangent), -1.0, 1.0)),
+                                     std::acos(std::clamp(chord.dot(to.tangent), -1.0, 1.0)));
+        sag_mm = std::max(sag_mm, 0.5 * turn * (to.point_mm - from.point_mm).norm());
+    }
+    return sag_mm;
+}
+
 }  // namespace
 
 std::vector<CarriedSample> sample_moves(const std::vector<double>& s_mm,
@@ -162,6 +179,48 @@ AxisLoads move_loads(const Machine& machine, const std::vector<CarriedSample>& s
     loads.acceleration =
         axis_loads(machine, ends_of_moves(samples, joints), duration_s).acceleration;
     return loads;
+}
+
+std::optional<FrameClearance> frame_clearance(const Machine& machine, const FrameAxis& axis,
+                                              const std::vector<CarriedSample>& samples,
+                                              double tube_radius_mm) {
+    double farthest_mm = 0.0;
+    for (const AxisStation& station : axis.stations()) {
+        farthest_mm = std::max(farthest_mm, station.point_mm.norm());
+    }
+    const double sag_mm = most_sag_mm(axis);
+    std::optional<FrameClearance> worst;
+    std::vector<Vector3d> points(axis.stations().size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        double moved_mm = 0.0;  // half of a step on either side
+        for (const std::size_t next : {i, i + 1}) {
+            if (next > 0 && next < samples.size()) {
+                const Isometry3d& from = samples[next - 1].pose;
+                const Isometry3d& to = samples[next].pose;
+                moved_mm =
+                    std::max(moved_mm, 0.5 * ((to.translation() - from.translation()).norm() +
+                                              turn_between(from, to) * farthest_mm));
+            }
+        }
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            points[k] = samples[i].pose * axis.stations()[k].point_mm;
+        }
+        for (std::size_t body = 0; body < machine.bodies.size(); ++body) {
+            const Capsule* capsule = std::get_if<Capsule>(&machine.bodies[body].shape);
+            if (capsule == nullptr || machine.bodies[body].link) {
+                continue;
+            }
+            for (std::size_t k = 1; k < points.size(); ++k) {
+                const double clear_mm = segment_distance_mm(points[k - 1], points[k],
+                                                            capsule->from_mm, capsule->to_mm) -
+                                        capsule->radius_mm - tube_radius_mm - moved_mm - sag_mm;
+                if (!worst || clear_mm < worst->least_mm) {
+                    worst = {clear_mm, i, body};
+                }
+            }
+        }
+    }
+    return worst;
 }
 
 }  // namespace meshwind

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "machines/machine.h"
 #include "core/units.h"
+#include "machines/machine.h"
 #include "machines/pose_inverse.h"
+#include "postproc/frame_axis.h"
 #include "postproc/joint_path.h"
 #include "postproc/time_law.h"
 
@@ -69,5 +70,20 @@ struct CarriedJoints {
                                    const std::vector<CarriedSample>& samples,
                                    const CarriedJoints& joints,
                                    const std::vector<double>& duration_s);
+
+/// How near the frame, a tube about its axis, comes to what stands on the machine's base.
+struct FrameClearance {
+    double least_mm = 0.0;   ///< surface to surface; negative where they meet
+    std::size_t sample = 0;  ///< where
+    std::size_t body = 0;    ///< of the machine file
+};
+
+/// Of the capsules among the machine's bodies whose link is the base; nothing where there is none.
+/// At each sample the exact distances of the chords between stations; what the frame can move
+/// between two samples and what its axis can leave the chords is taken off, so that nothing slips
+/// through.
+[[nodiscard]] std::optional<FrameClearance> frame_clearance(
+    const Machine& machine, const FrameAxis& axis, const std::vector<CarriedSample>& samples,
+    double tube_radius_mm);
 
 }  // namespace meshwind

@@ -135,6 +135,15 @@ class Carry(program.ProgramTest):
         self.assertRegex(result.stderr, r"limits: A\d goes to \S+ deg at \S+ mm of the axis, \S+ deg "
                                         r"beyond its end")
 
+    def test_body_in_the_way(self):
+        machine = json.loads((program.SOURCE / "machines/robot_kr16.json").read_text())
+        machine["bodies"][1]["to"][2] = 900
+        self.write("tall_stand.json", json.dumps(machine))
+        result = self.run_program("carry", "l_frame_axis.csv", "--machine", "tall_stand.json",
+                                  "--quiet")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"clearance: the frame comes within \S+ mm of body 2 ")
+
     def refused(self, *arguments, word):
         result = self.run_program(*arguments, "--quiet")
         self.assertEqual(result.returncode, 2, result.stderr)

@@ -164,5 +164,23 @@ TEST_F(CarriedPath, LoadsAreThoseOfTheFastestPiece) {
     EXPECT_NEAR(move_loads(machine_, all, joints, half).velocity.ratio, 2.0 * ratio, 1e-12);
 }
 
+TEST_F(CarriedPath, ClearanceIsThatOfABallBesideTheHead) {
+    // While the straight arm passes the head, nothing of the frame is nearer to a body below it.
+    machine_.bodies = {
+        {std::nullopt, Capsule{{-1000.0, 1070.0, 900.0}, {-1000.0, 1070.0, 800.0}, 30.0}},
+        {'F', Capsule{{0, 0, 0}, {0, 0, 1}, 1000.0}}};  // on a link: not looked at
+    const std::vector<CarriedSample> straight = {
+        {0, 1.0, 100.0, carried_pose(head_, axis_.at(100.0))},
+        {1, 1.0, 101.0, carried_pose(head_, axis_.at(101.0))}};
+    const auto found = frame_clearance(machine_, axis_, straight, 20.0);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->body, 0u);
+    // 90 mm from axis to end of the capsule, two radii, half a step of 1 mm, the sag of the bend
+    EXPECT_LE(found->least_mm, 90.0 - 50.0 - 0.5);
+    EXPECT_GT(found->least_mm, 90.0 - 50.0 - 0.5 - 0.5);
+    machine_.bodies.clear();
+    EXPECT_FALSE(frame_clearance(machine_, axis_, straight, 20.0));
+}
+
 }  // namespace
 }  // namespace meshwind
