@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
 #include <sstream>
+#include <utility>
 
 #include "cli/digest.h"
 #include "cli/output_files.h"

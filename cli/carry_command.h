@@ -1,6 +1,7 @@
 /// `meshwind carry`: a frame on a robot through a fixed ring head.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -108,6 +108,21 @@ double most_sag_mm(const FrameAxis& axis) {
     return sag_mm;
 }
 
+// The most that a point within `farthest_mm` of the frame's origin moves in half of the longer step
+// beside a sample.
+double half_step_mm(const std::vector<CarriedSample>& samples, std::size_t i, double farthest_mm) {
+    double moved_mm = 0.0;
+    for (const std::size_t next : {i, i + 1}) {
+        if (next > 0 && next < samples.size()) {
+            const Isometry3d& from = samples[next - 1].pose;
+            const Isometry3d& to = samples[next].pose;
+            moved_mm = std::max(moved_mm, 0.5 * ((to.translation() - from.translation()).norm() +
+                                                 turn_between(from, to) * farthest_mm));
+        }
+    }
+    return moved_mm;
+}
+
 }  // namespace
 
 std::vector<CarriedSample> sample_moves(const std::vector<double>& s_mm,
@@ -161,6 +176,7 @@ TimedPath time_moves(const Machine& machine, const std::vector<CarriedSample>& s
         }
     }
     std::vector<double> passage_mm;
+    passage_mm.reserve(least_s.size());
     for (const double least : least_s) {
         passage_mm.push_back(least * speed_mm_s);
     }
@@ -192,16 +208,7 @@ std::optional<FrameClearance> frame_clearance(const Machine& machine, const Fram
     std::optional<FrameClearance> worst;
     std::vector<Vector3d> points(axis.stations().size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        double moved_mm = 0.0;  // half of a step on either side
-        for (const std::size_t next : {i, i + 1}) {
-            if (next > 0 && next < samples.size()) {
-                const Isometry3d& from = samples[next - 1].pose;
-                const Isometry3d& to = samples[next].pose;
-                moved_mm =
-                    std::max(moved_mm, 0.5 * ((to.translation() - from.translation()).norm() +
-                                              turn_between(from, to) * farthest_mm));
-            }
-        }
+        const double moved_mm = half_step_mm(samples, i, farthest_mm);
         for (std::size_t k = 0; k < points.size(); ++k) {
             points[k] = samples[i].pose * axis.stations()[k].point_mm;
         }

@@ -76,6 +76,34 @@ void append_frame(std::string& text, std::string_view before, const KrlFrame& fr
     append_aggregate(text, kFrameNames, frame.nano, frame_decimals);
 }
 
+// The moves, each with the speeds that change before it.
+void append_moves(std::string& text, const KrlProgram& program) {
+    std::int64_t path = 0;
+    std::int64_t turn = 0;
+    for (std::size_t i = 0; i < program.moves.size(); ++i) {
+        const KrlMove& move = program.moves[i];
+        if (move.path_nano_m_s != path) {
+            path = move.path_nano_m_s;
+            text += kPathSpeed;
+            append_nano(text, path, kPathSpeedDecimals);
+            text += '\n';
+        }
+        if (move.turn_nano_deg_s != turn) {
+            turn = move.turn_nano_deg_s;
+            for (const std::string_view name : {kSwivelSpeed, kSpinSpeed}) {
+                text += name;
+                append_nano(text, turn, kTurnSpeedDecimals);
+                text += '\n';
+            }
+        }
+        append_frame(text, "LIN ", move.to);
+        text += i == 0 || i + 1 == program.moves.size() ? "\n" : " C_DIS\n";
+        if (i == 0) {
+            text += "; tie the fibre on, then start again; the rings turn from here on\nHALT\n";
+        }
+    }
+}
+
 bool is_name(const std::string& name) {
     const auto letter = [](unsigned char c) { return std::isalpha(c) != 0 && c < 128; };
     return !name.empty() && name.size() <= kLongestName &&
@@ -336,30 +364,7 @@ std::string write_krl(const KrlProgram& program, const std::vector<std::string>&
     text += "; the way to the start is free, by hand if it is not\nPTP ";
     append_aggregate(text, kAxisNames, program.start_nano, axis_decimals);
     text += '\n';
-    std::int64_t path = 0;
-    std::int64_t turn = 0;
-    for (std::size_t i = 0; i < program.moves.size(); ++i) {
-        const KrlMove& move = program.moves[i];
-        if (move.path_nano_m_s != path) {
-            path = move.path_nano_m_s;
-            text += kPathSpeed;
-            append_nano(text, path, kPathSpeedDecimals);
-            text += '\n';
-        }
-        if (move.turn_nano_deg_s != turn) {
-            turn = move.turn_nano_deg_s;
-            for (const std::string_view name : {kSwivelSpeed, kSpinSpeed}) {
-                text += name;
-                append_nano(text, turn, kTurnSpeedDecimals);
-                text += '\n';
-            }
-        }
-        append_frame(text, "LIN ", move.to);
-        text += i == 0 || i + 1 == program.moves.size() ? "\n" : " C_DIS\n";
-        if (i == 0) {
-            text += "; tie the fibre on, then start again; the rings turn from here on\nHALT\n";
-        }
-    }
+    append_moves(text, program);
     return text + "END\n";
 }
 
