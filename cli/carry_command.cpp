@@ -34,7 +34,7 @@ constexpr double kLeastWay_mm = 0.01;
 // Rounding to a program's digits moves no axis by more.
 constexpr double kRounded_mm = 1e-3;
 constexpr double kRounded_deg = 1e-4;
-// Loads are compared with 1; F6 digits of speeds are rounded up by a millionth m/s.
+// Loads are compared with 1; speeds are rounded up by at most a millionth m/s in a slow move.
 constexpr double kLoadSlack = 1e-3;
 
 [[noreturn]] void fail(const char* code, const std::string& place, const std::string& words) {
@@ -112,6 +112,12 @@ private:
         result_.length_mm = axis_->length_mm();
         result_.machine = read_machine(request.machine.string());
         check_machine(result_.machine, request.machine.string());
+        const double most_mm_s = result_.machine.fibre.max_speed_mm_s;
+        if (request.speed_mm_s > most_mm_s) {
+            fail("carry.speed", "--speed",
+                 "is above the " + fixed(most_mm_s, 1) +
+                     " mm/s that the machine's fibre allows; pass more slowly");
+        }
         const EyeHead& eye = result_.machine.eye;
         result_.head = {eye.position_mm, eye.exit, eye.roller, request.ring_distance_mm,
                         request.ring_radius_mm};

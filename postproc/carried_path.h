@@ -60,6 +60,7 @@ struct CarriedJoints {
 
 /// Duration of each move, the first 0: the frame passes at `speed_mm_s` where the axes' velocities
 /// and accelerations (time_law.h, from move to move) let it. Within a move all runs evenly.
+/// \pre 0 < speed_mm_s <= machine.fibre.max_speed_mm_s
 [[nodiscard]] TimedPath time_moves(const Machine& machine,
                                    const std::vector<CarriedSample>& samples,
                                    const CarriedJoints& joints, double speed_mm_s);

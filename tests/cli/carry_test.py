@@ -156,6 +156,7 @@ class Carry(program.ProgramTest):
         self.refused("carry", self.write("a.csv", "x,y\n1,2\n"), word="a.csv:1")
         self.refused("carry", self.write("b.csv", "x_mm,y_mm,z_mm\n0,0,0\n0,0,x\n"), word="b.csv:3")
         self.refused(*CARRY, "--speed", "0", word="--speed")
+        self.refused(*CARRY, "--speed", "1e300", word="--speed")
         self.refused(*CARRY, "--tows", "0", word="--tows")
         self.refused(*CARRY, "--tolerance", "nan", word="--tolerance")
         self.refused(*CARRY, "--angle", "90", word="--angle")
