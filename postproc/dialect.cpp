@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "postproc/linuxcnc.h"
+#include "postproc/pulses.h"
 
 namespace meshwind {
 namespace {
@@ -17,8 +18,13 @@ std::unique_ptr<Dialect> make() {
 }
 
 // One line per dialect.
-constexpr std::array<std::pair<std::string_view, Maker>, 1> kDialects = {{
+constexpr std::array<std::pair<std::string_view, Maker>, 6> kDialects = {{
     {"linuxcnc", make<LinuxCnc>},
+    {"fanuc", make<Fanuc>},
+    {"siemens", make<Siemens>},
+    {"grbl", make<Grbl>},
+    {"marlin", make<Marlin>},
+    {"pulses", make<Pulses>},
 }};
 
 }  // namespace
