@@ -178,13 +178,21 @@ private:
                                       block_tolerance());
         const std::span<const std::size_t> ends = found_.choice.ends;
         const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
-        TimedBlocks timed =
-            meshwind::make_blocks(setup_.machine, points_at(path_, ends), points_at(joints_, ends),
-                                  found_.choice.fibre_mm, time);
+        const auto timed_for = [&](const Machine& machine) {
+            return meshwind::make_blocks(machine, points_at(path_, ends), points_at(joints_, ends),
+                                         found_.choice.fibre_mm, time);
+        };
+        TimedBlocks timed = timed_for(setup_.machine);
+        BlockList prepared = setup_.dialect->prepare(timed.list);
+        if (prepared.axes != timed.list.axes) {
+            // Other steps are other positions, so the time law is asked again.
+            timed = timed_for(with_steps(setup_.machine, prepared.axes));
+            prepared = setup_.dialect->prepare(std::move(timed.list));
+        }
         found_.duration_s = timed.time.duration_s;
         found_.binding = std::move(timed.time.binding);
         // What the program runs, repeated circuits included.
-        FoldedProgram folded = setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
+        FoldedProgram folded = setup_.dialect->fold(std::move(prepared));
         found_.blocks = std::move(folded.list);
         found_.layout = std::move(folded.layout);
     }

@@ -88,18 +88,6 @@ std::optional<int> power_of(const BlockList& list, std::size_t axis, const NcFla
     return error > 0.5 * units(binary_nano(power)) ? std::optional<int>(power) : std::nullopt;
 }
 
-// The start is written with all its digits.
-std::int64_t start_step(std::int64_t nano, int power, std::size_t most_digits) {
-    if (most_digits == 0) {
-        return binary_nano(power);
-    }
-    while (power > 0 && std::abs(nano) + binary_nano(power) >=
-                            kNanoPerUnit * ten_to(static_cast<int>(most_digits) - power)) {
-        --power;
-    }
-    return binary_nano(power);
-}
-
 // Steps that move no axis go with the next that does, at the end with the last.
 BlockList without_rests(const BlockList& list) {
     BlockList kept;
@@ -151,10 +139,9 @@ BlockList with_binary_steps(BlockList list, const NcFlavour& flavour) {
         }
         any = true;
         list.axes[a].resolution_nano = binary_nano(*power);
-        const std::int64_t first = start_step(list.row(0)[a], *power, flavour.most_digits);
         for (std::size_t b = 0; b < list.blocks.size(); ++b) {
             std::int64_t& nano = list.nano[b * list.axes.size() + a];
-            nano = nearest_multiple(nano, b == 0 ? first : binary_nano(*power));
+            nano = nearest_multiple(nano, binary_nano(*power));
         }
     }
     return any ? without_rests(list) : list;

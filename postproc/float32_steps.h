@@ -25,8 +25,7 @@ inline constexpr int kCoarsestBinary = 4;
 /// Axes that float sums would take off their positions by more than half a step, and by more than
 /// half the new step, get one that is a power of two, 2^-finest_binary or as much coarser as their
 /// reach asks for. Multiples of it have sums that are exact in 24 bits, so the remainders are
-/// carried and nothing drifts. The start is rounded to so many of them that its digits can be
-/// written. Blocks that then move no axis are merged with the next.
+/// carried and nothing drifts. Blocks that then move no axis are merged with the next.
 /// \throws InputError dialect.float32 when an axis goes beyond what its coarsest steps reach
 [[nodiscard]] BlockList with_binary_steps(BlockList list, const NcFlavour& flavour);
 

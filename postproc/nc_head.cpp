@@ -13,6 +13,15 @@ void append_if(std::vector<std::string>& to, const std::string& key, const std::
     }
 }
 
+void make_plain(const NcFlavour& flavour, std::string& words) {
+    const bool brackets = flavour.comments != NcComments::Semicolon;
+    for (char& c : words) {
+        const bool plain =
+            c >= ' ' && c <= '~' && flavour.not_in_comments.find(c) == std::string_view::npos;
+        c = brackets && c == '(' ? '[' : brackets && c == ')' ? ']' : plain ? c : flavour.stand_in;
+    }
+}
+
 // Steps that differ from the machine's, and what float sums lose all the same.
 void append_float32(std::vector<std::string>& to, const Machine& machine, const BlockList& list,
                     Float32Text text) {
@@ -62,13 +71,25 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
     return lines;
 }
 
+LineValues line_values(const NcFlavour& flavour, const Machine& machine, const BlockList& list,
+                       const ProgramHeader& header) {
+    const auto plain = [&](const std::string& words) {
+        std::string line = words.substr(0, flavour.line_length);
+        make_plain(flavour, line);
+        return line;
+    };
+    return {.program = std::to_string(machine.controller.program_number.value_or(1)),
+            .mandrel = plain(header.mandrel),
+            .machine = plain(machine.name),
+            .time_s = fixed(list.duration_s(), 1),
+            .fibre_m = fixed(header.fibre_length_mm / kMmPerM, 3),
+            .blocks = std::to_string(list.blocks.size() - 1),
+            .version = plain(header.version)};
+}
+
 std::string comment_lines(const NcFlavour& flavour, std::string words) {
     const bool brackets = flavour.comments != NcComments::Semicolon;
-    for (char& c : words) {
-        const bool plain =
-            c >= ' ' && c <= '~' && flavour.not_in_comments.find(c) == std::string_view::npos;
-        c = brackets && c == '(' ? '[' : brackets && c == ')' ? ']' : plain ? c : flavour.stand_in;
-    }
+    make_plain(flavour, words);
     std::string text;
     const std::size_t width = flavour.line_length - 2;
     for (std::size_t i = 0; i == 0 || i < words.size(); i += width) {

@@ -9,14 +9,12 @@
 #include "core/error.h"
 #include "core/text_number.h"
 #include "postproc/decimal_text.h"
-#include "postproc/header_lines.h"
 #include "postproc/nc_reader.h"
 
 namespace meshwind {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kMmPerM = 1000.0;
 // Numbers of subprograms count from here, clear of those that people give to programs.
 constexpr std::size_t kFirstSubprogram = 1001;
 // Text per line in bytes, to reserve the output once.
@@ -141,18 +139,7 @@ private:
     void comment(std::string words) { text_ += comment_lines(flavour_, std::move(words)); }
 
     void own_lines(const std::vector<std::string>& lines) {
-        const auto plain = [&](const std::string& words) {
-            std::string line = comment_lines(flavour_, words.substr(0, flavour_.line_length - 2));
-            const bool brackets = flavour_.comments != NcComments::Semicolon;
-            return brackets ? line.substr(1, line.size() - 3) : line.substr(2, line.size() - 3);
-        };
-        const LineValues values{.program = std::to_string(number_),
-                                .mandrel = plain(header_.mandrel),
-                                .machine = plain(machine_.name),
-                                .time_s = fixed(list_.duration_s(), 1),
-                                .fibre_m = fixed(header_.fibre_length_mm / kMmPerM, 3),
-                                .blocks = std::to_string(list_.blocks.size() - 1),
-                                .version = plain(header_.version)};
+        const LineValues values = line_values(flavour_, machine_, list_, header_);
         for (const std::string& line : filled_lines(lines, values, machine_.name)) {
             check_own_line(flavour_, machine_, line);
             text_ += line + '\n';
@@ -162,27 +149,50 @@ private:
     void start_moves() {
         for (const AxisType type : {AxisType::Rotary, AxisType::Linear}) {
             std::string words;
+            std::string rest;
             for (const std::size_t a : order_) {
                 if (list_.axes[a].type == type) {
-                    words += std::string(" ") + list_.axes[a].letter;
-                    append_position(words, list_.row(0)[a], a, 0);
+                    start(a, words, rest);
                 }
             }
             if (!words.empty()) {
                 text_ += std::string(flavour_.absolute) + "G0" + words + '\n';
             }
+            if (!rest.empty()) {
+                text_ += "G91 G0" + rest + '\n';
+            }
         }
+    }
+
+    // A start of too many digits is taken in whole units first.
+    void start(std::size_t axis, std::string& words, std::string& rest) {
+        const std::int64_t nano = list_.row(0)[axis];
+        const std::int64_t whole = nano / kNanoPerUnit * kNanoPerUnit;
+        const std::string letter = std::string(" ") + list_.axes[axis].letter;
+        std::string all;
+        append_nano(all, nano, decimals_[axis]);
+        words += letter;
+        if (flavour_.most_digits > 0 && digits_of(all) > flavour_.most_digits) {
+            append_nano(words, whole, 0);
+            rest += letter;
+            append_position(rest, nano - whole, axis, 0);
+        } else {
+            append_position(words, nano, axis, 0);
+        }
+    }
+
+    static std::size_t digits_of(std::string_view text) {
+        return static_cast<std::size_t>(
+            std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }));
     }
 
     void append_position(std::string& to, std::int64_t nano, std::size_t axis, std::size_t block) {
         const std::size_t begin = to.size();
         append_nano(to, nano, decimals_[axis]);
-        const auto first = to.begin() + static_cast<std::ptrdiff_t>(begin);
         if (flavour_.needs_point && decimals_[axis] == 0) {
             to += '.';
         } else if (flavour_.most_digits > 0) {
-            const auto digits = std::count_if(first, to.end(), [](char c) { return c >= '0'; });
-            if (digits > static_cast<std::ptrdiff_t>(flavour_.most_digits)) {
+            if (digits_of(std::string_view(to).substr(begin)) > flavour_.most_digits) {
                 throw InputError("dialect.digits", "block " + std::to_string(block),
                                  std::string("axis ") + list_.axes[axis].letter + ": \"" +
                                      to.substr(begin) + "\" has more than the " +

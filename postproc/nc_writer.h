@@ -7,6 +7,7 @@
 #include "machines/machine.h"
 #include "postproc/block.h"
 #include "postproc/dialect.h"
+#include "postproc/header_lines.h"
 #include "postproc/nc_flavour.h"
 
 namespace meshwind {
@@ -24,6 +25,10 @@ namespace meshwind {
 [[nodiscard]] std::vector<std::string> head_comments(const Machine& machine, const BlockList& list,
                                                      const ProgramHeader& header,
                                                      Float32Text float32);
+
+/// What the controller's own lines may ask for, such that it can stand in a comment of the flavour.
+[[nodiscard]] LineValues line_values(const NcFlavour& flavour, const Machine& machine,
+                                     const BlockList& list, const ProgramHeader& header);
 
 /// Words as comments of the flavour, a line each or as many as it takes.
 [[nodiscard]] std::string comment_lines(const NcFlavour& flavour, std::string words);

@@ -10,7 +10,6 @@
 #include "core/error.h"
 #include "core/text_number.h"
 #include "postproc/decimal_text.h"
-#include "postproc/header_lines.h"
 #include "postproc/nc_reader.h"
 #include "postproc/nc_writer.h"
 #include "postproc/program_flow.h"
@@ -18,7 +17,6 @@
 namespace meshwind {
 namespace {
 
-constexpr double kMmPerM = 1000.0;
 // A duration that is a whole number of ticks up to rounding is not one tick more.
 constexpr double kWholeTick = 1e-6;
 
@@ -307,14 +305,7 @@ public:
 
 private:
     void own_lines(const std::vector<std::string>& lines) {
-        const LineValues values{
-            .program = std::to_string(machine_.controller.program_number.value_or(1)),
-            .mandrel = header_.mandrel,
-            .machine = machine_.name,
-            .time_s = fixed(list_.duration_s(), 1),
-            .fibre_m = fixed(header_.fibre_length_mm / kMmPerM, 3),
-            .blocks = std::to_string(list_.blocks.size() - 1),
-            .version = header_.version};
+        const LineValues values = line_values(flavour_, machine_, list_, header_);
         for (const std::string& line : filled_lines(lines, values, machine_.name)) {
             try {
                 Reader(machine_.name, machine_).comment_only(line);
