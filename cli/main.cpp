@@ -424,7 +424,7 @@ int run_validate(const std::string& name, const Common& common) {
     if (machine) {
         const Machine read = read_machine(file);
         const SpindleWristInverse inverse(read);
-        (void)make_dialect(read.controller.dialect);
+        make_dialect(read.controller.dialect)->check(read);
     } else {
         (void)read_job(file);
     }

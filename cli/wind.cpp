@@ -109,6 +109,7 @@ private:
     void read() {
         tell("import", 0.0);
         setup_ = read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
+        setup_.dialect->check(setup_.machine);
         mandrel_digest_ = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
         refuse_what_is_not_offered(setup_.job, request_.job);
         const SpindleWristInverse inverse(setup_.machine);       // refuses what cannot be solved

@@ -29,6 +29,20 @@ constexpr std::array<std::pair<std::string_view, Maker>, 6> kDialects = {{
 
 }  // namespace
 
+void Dialect::check(const Machine& machine) const {
+    BlockList list;
+    for (std::size_t a = 0; a < machine.axis_count(); ++a) {
+        const Axis& axis = machine.axis(a);
+        list.axes.push_back({axis.letter, axis.type, axis.resolution_nano});
+    }
+    list.blocks = {{}, {.duration_s = 1.0}};
+    list.nano.assign(2 * list.axes.size(), 0);
+    for (std::size_t a = 0; a < list.axes.size(); ++a) {
+        list.nano[list.axes.size() + a] = list.axes[a].resolution_nano;
+    }
+    (void)write(machine, list, ProgramHeader{});
+}
+
 std::unique_ptr<Dialect> make_dialect(std::string_view name) {
     std::string known;
     for (const auto& [word, maker] : kDialects) {
