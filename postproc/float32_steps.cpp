@@ -51,14 +51,6 @@ float as_float(std::int64_t nano, int decimals, Float32Text text) {
                                            : static_cast<float>(units(nano));
 }
 
-std::int64_t reach_nano(const BlockList& list, std::size_t axis) {
-    std::int64_t reach = 0;
-    for (std::size_t b = 0; b < list.blocks.size(); ++b) {
-        reach = std::max(reach, std::abs(list.row(b)[axis]));
-    }
-    return reach;
-}
-
 // Halves are rounded away from zero.
 std::int64_t nearest_multiple(std::int64_t nano, std::int64_t step) {
     const std::int64_t size = std::abs(nano);
@@ -66,27 +58,67 @@ std::int64_t nearest_multiple(std::int64_t nano, std::int64_t step) {
     return nano < 0 ? -rounded : rounded;
 }
 
-// The power of the step that an axis needs, if any.
-std::optional<int> power_of(const BlockList& list, std::size_t axis, const NcFlavour& flavour) {
-    const double error = float32_error(list, axis, flavour.float32);
-    if (error <= kModelShare * 0.5 * units(list.axes[axis].resolution_nano)) {
-        return std::nullopt;
-    }
-    const std::int64_t reach = reach_nano(list, axis);
-    int power = flavour.finest_binary;
-    while (power > kCoarsestBinary && reach / binary_nano(power) >= kExactSteps) {
-        --power;
-    }
-    if (reach / binary_nano(power) >= kExactSteps) {
-        throw InputError("dialect.float32", std::string("axis ") + list.axes[axis].letter,
-                         "reaches " + fixed(units(reach), 0) + " mm or deg, but " +
-                             std::string(flavour.controller) +
-                             " adds in 32-bit floats and is exact up to " +
-                             fixed(units(kExactSteps * binary_nano(power)), 0) +
-                             "; wind layer by layer, homing between");
-    }
-    return error > 0.5 * units(binary_nano(power)) ? std::optional<int>(power) : std::nullopt;
+// Increments of so many decimals must stay below it; 0: any are read.
+std::int64_t most_nano(int decimals, std::size_t most_digits) {
+    const int whole = static_cast<int>(most_digits) - decimals;
+    return most_digits == 0 ? 0 : whole > 0 ? kNanoPerUnit * ten_to(whole) : kNanoPerUnit;
 }
+
+class AxisSteps {
+public:
+    AxisSteps(const BlockList& list, std::size_t axis, const NcFlavour& flavour)
+        : axis_(list.axes[axis]), flavour_(flavour) {
+        error_ = float32_error(list, axis, flavour.float32);
+        for (std::size_t b = 0; b < list.blocks.size(); ++b) {
+            reach_ = std::max(reach_, std::abs(list.row(b)[axis]));
+            longest_ =
+                b == 0 ? 0
+                       : std::max(longest_, std::abs(list.row(b)[axis] - list.row(b - 1)[axis]));
+        }
+    }
+
+    // The power of the step that the axis needs, if any.
+    [[nodiscard]] std::optional<int> power() const {
+        const bool exact = error_ <= kModelShare * 0.5 * units(axis_.resolution_nano);
+        const bool too_long = axis_.resolution_nano % kFinestBinary_nano == 0 &&
+                              !is_short(decimals_of(axis_.resolution_nano));
+        if (exact && !too_long) {
+            return std::nullopt;
+        }
+        int power = flavour_.finest_binary;
+        while (power > kCoarsestBinary && !(is_reached(power) && is_short(power))) {
+            --power;
+        }
+        if (!exact && !is_reached(power)) {
+            throw InputError("dialect.float32", std::string("axis ") + axis_.letter,
+                             "reaches " + fixed(units(reach_), 0) + " mm or deg, but " +
+                                 std::string(flavour_.controller) +
+                                 " adds in 32-bit floats and is exact up to " +
+                                 fixed(units(kExactSteps * binary_nano(power)), 0) +
+                                 "; wind layer by layer, homing between");
+        }
+        const bool helps = (too_long && binary_nano(power) > axis_.resolution_nano) ||
+                           (!exact && error_ > 0.5 * units(binary_nano(power)));
+        return helps ? std::optional<int>(power) : std::nullopt;
+    }
+
+private:
+    [[nodiscard]] bool is_reached(int power) const {
+        return reach_ / binary_nano(power) < kExactSteps;
+    }
+
+    // Rounding may add a step to an increment.
+    [[nodiscard]] bool is_short(int decimals) const {
+        const std::int64_t most = most_nano(decimals, flavour_.most_digits);
+        return most == 0 || longest_ + 2 * binary_nano(kCoarsestBinary) < most;
+    }
+
+    BlockAxis axis_;
+    const NcFlavour& flavour_;
+    double error_ = 0.0;
+    std::int64_t reach_ = 0;
+    std::int64_t longest_ = 0;  // increment
+};
 
 // Steps that move no axis go with the next that does, at the end with the last.
 BlockList without_rests(const BlockList& list) {
@@ -133,7 +165,7 @@ double float32_error(const BlockList& list, std::size_t axis, Float32Text text) 
 BlockList with_binary_steps(BlockList list, const NcFlavour& flavour) {
     bool any = false;
     for (std::size_t a = 0; a < list.axes.size() && !list.blocks.empty(); ++a) {
-        const std::optional<int> power = power_of(list, a, flavour);
+        const std::optional<int> power = AxisSteps(list, a, flavour).power();
         if (!power) {
             continue;
         }
@@ -153,8 +185,7 @@ BlockList split_long_numbers(BlockList list, std::size_t most_digits) {
     }
     std::vector<std::int64_t> most;  // per axis: an increment must stay below it
     for (const BlockAxis& axis : list.axes) {
-        const int whole = static_cast<int>(most_digits) - decimals_of(axis.resolution_nano);
-        most.push_back(whole > 0 ? kNanoPerUnit * ten_to(whole) : kNanoPerUnit);
+        most.push_back(most_nano(decimals_of(axis.resolution_nano), most_digits));
     }
     BlockList split;
     split.axes = list.axes;

@@ -24,12 +24,14 @@ inline constexpr int kCoarsestBinary = 4;
 
 /// Axes that float sums would take off their positions by more than half a step, and by more than
 /// half the new step, get one that is a power of two, 2^-finest_binary or as much coarser as their
-/// reach asks for. Multiples of it have sums that are exact in 24 bits, so the remainders are
-/// carried and nothing drifts. Blocks that then move no axis are merged with the next.
-/// \throws InputError dialect.float32 when an axis goes beyond what its coarsest steps reach
+/// reach, and the digits of their longest move, ask for. Multiples of it have sums that are exact
+/// in 24 bits, so the remainders are carried and nothing drifts. Blocks that then move no axis are
+/// merged with the next. \throws InputError dialect.float32 when an axis goes beyond what its
+/// coarsest steps reach
 [[nodiscard]] BlockList with_binary_steps(BlockList list, const NcFlavour& flavour);
 
-/// Splits blocks evenly whose increments have more digits than the controller reads.
+/// Splits blocks evenly whose increments have more digits than the controller reads even so. Again
+/// is once.
 [[nodiscard]] BlockList split_long_numbers(BlockList list, std::size_t most_digits);
 
 /// Gives axes that are not on multiples of their step the largest power of two that they are on.

@@ -135,15 +135,39 @@ TEST(Float32Steps, StartOfManyDigitsIsWrittenInTwoMoves) {
     machine.mandrel_chain[0].resolution_nano = 15'625'000;
     BlockList list = empty_list(machine);
     add(list, {-1000 * 64 - 1, 0, 0, 100'000, 0, 0}, 0.0);
-    add(list, {1000 * 64 + 1, 0, 0, 100'000, 0, 0}, 100.0);
+    add(list, {-910 * 64 + 1, 0, 0, 100'000, 0, 0}, 100.0);
     const std::string text = Grbl().write(machine, list, {});
     EXPECT_NE(text.find("G90 G0 A0.000 B0.000 C-1000\nG91 G0 C-0.015625\nG90 G0 X"),
               std::string::npos);
     EXPECT_NE(text.find("\nM0\nG91 G93\n"), std::string::npos);
-    const BlockList read = Grbl().read(text, "p", machine);
-    EXPECT_EQ(read.nano, Grbl().prepare(list).nano);
-    EXPECT_GT(read.blocks.size(), 20u);  // 2000 deg in moves of less than 100
-    EXPECT_NEAR(read.duration_s(), 100.0, 1e-3);
+    EXPECT_NE(text.find("G1 C90.031250 F0.6\n"), std::string::npos);
+    EXPECT_EQ(Grbl().read(text, "p", machine).nano, list.nano);
+}
+
+// A move of 100 deg or more has no room for six decimals, one of 1000 none for five.
+TEST(Float32Steps, LongMovesTakeCoarserStepsOrAreSplit) {
+    Machine machine = machine_for("grbl");
+    for (const double step : {0.001, 1.0 / 64.0}) {
+        machine.mandrel_chain[0].resolution_nano = std::llround(1e9 * step);
+        for (const auto& [move_deg, coarse] :
+             {std::pair(99.123, 64.0), std::pair(120.321, 32.0), std::pair(2000.123, 16.0)}) {
+            const auto count = static_cast<int>(200'000.0 / move_deg);
+            const BlockList list = turns(machine, std::llround(1e9 * move_deg), count);
+            const BlockList prepared = Grbl().prepare(list);
+            EXPECT_EQ(prepared.axes[0].resolution_nano, std::llround(1e9 / coarse)) << move_deg;
+            EXPECT_EQ(prepared.blocks.size(), list.blocks.size());
+            EXPECT_EQ(Grbl().prepare(prepared).nano, prepared.nano);
+            EXPECT_EQ(Grbl().read(Grbl().write(machine, list, {}), "p", machine).nano,
+                      prepared.nano);
+        }
+    }
+    machine.mandrel_chain[0].resolution_nano = 10'000;  // five decimals
+    const BlockList list = turns(machine, 2'500'000'000'000, 1);
+    const BlockList prepared = Grbl().prepare(list);
+    EXPECT_EQ(prepared.blocks.size(), 4u);
+    EXPECT_EQ(prepared.nano.back(), list.nano.back());
+    EXPECT_NEAR(prepared.duration_s(), list.duration_s(), 1e-12);
+    EXPECT_EQ(Grbl().prepare(prepared).nano, prepared.nano);
 }
 
 TEST(Float32Steps, ReaderFindsTheStep) {
