@@ -177,7 +177,8 @@ private:
                                        .share = share_},
                                       block_tolerance());
         const std::span<const std::size_t> ends = found_.choice.ends;
-        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
+        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0,
+                                  .tick_s = setup_.dialect->tick_s()};
         const auto timed_for = [&](const Machine& machine) {
             return meshwind::make_blocks(machine, points_at(path_, ends), points_at(joints_, ends),
                                          found_.choice.fibre_mm, time);

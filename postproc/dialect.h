@@ -37,6 +37,9 @@ public:
     /// With the point, e.g. ".ngc".
     [[nodiscard]] virtual std::string extension() const = 0;
 
+    /// Blocks last whole ticks of this length; 0: any time.
+    [[nodiscard]] virtual double tick_s() const { return 0.0; }
+
     /// What the machine file asks of the controller, before anything is planned for it.
     /// \throws InputError what `write` throws for letters, feed and header lines
     void check(const Machine& machine) const;

@@ -29,9 +29,9 @@ inline constexpr double kPulseTick_s = 0.01;
 /// Where the machine stands before the first tick is `start`; getting there and tying the fibre on
 /// is up to the operator. What rounding leaves of a tick is carried into the next, so the running
 /// sum is within half a step of the straight line from each block's start to its end, and exact at
-/// its end. `prepare` makes blocks last whole ticks, never shorter than planned. A driver that runs
-/// ticks as they are has no ramps between blocks; the check `limits` counts each block's change of
-/// velocity as ever.
+/// its end. `prepare` makes blocks last whole ticks, never shorter than planned; a time law that was
+/// told of tick_s() leaves it nothing to do. A driver that runs ticks as they are has no ramps
+/// between blocks: what the time law leaves room for is then a jump of velocity.
 ///
 /// The reader takes this form alone, and each block only when its ticks are even in this sense; the
 /// feed mode of the machine file means nothing.
@@ -42,6 +42,7 @@ class Pulses final : public Dialect {
 public:
     [[nodiscard]] std::string name() const override { return "pulses"; }
     [[nodiscard]] std::string extension() const override { return ".pulses"; }
+    [[nodiscard]] double tick_s() const override { return kPulseTick_s; }
     [[nodiscard]] BlockList prepare(BlockList list) const override;
     using Dialect::write;
     [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,

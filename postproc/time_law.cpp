@@ -18,6 +18,9 @@ constexpr double kRatioSlack = 1e-6;
 // long one.
 constexpr double kShorterShare = 1.5;
 
+// A duration that is a whole number of ticks up to rounding is not one tick more.
+constexpr double kWholeTick = 1e-6;
+
 // Index of what sets a step's duration: 0 none, 1 fibre, then two per axis.
 constexpr std::size_t kNoLimit = 0;
 constexpr std::size_t kFibre = 1;
@@ -38,9 +41,10 @@ std::string limit_name(const Machine& machine, std::size_t limit) {
 
 class TimeLaw {
 public:
-    TimeLaw(const Machine& machine, const JointPath& joints)
+    TimeLaw(const Machine& machine, const JointPath& joints, double tick_s)
         : machine_(machine),
           joints_(joints),
+          tick_s_(tick_s),
           step_s_(joints.size(), 0.0),
           limit_(joints.size(), kNoLimit) {}
 
@@ -147,11 +151,17 @@ private:
         return step == 0 ? 0.0 : move(step, joint) / step_s_[step];
     }
 
-    void lengthen(std::size_t step, double duration_s, std::size_t limit) {
-        if (duration_s > step_s_[step]) {
-            step_s_[step] = duration_s;
-            limit_[step] = limit;
+    // False where the step is already so long.
+    bool lengthen(std::size_t step, double duration_s, std::size_t limit) {
+        if (tick_s_ > 0.0) {
+            duration_s = tick_s_ * std::ceil(duration_s / tick_s_ - kWholeTick);
         }
+        if (duration_s <= step_s_[step]) {
+            return false;
+        }
+        step_s_[step] = duration_s;
+        limit_[step] = limit;
+        return true;
     }
 
     // Ramp that `step` has with its neighbour over the time that it has for it; a neighbour 0 is
@@ -206,10 +216,7 @@ private:
                                                step_s_[neighbour], acceleration);
                 duration = other == 0.0 ? std::min(alone, shared) : shared;
             }
-            if (duration > step_s_[step]) {
-                lengthen(step, duration, acceleration_of(a));
-                changed = true;
-            }
+            changed = lengthen(step, duration, acceleration_of(a)) || changed;
         }
         return changed;
     }
@@ -227,6 +234,7 @@ private:
 
     const Machine& machine_;
     const JointPath& joints_;
+    double tick_s_ = 0.0;
     std::vector<double> step_s_;
     std::vector<std::size_t> limit_;
 };
@@ -242,7 +250,7 @@ TimedPath time_path(const Machine& machine, std::span<const double> fibre_mm,
         throw InputError("time.fibre_speed", "",
                          "fibre speed is " + value + " mm/s; it must be above 0");
     }
-    TimeLaw law(machine, joints);
+    TimeLaw law(machine, joints, options.tick_s);
     law.keep_velocities(fibre_mm, std::min(options.fibre_speed_mm_s, machine.fibre.max_speed_mm_s));
     for (int i = 0; i < options.acceleration_sweeps; ++i) {
         if (!law.sweep()) {

@@ -16,6 +16,7 @@ struct TimeLawOptions {
     /// Sweeps over the path that slow steps down for the accelerations, at most: they end when
     /// nothing changes any more; 0 leaves the accelerations aside.
     int acceleration_sweeps = 2000;
+    double tick_s = 0.0;  ///< durations are whole ticks; 0: any
 };
 
 /// What set the duration of a step.

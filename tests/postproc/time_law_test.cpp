@@ -160,6 +160,21 @@ TEST(TimeLaw, RestTakesNoTime) {
     EXPECT_TRUE(result.time.binding.empty());
 }
 
+TEST(TimeLaw, WholeTicksKeepTheLimitsToo) {
+    const Machine machine = six_axis();
+    const EyePath path = test::strokes(70.0, 200.0, 2.0, 400.0, 4);
+    const Timed any = timed(machine, path, {});
+    for (const double tick_s : {0.001, 0.01}) {
+        const Timed result = timed(machine, path, {.tick_s = tick_s});
+        expect_limits_kept(machine, result, 500.0);
+        EXPECT_LE(result.time.worst_acceleration_ratio, 1.0 + 1e-5);
+        for (const double step_s : result.time.step_s) {
+            EXPECT_NEAR(step_s / tick_s, std::round(step_s / tick_s), 1e-9);
+        }
+        EXPECT_GT(result.time.duration_s, any.time.duration_s);
+    }
+}
+
 TEST(TimeLaw, RefusesAFibreSpeedOfZero) {
     EXPECT_THROW((void)timed(six_axis(), {}, {.fibre_speed_mm_s = 0.0}), InputError);
 }
