@@ -67,7 +67,8 @@ public:
 /// off by more than half a step, in the main the mandrel, steps of 1/64 deg (float32_steps.h),
 /// whose sums are exact up to 262 144 deg; 1/32 and 1/16 further on; beyond 1 048 576 deg it
 /// refuses. Where the coarser step would be worse than the sums, they stay, and the head of the
-/// program says what is lost. Moves of 100 deg and more are split, so that eight digits suffice.
+/// program says what is lost. Where a block turns 100 deg or more, eight digits leave 1/32, from
+/// 1000 on 1/16; what is longer still is split.
 class Grbl final : public NcDialect {
 public:
     Grbl() : NcDialect(grbl_flavour()) {}

@@ -381,7 +381,7 @@ TEST(Grbl, LinesAndNumbersAreShortEnough) {
         EXPECT_EQ(lines.back(), "M2");
         for (const std::string& line : lines) {
             ASSERT_LE(line.size(), 79u + 6u) << line;  // six blanks are not counted
-            ASSERT_EQ(line.find_first_of("%!~?O"), line.find("O")) << line;
+            ASSERT_EQ(line.find_first_of("%!~?O"), line.find('O')) << line;
             int digits = 0;
             for (const char c : is_motion(line) ? line.substr(2) : std::string()) {
                 digits = c >= '0' && c <= '9' ? digits + 1 : c == '.' ? digits : 0;
@@ -469,7 +469,8 @@ TEST(MarlinRead, RefusesWhatWouldBeIgnored) {
     EXPECT_EQ(refusal("marlin", "M204 T500 ; words\n" + start + "G1 X1 F60\n" + end), "accepted");
     for (const char* line : {"G90 G1 X1 F60", "X1 F60", "g1 X1 F60", "N5 G1 X1 F60", "G91 X1",
                              "G93", "G64", "M2", "M30", "(words)", "%", "M98 P1", "G1 E1 F60"}) {
-        EXPECT_EQ(refusal("marlin", start + line + "\n" + end).substr(0, 21),
+        EXPECT_EQ(refusal("marlin", std::string(start).append(line).append("\n").append(end))
+                      .substr(0, 21),
                   "nc.not_understood p:7")
             << line;
     }
