@@ -37,7 +37,8 @@ std::int64_t ten_to(int power) {
 
 // As GRBL reads a number: all digits as an integer, then hundredths and tenths in floats.
 float by_hundreds(std::int64_t nano, int decimals) {
-    float value = static_cast<float>(std::abs(nano) / ten_to(9 - decimals));
+    const std::int64_t digits = std::abs(nano) / ten_to(9 - decimals);
+    auto value = static_cast<float>(digits);
     int power = decimals;
     for (; power >= 2; power -= 2) {
         value *= 0.01F;
