@@ -62,7 +62,7 @@ constexpr std::string_view kOrder = "XYZABCUVW";
 }  // namespace
 
 const NcFlavour& linuxcnc_flavour() {
-    static const NcFlavour flavour{
+    static const NcFlavour kFlavour{
         .dialect = "linuxcnc",
         .controller = "LinuxCNC",
         .extension = ".ngc",
@@ -81,11 +81,11 @@ const NcFlavour& linuxcnc_flavour() {
         .flow = linuxcnc_flow,
         .harmless_g = kLinuxCncG,
     };
-    return flavour;
+    return kFlavour;
 }
 
 const NcFlavour& fanuc_flavour() {
-    static const NcFlavour flavour{
+    static const NcFlavour kFlavour{
         .dialect = "fanuc",
         .controller = "Fanuc",
         .extension = ".nc",
@@ -107,11 +107,11 @@ const NcFlavour& fanuc_flavour() {
         .flow = fanuc_flow,
         .harmless_g = kFanucG,
     };
-    return flavour;
+    return kFlavour;
 }
 
 const NcFlavour& siemens_flavour() {
-    static const NcFlavour flavour{
+    static const NcFlavour kFlavour{
         .dialect = "siemens",
         .controller = "Siemens",
         .extension = ".mpf",
@@ -129,11 +129,11 @@ const NcFlavour& siemens_flavour() {
         .harmless_g = kSiemensG,
         .harmless_words = kSiemensWords,
     };
-    return flavour;
+    return kFlavour;
 }
 
 const NcFlavour& grbl_flavour() {
-    static const NcFlavour flavour{
+    static const NcFlavour kFlavour{
         .dialect = "grbl",
         .controller = "GRBL",
         .extension = ".gcode",
@@ -154,11 +154,11 @@ const NcFlavour& grbl_flavour() {
         .finest_binary = 6,  // six decimals leave two of the eight digits before the point
         .harmless_g = kGrblG,
     };
-    return flavour;
+    return kFlavour;
 }
 
 const NcFlavour& marlin_flavour() {
-    static const NcFlavour flavour{
+    static const NcFlavour kFlavour{
         .dialect = "marlin",
         .controller = "Marlin",
         .extension = ".gcode",
@@ -185,7 +185,7 @@ const NcFlavour& marlin_flavour() {
         .harmless_g = kMarlinG,
         .harmless_m = kMarlinM,
     };
-    return flavour;
+    return kFlavour;
 }
 
 }  // namespace meshwind
