@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "postproc/eye_rules.h"
+
 namespace meshwind {
 
 /// Length of a unit of the mandrel's file. Auto: what the file states, else mm, else metres for a
@@ -21,11 +23,8 @@ enum class TurnKind { Friction, Pins, Pole };
 
 enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported };
 
-/// Which point of the free fibre the eye takes.
-enum class EyeRule { EqualFreeLength, Cylinder, HorizontalPlane, VerticalPlane, Adaptive };
-
-/// Who decides the mandrel's turn where several would do.
-enum class RedundancyRule { CentralAngle, Hold, Optimal };
+/// Who decides the mandrel's turn where several would do; docs/post.md.
+enum class RedundancyRule { CentralAngle, Hold, Oscillate, Optimal };
 
 /// One layer; each kind reads what concerns it.
 struct LayerJob {
@@ -56,10 +55,6 @@ struct Job {
         double friction = 0.2;       ///< >= 0; dry carbon on a moulded surface, on the safe side
         double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
     };
-    struct EyeJob {
-        EyeRule rule = EyeRule::EqualFreeLength;
-        double free_length_mm = 200.0;  ///< > 0
-    };
     struct ToleranceJob {
         double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways
         double laydown_angle_deg = 0.3;  ///< > 0; and in direction
@@ -73,8 +68,8 @@ struct Job {
     TowJob tow;
     std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
     int fibres = 1;  ///< 1 .. kMostFibres; that may be wound one after the other, cut in between
-    EyeJob eye;
-    RedundancyRule redundancy = RedundancyRule::CentralAngle;
+    EyeLaw eye;
+    RedundancyRule redundancy = RedundancyRule::Optimal;
     ToleranceJob tolerance;
     SpeedJob speed;
 };
@@ -85,7 +80,8 @@ struct Job {
 /// Reads a job from text; what the text leaves out keeps its default.
 /// \param name file name for messages
 /// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
-///         job.file_missing, job.file_unused; each with file and JSON pointer
+///         job.file_missing, job.file_unused, job.eye_unused, job.turn_forced; each with file and
+///         JSON pointer
 [[nodiscard]] Job parse_job(std::string_view text, const std::string& name);
 
 /// `parse_job` of a file. \throws IoError io.cannot_read; InputError as parse_job

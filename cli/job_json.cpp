@@ -20,7 +20,7 @@ const std::initializer_list<std::string_view> kLayerWords = {"auto",  "helical",
 const std::initializer_list<std::string_view> kEyeWords = {
     "equal-free-length", "cylinder", "horizontal-plane", "vertical-plane", "adaptive"};
 const std::initializer_list<std::string_view> kRedundancyWords = {"central-angle", "hold",
-                                                                  "optimal"};
+                                                                  "oscillate", "optimal"};
 
 constexpr JsonRange kPositive = {.min = 0.0, .above_min = true};
 constexpr JsonRange kNotNegative = {.min = 0.0};
@@ -139,6 +139,84 @@ std::vector<LayerJob> read_layers(const JsonValue& value) {
     return layers;
 }
 
+LengthPiece read_length(const JsonValue& value) {
+    const JsonObject object = value.object({"course", "from_mm", "to_mm", "free_length"});
+    LengthPiece piece;
+    const auto course = object.optional("course");
+    if (course) {
+        piece.piece =
+            static_cast<std::int32_t>(course->integer(0, std::numeric_limits<std::int32_t>::max()));
+        for (const char* end : {"from_mm", "to_mm"}) {
+            if (const auto unused = object.optional(end)) {
+                unused->fail("job.eye_unused",
+                             "\"course\" names the whole course; remove one of the two");
+            }
+        }
+    } else {
+        piece.from_mm = object.required("from_mm").number(kNotNegative);
+        piece.to_mm = object.required("to_mm").number({.min = piece.from_mm, .above_min = true});
+    }
+    piece.free_length_mm = object.required("free_length").number(kPositive);
+    return piece;
+}
+
+// A key belongs to one rule; with others it would say something that nothing does.
+void refuse_unused(const JsonObject& object, const EyeLaw& eye, std::string_view key,
+                   EyeRule rule) {
+    const auto value = object.optional(key);
+    if (value && eye.rule != rule) {
+        value->fail("job.eye_unused", "only the rule \"" + std::string(word_of(rule, kEyeWords)) +
+                                          "\" reads it; remove it or choose that rule");
+    }
+}
+
+EyeLaw read_eye(const JsonValue& value) {
+    EyeLaw eye;
+    const JsonObject object =
+        value.object({"rule", "free_length", "lengths", "radius", "plane_x", "plane_y"});
+    read_word(object, "rule", kEyeWords, eye.rule);
+    read_number(object, "free_length", kPositive, eye.free_length_mm);
+    refuse_unused(object, eye, "lengths", EyeRule::EqualFreeLength);
+    refuse_unused(object, eye, "radius", EyeRule::Cylinder);
+    refuse_unused(object, eye, "plane_x", EyeRule::VerticalPlane);
+    refuse_unused(object, eye, "plane_y", EyeRule::HorizontalPlane);
+    if (const auto lengths = object.optional("lengths")) {
+        for (const JsonValue& piece : lengths->array()) {
+            eye.lengths.push_back(read_length(piece));
+        }
+    }
+    if (eye.rule == EyeRule::Cylinder) {
+        eye.radius_mm = object.required("radius").number(kPositive);
+    }
+    if (eye.rule == EyeRule::VerticalPlane) {
+        eye.plane_x_mm = object.required("plane_x").number(kPositive);
+    }
+    if (eye.rule == EyeRule::HorizontalPlane) {
+        const JsonValue plane = object.required("plane_y");
+        eye.plane_y_mm = plane.number();
+        if (eye.plane_y_mm == 0.0) {
+            plane.fail("json.out_of_range",
+                       "0 is the height of the spindle, where \"equal-free-length\" and "
+                       "\"cylinder\" have the eye; give another height, negative below");
+        }
+    }
+    return eye;
+}
+
+// The rules with planes leave no turn to choose, and "central-angle" is the word for that.
+RedundancyRule read_redundancy(const JsonObject& root, EyeRule eye) {
+    const bool forced = eye == EyeRule::VerticalPlane || eye == EyeRule::HorizontalPlane;
+    RedundancyRule rule = forced ? RedundancyRule::CentralAngle : Job{}.redundancy;
+    read_word(root, "redundancy", kRedundancyWords, rule);
+    if (forced && rule != RedundancyRule::CentralAngle) {
+        root.required("redundancy")
+            .fail("job.turn_forced", "the eye rule \"" + std::string(word_of(eye, kEyeWords)) +
+                                         "\" says how the mandrel turns; remove \"redundancy\" "
+                                         "or choose another rule");
+    }
+    return rule;
+}
+
 Job job_of(const JsonDocument& document) {
     const JsonObject root = document.root().object(
         {"mandrel", "tow", "layers", "fibres", "eye", "redundancy", "tolerance", "speed"});
@@ -156,11 +234,9 @@ Job job_of(const JsonDocument& document) {
         job.fibres = static_cast<int>(fibres->integer(1, kMostFibres));
     }
     if (const auto eye = root.optional("eye")) {
-        const JsonObject object = eye->object({"rule", "free_length"});
-        read_word(object, "rule", kEyeWords, job.eye.rule);
-        read_number(object, "free_length", kPositive, job.eye.free_length_mm);
+        job.eye = read_eye(*eye);
     }
-    read_word(root, "redundancy", kRedundancyWords, job.redundancy);
+    job.redundancy = read_redundancy(root, job.eye.rule);
     if (const auto tolerance = root.optional("tolerance")) {
         const JsonObject object = tolerance->object({"laydown", "laydown_angle", "clearance"});
         read_number(object, "laydown", kPositive, job.tolerance.laydown_mm);
@@ -265,6 +341,37 @@ std::string layers_text(std::span<const LayerJob> layers) {
     return text + "]";
 }
 
+std::string eye_text(const EyeLaw& eye) {
+    std::string text = "{";
+    append_member(text, "rule", json_string(word_of(eye.rule, kEyeWords)));
+    append_member(text, "free_length", eye.free_length_mm);
+    std::string lengths;
+    for (const LengthPiece& piece : eye.lengths) {
+        lengths += lengths.empty() ? "[{" : ", {";
+        if (piece.piece) {
+            append_member(lengths, "course", std::to_string(*piece.piece));
+        } else {
+            append_member(lengths, "from_mm", piece.from_mm);
+            append_member(lengths, "to_mm", piece.to_mm);
+        }
+        append_member(lengths, "free_length", piece.free_length_mm);
+        lengths += "}";
+    }
+    if (!lengths.empty()) {
+        append_member(text, "lengths", lengths + "]");
+    }
+    if (eye.rule == EyeRule::Cylinder) {
+        append_member(text, "radius", eye.radius_mm);
+    }
+    if (eye.rule == EyeRule::VerticalPlane) {
+        append_member(text, "plane_x", eye.plane_x_mm);
+    }
+    if (eye.rule == EyeRule::HorizontalPlane) {
+        append_member(text, "plane_y", eye.plane_y_mm);
+    }
+    return text + "}";
+}
+
 }  // namespace
 
 double mm_per(LengthUnit unit) {
@@ -281,9 +388,6 @@ Job read_job(const std::filesystem::path& file) {
 }
 
 std::string job_text(const Job& job) {
-    std::string eye = "{";
-    append_member(eye, "rule", json_string(word_of(job.eye.rule, kEyeWords)));
-    append_member(eye, "free_length", job.eye.free_length_mm);
     std::string tolerance = "{";
     append_member(tolerance, "laydown", job.tolerance.laydown_mm);
     append_member(tolerance, "laydown_angle", job.tolerance.laydown_angle_deg);
@@ -293,8 +397,8 @@ std::string job_text(const Job& job) {
 
     return "{ \"mandrel\":" + mandrel_text(job.mandrel) + ",\n  \"tow\":" + tow_text(job.tow) +
            ",\n  \"layers\":" + layers_text(job.layers) +
-           ",\n  \"fibres\":" + std::to_string(job.fibres) + ",\n  \"eye\":" + eye +
-           "},\n  \"redundancy\":" + json_string(word_of(job.redundancy, kRedundancyWords)) +
+           ",\n  \"fibres\":" + std::to_string(job.fibres) + ",\n  \"eye\":" + eye_text(job.eye) +
+           ",\n  \"redundancy\":" + json_string(word_of(job.redundancy, kRedundancyWords)) +
            ",\n  \"tolerance\":" + tolerance + "},\n  \"speed\":" + speed + "} }\n";
 }
 

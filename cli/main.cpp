@@ -1,145 +1,102 @@
-#include <array>
-#include <cstdio>
 #include <exception>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
-#include <optional>
-#include <sstream>
+#include <new>
+#include <string>
+#include <utility>
 
-#include <unistd.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
-#include "cli/inspect.h"
-#include "cli/job.h"
+#include "cli/commands.h"
 #include "cli/make_command.h"
-#include "cli/project_files.h"
-#include "cli/refine_command.h"
-#include "cli/report.h"
-#include "cli/report_mandrel.h"
-#include "cli/report_study.h"
-#include "cli/report_verify.h"
-#include "cli/study_command.h"
-#include "cli/trace_command.h"
-#include "cli/verify_command.h"
-#include "cli/wind.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/text_number.h"
-#include "machines/kinematics.h"
-#include "machines/machine_json.h"
-#include "postproc/dialect.h"
 #include "version.h"
 
 namespace meshwind {
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kCheckFailed = 1;
-constexpr int kBadInput = 2;
-constexpr int kInternalError = 3;
+// What stands below the options of a command. The commands' own lines are listed by --help, so that
+// they are short.
+constexpr const char* kCommon =
+    "\nOptions of every command (--json, --quiet, --force, --units, --seed, --threads): "
+    "meshwind --help";
 
-// What every command takes.
-struct Common {
-    int threads = 0;
-    std::uint64_t seed = 1;
-    bool quiet = false;
-    bool json = false;
-    bool force = false;
-    std::string units;
-};
+constexpr const char* kMainHelp =
+    "The main job plans a fibre, turns it into a program, winds that again, and writes it to the\n"
+    "output folder if every check passed; report.json there says what was found.\n"
+    "  meshwind tee.stl --machine six_axis.json\n"
+    "  meshwind part.stl --machine my_machine.json --job my_job.json -o out\n"
+    "Files that are not in the current folder are looked up in meshwind's own data/ and "
+    "machines/.\n"
+    "meshwind COMMAND --help has the options of a command. Exit codes: 0 every check passed,\n"
+    "1 a check failed and no program was written, 2 bad input, 3 internal error.";
 
-double unit_mm(const std::string& name) {
-    static const std::map<std::string, double> kUnits = {{"", 0.0},   {"auto", 0.0}, {"um", 1e-3},
-                                                         {"mm", 1.0}, {"cm", 10.0},  {"m", 1000.0},
-                                                         {"in", 25.4}};
-    return kUnits.at(name);
-}
+constexpr const char* kPostHelp =
+    "The table has columns x_mm,y_mm,z_mm (or x,y,z in the units of the mandrel's file), perhaps\n"
+    "course, nx,ny,nz (normal) and tx,ty,tz (direction); its rows are in winding order. The "
+    "points\n"
+    "are laid on the mandrel, courses that do not meet are joined over it, and from there on all "
+    "is\n"
+    "as in the main job: the same checks, the same output folder, exit code 1 and no program "
+    "where\n"
+    "a check fails.\n"
+    "  meshwind post points.csv --mandrel tee.stl --machine six_axis.json\n"
+    "  meshwind post meshwind-out/path.csv --frame mandrel --mandrel tee.stl --machine "
+    "six_axis.json";
 
-// A bar on a terminal, one line per step elsewhere.
-class Progress {
-public:
-    explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
-    ~Progress() { clear(); }
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+constexpr const char* kVerifyHelp =
+    "Nothing but the program, the machine and the mandrel says where the fibre goes. It is then\n"
+    "checked for slip, bridging, collisions, free length, axis limits and pay-out, and with "
+    "--plan\n"
+    "compared with what was planned: exit code 1 and the first wrong block where anything fails.\n"
+    "  meshwind verify meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json "
+    "--plan meshwind-out";
 
-    void show(const std::string& step, double share) {
-        if (quiet_) {
-            return;
-        }
-        if (terminal_) {
-            constexpr int kWidth = 30;
-            const int done = static_cast<int>(kWidth * share);
-            std::cerr << "\r\033[K" << step << " ["
-                      << std::string(static_cast<std::size_t>(done), '#')
-                      << std::string(static_cast<std::size_t>(kWidth - done), '.') << "]"
-                      << std::flush;
-            shown_ = true;
-        } else if (step != last_) {
-            std::cerr << step << " ...\n";
-        }
-        last_ = step;
-    }
+constexpr const char* kCarryHelp =
+    "The head stands still; the robot moves a slender frame through its two rings, which turn "
+    "about\n"
+    "one axis, one each way, and lay tows around the frame. The table has the points of the "
+    "frame's\n"
+    "axis, columns x_mm,y_mm,z_mm, and perhaps tx,ty,tz (direction), rx,ry,rz (what is to meet "
+    "the\n"
+    "head's reference) and turn_deg (turn about the axis). Written are NAME.src (KUKA KRL, only "
+    "if\n"
+    "every check passed), motion.csv and report.json with the speeds of the rings.\n"
+    "  meshwind carry l_frame_axis.csv\n"
+    "  meshwind carry axis.csv --machine my_robot.json --tool 0,0,120,0,0,0 --speed 30";
 
-    void clear() {
-        if (shown_) {
-            std::cerr << "\r\033[K" << std::flush;
-            shown_ = false;
-        }
-    }
-
-private:
-    bool quiet_;
-    bool terminal_;
-    bool shown_ = false;
-    std::string last_;
-};
-
-Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
-    Eigen::Vector3d v;
-    std::istringstream in(text);
-    std::array<char, 2> comma{};
-    std::string rest;
-    if (!(in >> v.x() >> comma[0] >> v.y() >> comma[1] >> v.z()) || comma[0] != ',' ||
-        comma[1] != ',' || in >> rest || !v.allFinite()) {
-        throw InputError("cli.vector", option,
-                         "'" + text + "' is not three numbers; write them as X,Y,Z without blanks");
-    }
-    return v;
-}
-
-// A line on stderr for each check that failed.
-int exit_code(const std::string& file, const std::vector<Check>& checks) {
-    int code = kDone;
-    for (const Check& check : checks) {
-        if (!check.ok) {
-            code = kCheckFailed;
-            std::cerr << "meshwind: " << file << ": check failed: " << check.name << ": "
-                      << check.words << '\n';
-        }
-    }
-    return code;
-}
-
-struct WindOptions {
-    std::string mandrel;
-    std::string machine = "six_axis.json";
-    std::string job;
-    std::string out = "meshwind-out";
-    int effort = 1;
-};
+constexpr const char* kMeshSizeHelp =
+    "Lays the same random fibres on ever finer meshes of known surfaces and compares them with "
+    "the\n"
+    "exact fibres: the path's end, the winding angle and the slip; then, with the fibre's "
+    "direction\n"
+    "taken from the landing points by chord (P1-P2), central chord (P1-P3), parabola or tracer, "
+    "the\n"
+    "spindle angle C and the eye point. An error that falls by 2^k when the edges are halved is "
+    "of\n"
+    "order k.\n"
+    "Cylinders are compared with closed forms; torus, ellipsoid and tee with the differential\n"
+    "equation of their exact surface; a file with itself, coarsened: choose edges well above its\n"
+    "own, and mind that what its own mesh has wrong is not seen.\n"
+    "To choose a mesh for a part: take the row of the surface most like it, and the edge length "
+    "at\n"
+    "which the error that matters is small enough.\n"
+    "  meshwind study mesh-size\n"
+    "  meshwind study mesh-size --mandrel cylinder --radius 35 --edges 8,4,2,1 -o pipe\n"
+    "  meshwind study mesh-size --mandrel part.stl --edges 12,8,6";
 
 void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
     auto* mandrel =
-        app.add_option("mandrel", options.mandrel, "mesh of the part: STL, OBJ, PLY, OFF");
+        app.add_option("mandrel", options.mandrel, "mesh of the part: .stl, .obj, .ply or .off");
     if (required) {
         mandrel->required();
     }
-    app.add_option("--machine", options.machine, "machine file")->capture_default_str();
-    app.add_option("--job", options.job, "job file; without it the defaults hold");
+    app.add_option("--machine", options.machine,
+                   "machine file, JSON: axes, limits, eye, controller")
+        ->capture_default_str();
+    app.add_option("--job", options.job,
+                   "job file, JSON: tow, layers, eye rule, tolerances, speed; without it defaults");
     app.add_option("-o,--out", options.out, "output folder")->capture_default_str();
     app.add_option("--effort", options.effort,
                    "how long the plan is improved: 4 takes about 4 times as long as 1, and saves "
@@ -148,43 +105,30 @@ void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
         ->capture_default_str();
 }
 
-int run_wind(const WindOptions& options, const Common& common) {
-    Progress progress(common.quiet);
-    WindRequest request;
-    request.mandrel = find_input(options.mandrel);
-    request.machine = find_input(options.machine);
-    request.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
-    request.out = options.out;
-    request.unit_mm = unit_mm(common.units);
-    request.seed = common.seed;
-    request.effort = options.effort;
-    request.force = common.force;
-    request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
-    const WindResult result = wind(request);
-    progress.clear();
-    if (common.json) {
-        std::cout << report_json(result);
-    } else if (!common.quiet) {
-        print_summary(std::cout, result, request.out);
-    }
-    return exit_code(options.mandrel, result.checks);
+void add_post(CLI::App& app, PostOptions& options) {
+    app.add_option("points", options.points, "table of landing points, CSV; columns below")
+        ->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->required();
+    app.add_option("--machine", options.machine, "machine file, JSON")->required();
+    app.add_option("--job", options.job,
+                   "job file, JSON: tow, eye rule, extensions, tolerances; its layers are not "
+                   "read; without it defaults");
+    app.add_option("--frame", options.frame,
+                   "axes of the table. file: those of the mandrel's file; mandrel: those of "
+                   "meshwind's own tables, Z along the spindle, in mm")
+        ->check(CLI::IsMember({"file", "mandrel"}))
+        ->capture_default_str();
+    app.add_option("--within", options.within_mm,
+                   "mm: a point further than this from the mandrel is refused")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("-o,--out", options.out, "output folder")->capture_default_str();
 }
 
-constexpr const char* kVerifyHelp =
-    "Wind a program again from its code.\n"
-    "Nothing but the program, the machine and the mandrel says where the fibre goes. It is then\n"
-    "checked for slip, bridging, collisions, free length, axis limits and pay-out, and with "
-    "--plan\n"
-    "compared with what was planned: exit code 1 and the first wrong block where anything fails.\n"
-    "  meshwind verify meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json "
-    "--plan meshwind-out";
-
-struct VerifyOptions {
-    std::string program, mandrel, machine, job, plan, out, tie_on;
-};
-
 void add_verify(CLI::App& app, VerifyOptions& options) {
-    app.add_option("program", options.program, "NC program, of meshwind or of anybody")->required();
+    app.add_option("program", options.program,
+                   "NC program, by meshwind or anybody; the machine file names its language")
+        ->required();
     app.add_option("--mandrel", options.mandrel, "mesh of the part")->required();
     app.add_option("--machine", options.machine, "machine file")->required();
     app.add_option("--job", options.job,
@@ -199,33 +143,6 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
     app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv");
 }
 
-int run_verify_command(const VerifyOptions& options, const Common& common) {
-    VerifyRequest request;
-    request.program = options.program;
-    request.setup.mandrel = find_input(options.mandrel);
-    request.setup.machine = find_input(options.machine);
-    request.setup.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
-    request.setup.unit_mm = unit_mm(common.units);
-    request.plan = options.plan;
-    request.out = options.out;
-    if (!options.tie_on.empty()) {
-        request.tie_on_mm = vector_of("--tie-on", options.tie_on);
-    }
-    const VerifyOutcome outcome = run_verify(request);
-    if (common.json) {
-        std::cout << verify_json(outcome);
-    } else if (!common.quiet) {
-        print_verify(std::cout, outcome);
-    }
-    return exit_code(options.program, outcome.checks);
-}
-
-struct InspectOptions {
-    std::string mandrel;
-    std::optional<double> refine_mm;
-    std::string out;
-};
-
 void add_inspect(CLI::App& app, InspectOptions& options) {
     app.add_option("mandrel", options.mandrel, "mesh of the part")->required();
     auto* refine = app.add_option("--refine", options.refine_mm,
@@ -233,35 +150,6 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
                                   "vertices on its curved patches; frame and units of the file");
     app.add_option("-o,--out", options.out, "mesh file to write: .stl, .obj, .ply or .off")
         ->needs(refine);
-}
-
-int run_inspect(const InspectOptions& options, const Common& common) {
-    if (options.refine_mm && options.out.empty()) {
-        throw InputError("cli.output", "inspect --refine",
-                         "name the mesh file to write with -o FILE");
-    }
-    const Mandrel mandrel =
-        load_mandrel(find_input(options.mandrel), {.unit_mm = unit_mm(common.units)});
-    const std::size_t refined_faces =
-        options.refine_mm ? write_refined(mandrel, *options.refine_mm, options.out) : 0;
-    const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface);
-    if (common.json) {
-        nlohmann::json report{{"meshwind", kVersion}, {"mandrel", mandrel_report(mandrel)}};
-        report["mandrel"]["accuracy"] = accuracy_report(accuracy);
-        if (options.refine_mm) {
-            report["refined"] = {{"file", options.out},
-                                 {"longest_edge_mm", *options.refine_mm},
-                                 {"triangles", refined_faces}};
-        }
-        std::cout << report.dump(1) << '\n';
-    } else {
-        print_mandrel(std::cout, mandrel, accuracy);
-        if (options.refine_mm) {
-            std::cout << "refined       " << options.out << ": " << refined_faces
-                      << " triangles, edges of at most " << fixed(*options.refine_mm, 3) << " mm\n";
-        }
-    }
-    return kDone;
 }
 
 // One subcommand per kind, with an option for each of its parameters.
@@ -286,12 +174,6 @@ void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>
         }
     }
 }
-
-struct TraceOptionsText {
-    std::string mandrel, start, direction, to, frame = "mandrel", method = "patches";
-    double angle_deg = 0.0;
-    TraceRequest request;
-};
 
 CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
     app.add_option("mandrel", text.mandrel, "mesh of the part")->required();
@@ -321,51 +203,6 @@ CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
     return angle;
 }
 
-int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& common) {
-    TraceRequest& request = text.request;
-    request.mandrel = find_input(text.mandrel);
-    request.unit_mm = unit_mm(common.units);
-    request.start = vector_of("--start", text.start);
-    request.method = text.method == "walk" ? TraceMethod::Walk : TraceMethod::Patches;
-    request.file_frame = text.frame == "file";
-    if (has_angle) {
-        request.angle_deg = text.angle_deg;
-    } else if (!text.direction.empty()) {
-        request.direction = vector_of("--direction", text.direction);
-    } else if (!text.to.empty()) {
-        request.to = vector_of("--to", text.to);
-    } else {
-        throw InputError("cli.direction", "trace",
-                         "give --direction X,Y,Z, --angle DEG or --to X,Y,Z");
-    }
-    const std::string line = run_trace(request);
-    if (!common.quiet) {
-        std::cout << line << '\n';
-    }
-    return kDone;
-}
-
-constexpr const char* kMeshSizeHelp =
-    "Accuracy against mesh size.\n"
-    "Lays the same random fibres on ever finer meshes of known surfaces and compares them with "
-    "the\n"
-    "exact fibres: the path's end, the winding angle and the slip; then, with the fibre's "
-    "direction\n"
-    "taken from the landing points by chord (P1-P2), central chord (P1-P3), parabola or tracer, "
-    "the\n"
-    "spindle angle C and the eye point. An error that falls by 2^k when the edges are halved is "
-    "of\n"
-    "order k.\n"
-    "Cylinders are compared with closed forms; torus, ellipsoid and tee with the differential\n"
-    "equation of their exact surface; a file with itself, coarsened: choose edges well above its\n"
-    "own, and mind that what its own mesh has wrong is not seen.\n"
-    "To choose a mesh for a part: take the row of the surface most like it, and the edge length "
-    "at\n"
-    "which the error that matters is small enough.\n"
-    "  meshwind study mesh-size\n"
-    "  meshwind study mesh-size --mandrel cylinder --radius 35 --edges 8,4,2,1 -o pipe\n"
-    "  meshwind study mesh-size --mandrel part.stl --edges 12,8,6";
-
 void add_mesh_size(CLI::App& app, StudyRequest& request) {
     MeshSizeOptions& options = request.options;
     request.out = "study-mesh-size";
@@ -394,92 +231,110 @@ void add_mesh_size(CLI::App& app, StudyRequest& request) {
     app.add_option("-o,--out", request.out, "output folder")->capture_default_str();
 }
 
-int run_mesh_size(StudyRequest& request, const Common& common) {
-    Progress progress(common.quiet);
-    request.unit_mm = unit_mm(common.units);
-    request.options.seed = common.seed;
-    request.options.progress = [&](const std::string& step, double share) {
-        progress.show(step, share);
+void add_carry(CLI::App& app, CarryOptionsText& text) {
+    CarryRequest& request = text.request;
+    app.add_option("axis", text.axis, "table of points along the frame's axis, CSV; columns below")
+        ->required();
+    app.add_option("--machine", text.machine,
+                   "machine file, JSON: a robot whose eye stands still, in the head's centre")
+        ->capture_default_str();
+    app.add_option("--tool", text.tool,
+                   "X,Y,Z,A,B,C of the table's coordinates on the robot's flange, mm and degrees")
+        ->capture_default_str();
+    const auto number = [&](const char* name, double& value, const char* help) {
+        app.add_option(name, value, help)->capture_default_str();
     };
-    const StudyOutcome outcome = run_study(request);
-    progress.clear();
-    if (common.json) {
-        std::cout << study_json(outcome);
-    } else if (!common.quiet) {
-        print_study(std::cout, outcome, request.out);
-    }
-    return kDone;
-}
-
-// A machine file names its schema; everything else is read as a job.
-int run_validate(const std::string& name, const Common& common) {
-    const std::string file = find_input(name).string();
-    if (std::filesystem::is_directory(file)) {
-        throw IoError("io.cannot_read", file, "is a folder; name a JSON file");
-    }
-    std::ifstream in(file);
-    const nlohmann::json text = nlohmann::json::parse(in, nullptr, false);
-    const bool machine =
-        text.is_object() && (text.contains("schema") || text.contains("eye_chain"));
-    if (machine) {
-        const Machine read = read_machine(file);
-        const SpindleWristInverse inverse(read);
-        (void)make_dialect(read.controller.dialect);
-    } else {
-        (void)read_job(file);
-    }
-    if (!common.quiet) {
-        std::cout << name << ": a valid " << (machine ? "machine" : "job") << " file\n";
-    }
-    return kDone;
+    number("--speed", request.speed_mm_s, "speed of the frame through the head, mm/s");
+    number("--tolerance", request.tolerance_mm,
+           "how far the axis may be off the head's centre, mm");
+    number("--tolerance-angle", request.tolerance_deg,
+           "how far the frame's turn may be off, degrees");
+    number("--tube-radius", request.tube_radius_mm, "radius of the frame's tube, mm");
+    number("--ring-radius", request.ring_radius_mm, "radius of the rings' clear opening, mm");
+    number("--ring-distance", request.ring_distance_mm, "distance between the two rings, mm");
+    number("--clearance", request.clearance_mm,
+           "distance to keep between the frame and the bodies on the machine's base, mm");
+    number("--angle", request.angle_deg,
+           "wanted angle of the rings' fibres from the axis, degrees");
+    app.add_option("--tows", request.tows, "tows on each ring")->capture_default_str();
+    app.add_option("--tow-width", request.tow_width_mm,
+                   "mm; given, the share of the tube that is covered is told");
+    app.add_option("--name", request.name, "name of the program")->capture_default_str();
+    app.add_option("-o,--out", text.out, "output folder")->capture_default_str();
 }
 
 int run(int argc, char** argv) {
     CLI::App app(
         "Filament winding on triangulated mandrels: mesh and machine in, checked NC code out.\n"
-        "meshwind MANDREL --machine MACHINE.json is the main job, the same as meshwind wind.",
+        "Without a command it runs the main job, the same as meshwind wind.",
         "meshwind");
     app.set_version_flag("--version", std::string("meshwind ") + kVersion);
     Common common;
     WindOptions wind_options;
     add_wind_options(app, wind_options, false);
-    app.add_option("--threads", common.threads, "threads; 0 for one per core")
+    app.add_option("--threads", common.threads, "threads to use; 0: one per core")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    app.add_option("--seed", common.seed, "seed of every random draw")->capture_default_str();
-    app.add_option("--units", common.units, "length of a file unit")
+    app.add_option("--seed", common.seed,
+                   "seed of every random draw; the same seed gives the same files")
+        ->capture_default_str();
+    app.add_option("--units", common.units,
+                   "length of a unit of the mandrel's file; overrides the job")
         ->check(CLI::IsMember({"auto", "um", "mm", "cm", "m", "in"}));
-    app.add_flag("--json", common.json, "the report on stdout");
+    app.add_flag("--json", common.json, "the report as JSON on stdout, in place of the summary");
     app.add_flag("--quiet", common.quiet, "no progress and no summary");
-    app.add_flag("--force", common.force, "write the program although a check failed");
+    app.add_flag("--force", common.force,
+                 "write the program although a check failed; its head says so");
 
     WindOptions named_wind_options;
-    CLI::App* wind_command = app.add_subcommand("wind", "the main job");
+    CLI::App* wind_command =
+        app.add_subcommand("wind", "the main job: plan, post-process, check, write");
     add_wind_options(*wind_command, named_wind_options, true);
+    PostOptions post_options;
+    CLI::App* post_command =
+        app.add_subcommand("post", "a program for landing points made elsewhere");
+    add_post(*post_command, post_options);
     VerifyOptions verify_options;
-    CLI::App* verify_command = app.add_subcommand("verify", kVerifyHelp);
+    CLI::App* verify_command =
+        app.add_subcommand("verify", "wind a program again from its text, and check it");
     add_verify(*verify_command, verify_options);
     InspectOptions inspect_options;
-    CLI::App* inspect = app.add_subcommand("inspect", "what is read from a mandrel file");
+    CLI::App* inspect = app.add_subcommand(
+        "inspect", "what is read from a mandrel file: units, repairs, regions, rims, axis");
     add_inspect(*inspect, inspect_options);
     MakeRequest make_request;
     std::map<std::string, double> make_values;
-    CLI::App* make = app.add_subcommand("make", "a parametric mandrel");
+    CLI::App* make = app.add_subcommand(
+        "make", "write the mesh of a parametric mandrel: pipe, vessel, elbow, tee");
     add_make(*make, make_request, make_values);
     TraceOptionsText trace_text;
-    CLI::App* trace_command = app.add_subcommand("trace", "one fibre path");
+    CLI::App* trace_command =
+        app.add_subcommand("trace", "one fibre path over a mandrel, as a table");
     CLI::Option* angle = add_trace(*trace_command, trace_text);
     std::string validate_file;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
     validate->add_option("file", validate_file, "JSON file")->required();
+    CarryOptionsText carry_text;
+    CLI::App* carry = app.add_subcommand(
+        "carry", "a program for a robot that carries a frame through a fixed ring head");
+    add_carry(*carry, carry_text);
     StudyRequest study_request;
     CLI::App* study = app.add_subcommand("study", "studies of accuracy");
     study->require_subcommand(1);
-    CLI::App* mesh_size = study->add_subcommand("mesh-size", kMeshSizeHelp);
+    CLI::App* mesh_size =
+        study->add_subcommand("mesh-size", "accuracy of paths and motion against mesh size");
     add_mesh_size(*mesh_size, study_request);
-    for (CLI::App* command :
-         {wind_command, verify_command, inspect, make, trace_command, validate, study, mesh_size}) {
+    for (CLI::App* command : {wind_command, post_command, verify_command, inspect, make,
+                              trace_command, validate, carry, study, mesh_size}) {
         command->fallthrough();
+        command->footer(kCommon);
+    }
+    app.footer(kMainHelp);
+    for (const auto& [command, more] : {std::pair(post_command, kPostHelp),
+                                        {verify_command, kVerifyHelp},
+                                        {carry, kCarryHelp},
+                                        {mesh_size, kMeshSizeHelp}}) {
+        command->footer(std::string(more) + "\n" + kCommon);
     }
 
     try {
@@ -499,6 +354,9 @@ int run(int argc, char** argv) {
     }
     if (wind_command->parsed()) {
         return run_wind(named_wind_options, common);
+    }
+    if (post_command->parsed()) {
+        return run_post(post_options, common);
     }
     if (verify_command->parsed()) {
         return run_verify_command(verify_options, common);
@@ -521,6 +379,9 @@ int run(int argc, char** argv) {
     }
     if (trace_command->parsed()) {
         return run_trace_command(trace_text, angle->count() > 0, common);
+    }
+    if (carry->parsed()) {
+        return run_carry_command(carry_text, common);
     }
     if (mesh_size->parsed()) {
         return run_mesh_size(study_request, common);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/units.h"
+#include "postproc/mend_motion.h"
 
 namespace meshwind {
 namespace {
@@ -32,7 +34,8 @@ constexpr double kUsedRoom = 0.5;
 constexpr double kTighter = 0.5;
 constexpr int kTighterRounds = 4;
 
-// After so many rounds the same pieces still found wrong are taken for beyond mending.
+// After so many rounds the same pieces still found wrong are taken for beyond mending; where a
+// motion is at hand that lays them, at once.
 constexpr int kRoundsInVain = 1;
 
 // Turns of less than this per mm (radius 100 m) are none.
@@ -44,7 +47,29 @@ constexpr double kStraight_per_mm = 1e-5;
 constexpr double kMoreClearance_mm = 1.0;
 constexpr int kMoreClearanceRounds = 2;
 
-constexpr RedundancyPolicy kPolicy = RedundancyPolicy::CentralAngle;
+// A better motion is chosen so many times at most.
+constexpr int kMotionRounds = 12;
+
+// And so many times after a program has been wound again.
+constexpr int kMendedPrograms = 3;
+
+// From steps to the blocks that end where they do: a controller may need two for one.
+void renumber(std::vector<BindingLimit>& binding, const BlockList& steps, const BlockList& blocks) {
+    std::vector<std::size_t> block_of;
+    std::size_t block = 0;
+    for (std::size_t i = 0; i < steps.blocks.size(); ++i, ++block) {
+        while (!std::ranges::equal(blocks.row(block), steps.row(i))) {
+            ++block;
+        }
+        block_of.push_back(block);
+    }
+    for (BindingLimit& limit : binding) {
+        for (BindingStretch& stretch : limit.stretches) {
+            stretch.first = block_of[stretch.first - 1] + 1;
+            stretch.last = block_of[stretch.last];
+        }
+    }
+}
 
 class Programmer {
 public:
@@ -59,29 +84,67 @@ public:
     }
 
     PieceProgram run(const PieceProgramOptions& options) {
-        const auto tell = [&](const char* step, double share) {
-            if (options.progress) {
-                options.progress(step, share);
-            }
-        };
         const auto done = [&](const char* stage) {
             if (options.stage_done) {
                 options.stage_done(stage);
             }
         };
-        tell("post", 0.0);
+        tell(options, "post", 0.0);
         CollisionRule rule = setup_.rule;
         rule.told_mm = rule.clearance_mm + kMostBetweenBlocks_mm / kUsedRoom;
-        leave_room(keep_clear(rule, options.in_spite));
-        if (!found_.refused.empty() && !options.in_spite) {
-            return std::move(found_);
+        std::optional<MotionImprover> improver;
+        leave_room(keep_clear(rule, options.in_spite || options.optimal));
+        // Where a strict rule has no eye, no motion makes it one.
+        const bool broken_rule =
+            setup_.job.eye.rule != EyeRule::Adaptive && !found_.eyes.blocked.empty();
+        if (options.optimal && !broken_rule) {
+            improver.emplace(improver_of(found_.eyes));
+            improver->choose();
+            if (!make_clear(*improver, rule)) {
+                improver.reset();
+            }
         }
-        share_.assign(path_.size(), 1.0);
-        make_blocks();
-        done("post");
+        std::map<std::size_t, Rejection> wrong;
+        for (int mendings = 0;; ++mendings) {
+            if (options.optimal && !improver) {
+                leave_room(keep_clear(rule, options.in_spite));
+            }
+            if (!found_.refused.empty() && !options.in_spite) {
+                return std::move(found_);
+            }
+            share_.assign(path_.size(), 1.0);
+            make_blocks();
+            done("post");
+            wrong = wind_again(options, improver ? 0 : kRoundsInVain);
+            done("verify");
+            if (wrong.empty() || !improver) {
+                break;
+            }
+            const bool mended = mendings < kMendedPrograms && improver->give_up(wrong_stations()) &&
+                                make_clear(*improver, rule);
+            if (!mended) {
+                improver.reset();
+            }
+        }
+        found_.refused.merge(wrong);
+        found_.optimal = improver.has_value();
+        return std::move(found_);
+    }
+
+private:
+    static void tell(const PieceProgramOptions& options, const char* step, double share) {
+        if (options.progress) {
+            options.progress(step, share);
+        }
+    }
+
+    // Winds the blocks again, finer where they are too coarse, until that has not helped for more
+    // than some rounds. Returns the pieces that they do not lay as planned.
+    std::map<std::size_t, Rejection> wind_again(const PieceProgramOptions& options,
+                                                int rounds_in_vain) {
         std::map<std::size_t, Rejection> wrong;
         for (int round = 0;; ++round) {
-            tell("verify", static_cast<double>(round) / kTighterRounds);
+            tell(options, "verify", static_cast<double>(round) / kTighterRounds);
             found_.read = options.through_text ? options.through_text(found_) : as_run();
             found_.verification = verify_program(setup_, found_.read, planned_fibre(pieces_));
             std::map<std::size_t, Rejection> now;
@@ -89,19 +152,15 @@ public:
                 now.emplace(static_cast<std::size_t>(found_.blocks.blocks[block].piece),
                             Rejection::Laydown);
             }
-            const bool in_vain = round > kRoundsInVain && now == wrong;
+            const bool in_vain = round > rounds_in_vain && now == wrong;
             wrong = std::move(now);
             if (round == kTighterRounds || in_vain || !tighten()) {
-                break;
+                return wrong;
             }
             make_blocks();
         }
-        done("verify");
-        found_.refused.merge(wrong);
-        return std::move(found_);
     }
 
-private:
     [[nodiscard]] BlockTolerance block_tolerance() const {
         BlockTolerance tolerance;
         tolerance.sideways_mm = kChoiceShare * setup_.job.tolerance.laydown_mm;
@@ -123,18 +182,12 @@ private:
             if (!found_.refused.empty() && !in_spite) {
                 return {};
             }
-            CollisionReport report = check_collisions(setup_.machine, setup_.envelope,
-                                                      *setup_.obstacles, path_, joints_, rule);
             const std::size_t refused = found_.refused.size();
-            for (const std::size_t point : report.fibre_hits) {
-                refuse(path_[point], Rejection::FibreHit);
-            }
-            for (const std::size_t point : report.head_hits) {
-                refuse(path_[point], Rejection::HeadHit);
-            }
-            const bool only_head =
-                refused == 0 && report.fibre_hits.empty() && !report.head_hits.empty();
-            if (!only_head || round == kMoreClearanceRounds) {
+            CollisionReport report = refuse_hits(rule);
+            const bool only_head = refused == 0 && report.fibre_hits.empty() &&
+                                   report.body_hits.empty() && !report.head_hits.empty();
+            const bool by_rule = setup_.job.eye.rule != EyeRule::Adaptive;
+            if (!only_head || by_rule || round == kMoreClearanceRounds) {
                 return std::move(report.clearance_mm);
             }
             for (const auto& [piece, reason] : found_.refused) {
@@ -145,17 +198,153 @@ private:
 
     void solve_motion(std::span<const double> more_clearance_mm) {
         found_.refused.clear();
-        found_.eyes = equal_free_length(pieces_, *setup_.obstacles, setup_.rule.free_fibre,
-                                        more_clearance_mm);
-        path_ = refine_path(setup_.machine, found_.eyes.path, kPolicy, block_tolerance());
-        joints_ = solve_joints(setup_.machine, path_, kPolicy);
-        found_.path_points = path_.size();
+        found_.eyes = eye_path(pieces_, setup_.job.eye, *setup_.obstacles, setup_.rule.free_fibre,
+                               more_clearance_mm);
+        refine(first_policy());
         for (const std::size_t point : found_.eyes.blocked) {
             refuse(found_.eyes.path[point], Rejection::FreeLength);
         }
+        refuse_beyond_travel();
+    }
+
+    // What a motion of least time starts from is the central angle.
+    [[nodiscard]] RedundancyPolicy first_policy() const {
+        switch (setup_.job.redundancy) {
+            case RedundancyRule::Hold:
+                return RedundancyPolicy::Hold;
+            case RedundancyRule::Oscillate:
+                return RedundancyPolicy::Oscillate;
+            default:
+                return RedundancyPolicy::CentralAngle;
+        }
+    }
+
+    void refine(RedundancyPolicy policy) {
+        path_ = refine_path(setup_.machine, found_.eyes.path, policy, block_tolerance());
+        joints_ = solve_joints(setup_.machine, path_, policy);
+        found_.path_points = path_.size();
+    }
+
+    void refuse_beyond_travel() {
         for (const LimitViolation& violation : joints_.violations) {
             refuse(path_[violation.point], Rejection::AxisTravel);
         }
+        for (const JointNote& note : joints_.notes) {
+            if (note.kind == JointNoteKind::EyeOutOfReach) {
+                refuse(path_[note.first], Rejection::AxisTravel);
+            }
+        }
+    }
+
+    CollisionReport refuse_hits(const CollisionRule& rule) {
+        CollisionReport report = check_collisions(setup_.machine, setup_.envelope,
+                                                  *setup_.obstacles, path_, joints_, rule);
+        for (const std::size_t point : report.fibre_hits) {
+            refuse(path_[point], Rejection::FibreHit);
+        }
+        for (const auto* const hits : {&report.head_hits, &report.body_hits}) {
+            for (const std::size_t point : *hits) {
+                refuse(path_[point], Rejection::HeadHit);
+            }
+        }
+        return report;
+    }
+
+    [[nodiscard]] MotionImprover improver_of(const EyePathResult& eyes) const {
+        EyePath safe = eyes.path;
+        const std::vector<double> central = spindle_turns(safe, RedundancyPolicy::CentralAngle);
+        for (std::size_t i = 0; i < central.size(); ++i) {
+            safe[i].turn_rad = central[i];
+        }
+        return {setup_.machine,
+                *setup_.obstacles,
+                setup_.rule.free_fibre,
+                fibre_speed_mm_s(),
+                setup_.job.eye.rule != EyeRule::Adaptive,
+                std::move(safe),
+                eyes.ahead_mm};
+    }
+
+    // Takes over the improver's motion and mends it until it is clear; false where that fails.
+    bool make_clear(MotionImprover& improver, const CollisionRule& rule) {
+        for (int round = 0; round < kMotionRounds; ++round) {
+            std::vector<std::size_t> hits;
+            for (const auto& [first, last] : improver.changed()) {
+                const std::vector<std::size_t> found = hits_within(improver.path(), first, last);
+                hits.insert(hits.end(), found.begin(), found.end());
+            }
+            if (hits.empty()) {
+                found_.eyes.path = improver.path();
+                found_.refused.clear();
+                refine(RedundancyPolicy::Chosen);
+                CollisionReport report = check_collisions(setup_.machine, setup_.envelope,
+                                                          *setup_.obstacles, path_, joints_, rule);
+                hits = hit_stations(path_, joints_, report, found_.eyes.path);
+                if (hits.empty()) {
+                    found_.eyes.blocked.clear();
+                    measure_lengths(found_.eyes);
+                    leave_room(std::move(report.clearance_mm));
+                    return true;
+                }
+            }
+            if (!improver.mend(hits)) {
+                return false;
+            }
+        }
+        return false;
+    }
+
+    // Stations between two of a path at which its motion hits something or passes a limit.
+    [[nodiscard]] std::vector<std::size_t> hits_within(const EyePath& stations, std::size_t first,
+                                                       std::size_t last) const {
+        const EyePath part(stations.begin() + static_cast<std::ptrdiff_t>(first),
+                           stations.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+        const EyePath path =
+            refine_path(setup_.machine, part, RedundancyPolicy::Chosen, block_tolerance());
+        const JointPath joints = solve_joints(setup_.machine, path, RedundancyPolicy::Chosen);
+        CollisionRule rule = setup_.rule;
+        rule.told_mm = rule.clearance_mm;
+        return hit_stations(path, joints,
+                            check_collisions(setup_.machine, setup_.envelope, *setup_.obstacles,
+                                             path, joints, rule),
+                            stations);
+    }
+
+    static std::vector<std::size_t> hit_stations(const EyePath& path, const JointPath& joints,
+                                                 const CollisionReport& report,
+                                                 const EyePath& stations) {
+        std::vector<std::size_t> found;
+        const auto add = [&](std::size_t point) {
+            found.push_back(station_of(path[point].piece, path[point].point, stations));
+        };
+        for (const auto* const hits : {&report.fibre_hits, &report.head_hits, &report.body_hits}) {
+            std::for_each(hits->begin(), hits->end(), add);
+        }
+        for (const LimitViolation& violation : joints.violations) {
+            add(violation.point);
+        }
+        return found;
+    }
+
+    static std::size_t station_of(std::int32_t piece, std::int32_t point, const EyePath& stations) {
+        const auto at = std::lower_bound(
+            stations.begin(), stations.end(), std::pair(piece, point),
+            [](const EyePoint& a, const auto& key) { return std::pair(a.piece, a.point) < key; });
+        return std::min(static_cast<std::size_t>(at - stations.begin()), stations.size() - 1);
+    }
+
+    [[nodiscard]] std::vector<std::size_t> wrong_stations() const {
+        std::vector<std::size_t> found;
+        for (const std::size_t block : found_.verification.wrong_blocks) {
+            const Block& at = found_.blocks.blocks[block];
+            found.push_back(station_of(at.piece, at.point, found_.eyes.path));
+        }
+        return found;
+    }
+
+    [[nodiscard]] double fibre_speed_mm_s() const {
+        return std::min(setup_.job.speed.fibre_m_min * 1000.0 / 60.0,
+                        setup_.machine.fibre.max_speed_mm_s);
     }
 
     void leave_room(std::vector<double> clearance_mm) {
@@ -177,14 +366,26 @@ private:
                                        .share = share_},
                                       block_tolerance());
         const std::span<const std::size_t> ends = found_.choice.ends;
-        const TimeLawOptions time{.fibre_speed_mm_s = setup_.job.speed.fibre_m_min * 1000.0 / 60.0};
-        TimedBlocks timed =
-            meshwind::make_blocks(setup_.machine, points_at(path_, ends), points_at(joints_, ends),
-                                  found_.choice.fibre_mm, time);
+        const TimeLawOptions time{.fibre_speed_mm_s = fibre_speed_mm_s(),
+                                  .corner_mm = setup_.dialect->corner_tolerance_mm(setup_.machine),
+                                  .tick_s = setup_.dialect->tick_s()};
+        const auto timed_for = [&](const Machine& machine) {
+            return meshwind::make_blocks(machine, points_at(path_, ends), points_at(joints_, ends),
+                                         found_.choice.fibre_mm, time);
+        };
+        TimedBlocks timed = timed_for(setup_.machine);
+        BlockList prepared = setup_.dialect->prepare(timed.list);
+        if (prepared.axes != timed.list.axes) {
+            // Other steps are other positions, so the time law is asked again.
+            timed = timed_for(with_steps(setup_.machine, prepared.axes));
+            prepared = setup_.dialect->prepare(timed.list);
+        }
         found_.duration_s = timed.time.duration_s;
+        found_.least_s = path_.back().s_mm / fibre_speed_mm_s();
         found_.binding = std::move(timed.time.binding);
+        renumber(found_.binding, timed.list, prepared);
         // What the program runs, repeated circuits included.
-        FoldedProgram folded = setup_.dialect->fold(setup_.dialect->prepare(std::move(timed.list)));
+        FoldedProgram folded = setup_.dialect->fold(std::move(prepared));
         found_.blocks = std::move(folded.list);
         found_.layout = std::move(folded.layout);
     }

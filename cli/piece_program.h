@@ -25,7 +25,9 @@ struct PieceProgram {
     BlockChoice choice;
     BlockList blocks;      ///< what the program runs, one by one
     ProgramLayout layout;  ///< how they are written
+    bool optimal = false;  ///< free lengths and turns are those of the least time
     double duration_s = 0.0;
+    double least_s = 0.0;  ///< were the fibre at its full speed all along
     std::vector<BindingLimit> binding;
     BlockList read;             ///< the blocks as they were wound again
     Verification verification;  ///< of these
@@ -37,6 +39,8 @@ struct PieceProgram {
 struct PieceProgramOptions {
     /// Make a program even of what the machine cannot wind.
     bool in_spite = false;
+    /// Free lengths and turns of the mandrel for the least time.
+    bool optimal = false;
     /// From the blocks to their text and back. Empty: they are wound as they are.
     std::function<BlockList(const PieceProgram&)> through_text;
     std::function<void(const char* step, double share)> progress;

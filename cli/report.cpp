@@ -181,24 +181,54 @@ json choice_report(const BlockChoice& choice) {
             {"steps_beyond", choice.beyond}};
 }
 
+json refused_report(const PieceProgram& made) {
+    json refused = json::array();
+    for (const auto& [piece, reason] : made.refused) {
+        refused.push_back({{"course", piece}, {"reason", name_of(reason)}});
+    }
+    return refused;
+}
+
 json program_report(const WindResult& result, const FibreProgram& program) {
     const PieceProgram& made = program.made;
     json binding = json::array();
     for (const BindingLimit& limit : made.binding) {
-        binding.push_back({{"limit", limit.name}, {"time_s", report_number(limit.time_s)}});
+        json longest = json::array();
+        for (const BindingStretch& stretch : limit.stretches) {
+            longest.push_back({{"first_block", stretch.first},
+                               {"last_block", stretch.last},
+                               {"time_s", report_number(stretch.time_s)}});
+        }
+        binding.push_back(
+            {{"limit", limit.name}, {"time_s", report_number(limit.time_s)}, {"longest", longest}});
     }
     return {{"file", result.program_written ? json(program.file) : json(nullptr)},
             {"dialect", result.setup.machine.controller.dialect},
             {"path_points", made.path_points},
             {"blocks", made.blocks.blocks.size()},
             {"choice", choice_report(made.choice)},
+            {"optimal_motion", made.optimal},
             {"duration_s", report_number(made.duration_s)},
+            {"least_s", report_number(made.least_s)},
             {"free_length_mm",
              {{"min", report_number(made.eyes.shortest_mm)},
               {"max", report_number(made.eyes.longest_mm)}}},
             {"binding_limits", binding},
+            {"refused", refused_report(made)},
             {"repeats", repeats_report(made)},
             {"axes", axes_report(made)}};
+}
+
+json import_report(const ImportFit& fit) {
+    return {{"file", fit.file},
+            {"frame", fit.mandrel_frame ? "mandrel" : "file"},
+            {"points", fit.points},
+            {"repeated_points", fit.repeated},
+            {"joins", fit.joins},
+            {"worst_mm", report_number(fit.worst_mm)},
+            {"worst_line", fit.worst_line},
+            {"mean_mm", report_number(fit.mean_mm)},
+            {"limit_mm", report_number(fit.limit_mm)}};
 }
 
 std::string percent(double share) {
@@ -252,6 +282,9 @@ std::string report_json(const WindResult& result) {
                    {"checks", checks_report(result.checks)},
                    {"ok", result.passed()},
                    {"timing_s", timing}};
+    if (result.import) {
+        report["import"] = import_report(*result.import);
+    }
     for (std::size_t fibre = 0; fibre < result.programs.size(); ++fibre) {
         const FibreProgram& program = result.programs[fibre];
         report["program" + fibre_suffix(fibre)] = program_report(result, program);
@@ -267,16 +300,26 @@ void print_summary(std::ostream& out, const WindResult& result,
     if (plan.failure.empty()) {
         std::size_t blocks = 0;
         double duration_s = 0.0;
+        double least_s = 0.0;
         for (const FibreProgram& program : result.programs) {
             blocks += program.made.blocks.blocks.size();
             duration_s += program.made.duration_s;
+            least_s += program.made.least_s;
         }
         out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
             << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
-            << " m of fibre, " << blocks << " blocks, " << fixed(duration_s / 60.0, 1) << " min\n"
-            << "covered " << percent(plan.coverage.fraction) << " of the wall (reachable "
-            << percent(plan.coverage.reachable) << "), " << fixed(plan.coverage.mean_layers, 2)
-            << " layers on average, at most " << plan.coverage.max_layers << '\n';
+            << " m of fibre, " << blocks << " blocks, " << fixed(duration_s / 60.0, 1) << " min ("
+            << fixed(least_s / 60.0, 1) << " at the fibre's full speed)\n"
+            << "covered " << percent(plan.coverage.fraction) << " of the wall"
+            << (result.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")")
+            << ", " << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
+            << plan.coverage.max_layers << '\n';
+        if (result.import) {
+            const ImportFit& fit = *result.import;
+            out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
+                << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
+                << " mm in line " << fit.worst_line << '\n';
+        }
     }
     print_bare_wall(out, result);
     print_checks(out, result.checks);

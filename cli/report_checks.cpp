@@ -18,7 +18,8 @@ std::string meaning_of(const std::string& check) {
         {"continuity", "fibres that are tied on, and how well their pieces meet"},
         {"plan", "courses that can be wound"},
         {"coverage", "wall under at least one layer"},
-        {"eye", "a clear length of free fibre everywhere"},
+        {"import", "how far the landing points were from the mandrel"},
+        {"eye", "a free length that the rule allows everywhere"},
         {"rounding", "the program read back is the motion that was planned"},
         {"laydown", "the fibre comes to lie where it was planned"},
         {"slip", "friction holds it there"},
@@ -27,7 +28,12 @@ std::string meaning_of(const std::string& check) {
         {"free_length", "fibre between mandrel and eye"},
         {"limits", "axes within travel, speed and acceleration"},
         {"payout", "speed of the fibre through the eye, and length taken back"},
-        {"program", "the program is the planned one"}};
+        {"program", "the program is the planned one"},
+        {"ring", "the frame clear of the rings"},
+        {"reach", "every pose within the robot's reach"},
+        {"wrist", "no axis that jumps"},
+        {"clearance", "the frame clear of what stands on the base"},
+        {"interpolation", "the axis in the middle of the head between the points"}};
     const auto found = kMeanings.find(check.substr(0, check.find('-')));
     return found == kMeanings.end() ? "" : ": " + found->second;
 }

@@ -36,8 +36,24 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     return options;
 }
 
-// The head as planning sees it: a ball around the eye that holds every part which turns with the
-// last wrist axis, however that turns, and the other parts as capsules on the line away from the
+// True when some axis that carries the part turns it off the line away from the spindle; a roll
+// about that line does not.
+bool swings(const Machine& machine, char link) {
+    constexpr double kParallel = 1e-9;
+    for (const Axis& axis : machine.eye_chain) {
+        if (axis.type == AxisType::Rotary &&
+            axis.direction.cross(machine.eye.exit).norm() > kParallel) {
+            return true;
+        }
+        if (axis.letter == link) {
+            break;
+        }
+    }
+    return false;
+}
+
+// The head as planning sees it: a ball around the eye that holds every part which turns with a
+// wrist axis, however that turns, and the other parts as capsules on the line away from the
 // spindle, on which the central-angle policy keeps them.
 void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFibreRule& rule) {
     const Eigen::Vector3d& eye = machine.eye.position_mm;
@@ -61,11 +77,20 @@ void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFib
             arm.radius_mm =
                 std::max(arm.radius_mm, (point - eye - along * outward).norm() + thickness);
         }
-        if (part.link == machine.eye_chain.back().letter) {
+        if (swings(machine, part.link)) {
             rule.head_radius_mm = std::max(rule.head_radius_mm, reach);
         } else {
             rule.arm.push_back(arm);
         }
+    }
+}
+
+void check_free_length(const FreeFibreRule& free, double length_mm, const std::string& place) {
+    if (length_mm < free.min_mm || length_mm > free.max_mm) {
+        throw InputError("job.free_length", place,
+                         fixed(length_mm, 1) + " mm is outside the " + fixed(free.min_mm, 1) +
+                             " to " + fixed(free.max_mm, 1) +
+                             " mm of the machine; choose a length between");
     }
 }
 
@@ -77,11 +102,12 @@ CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     free.min_mm = setup.machine.fibre.min_free_length_mm;
     free.max_mm = setup.machine.fibre.max_free_length_mm;
     free.preferred_mm = setup.job.eye.free_length_mm;
-    if (free.preferred_mm < free.min_mm || free.preferred_mm > free.max_mm) {
-        throw InputError("job.free_length", job_file.string() + ": /eye/free_length",
-                         fixed(free.preferred_mm, 1) + " mm is outside the " +
-                             fixed(free.min_mm, 1) + " to " + fixed(free.max_mm, 1) +
-                             " mm of the machine; choose a length between");
+    const std::string eye = job_file.string() + ": /eye/";
+    check_free_length(free, free.preferred_mm, eye + "free_length");
+    const std::vector<LengthPiece>& lengths = setup.job.eye.lengths;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        check_free_length(free, lengths[i].free_length_mm,
+                          eye + "lengths/" + std::to_string(i) + "/free_length");
     }
     describe_head(setup.machine, setup.envelope, free);
     free.clearance_mm = rule.clearance_mm + kBetweenBlocks_mm;
@@ -90,12 +116,20 @@ CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     return rule;
 }
 
-std::unique_ptr<RayQuery> obstacles_of(const Mandrel& mandrel, double extension_mm) {
+TriangleSoup read_triangles_of(const std::string& file) {
+    return read_triangles(file);
+}
+
+std::unique_ptr<RayQuery> obstacles_of(const Machine& machine, const Mandrel& mandrel,
+                                       double extension_mm) {
     std::vector<TriangleSoup> parts{mandrel.whole};
     for (const Rim& rim : mandrel.rims) {
         if (extension_mm > 0.0) {
             parts.push_back(extension_of(rim, extension_mm));
         }
+    }
+    for (TriangleSoup& body : bodies_on_mandrel(machine, read_triangles_of)) {
+        parts.push_back(std::move(body));
     }
     return std::make_unique<RayQuery>(parts, kTableReach_mm);
 }
@@ -109,11 +143,10 @@ Setup read_setup(const SetupRequest& request) {
         setup.job = read_job(request.job);
     }
     setup.dialect = make_dialect(setup.machine.controller.dialect);
-    setup.envelope =
-        head_envelope(setup.machine, [](const std::string& file) { return read_triangles(file); });
+    setup.envelope = head_envelope(setup.machine, read_triangles_of);
     setup.mandrel = load_mandrel(request.mandrel, mandrel_options(setup.job, request.unit_mm));
     setup.rule = collision_rule(setup, request.job);
-    setup.obstacles = obstacles_of(setup.mandrel, setup.job.mandrel.extension_mm);
+    setup.obstacles = obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm);
     setup.wall = std::make_unique<LaydownWall>(
         extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
     return setup;
@@ -126,6 +159,7 @@ Verification verify_program(const Setup& setup, const BlockList& program,
                             .friction = job.tow.friction,
                             .bridging_tolerance_mm = job.tow.bridging_tolerance_mm,
                             .tow_width_mm = job.tow.width_mm,
+                            .corner_mm = setup.dialect->corner_tolerance_mm(setup.machine),
                             .laydown = {.deviation_mm = job.tolerance.laydown_mm,
                                         .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},
                             .simulation = {}};

@@ -29,7 +29,7 @@ struct Setup {
     std::unique_ptr<Dialect> dialect;
     HeadEnvelope envelope;
     CollisionRule rule;
-    std::unique_ptr<RayQuery> obstacles;  ///< mandrel and extensions
+    std::unique_ptr<RayQuery> obstacles;  ///< mandrel, extensions and bodies that turn with them
     std::unique_ptr<LaydownWall> wall;    ///< the surface with its extensions
 };
 

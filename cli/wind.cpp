@@ -17,7 +17,7 @@
 #include "core/text_file.h"
 #include "core/text_number.h"
 #include "core/units.h"
-#include "machines/kinematics.h"
+#include "machines/eye_inverse.h"
 #include "postproc/choose_blocks.h"
 #include "postproc/dialect.h"
 #include "postproc/motion_csv.h"
@@ -60,23 +60,52 @@ private:
                      value + " is not offered yet; " + mend);
 }
 
-// What the job may ask for but this version does not do is refused at once, in words.
-void refuse_what_is_not_offered(const Job& job, const fs::path& file) {
-    if (job.mandrel.turn != TurnKind::Friction) {
-        not_offered(file, "/mandrel/turn", "turning on pins or over a pole", "use \"friction\"");
+// The landing points to wind: those of the command, or of the job's layer.
+std::optional<ImportRequest> import_of(const WindRequest& request, const Job& job) {
+    if (request.import || job.layers.front().kind != LayerKind::Imported) {
+        return request.import;
     }
+    return ImportRequest{.points = request.job.parent_path() / job.layers.front().file};
+}
+
+void refuse_layers_not_offered(const Job& job, const fs::path& file) {
     if (job.layers.size() != 1) {
         not_offered(file, "/layers", "more than one layer", "give one layer");
     }
-    const LayerJob& layer = job.layers.front();
-    if (layer.kind != LayerKind::Auto && layer.kind != LayerKind::Cover) {
-        not_offered(file, "/layers/0/kind", "this kind of layer", "use \"cover\" or \"auto\"");
+    const LayerKind kind = job.layers.front().kind;
+    if (kind != LayerKind::Auto && kind != LayerKind::Cover && kind != LayerKind::Imported) {
+        not_offered(file, "/layers/0/kind", "this kind of layer",
+                    "use \"cover\", \"auto\" or \"imported\"");
     }
-    if (job.eye.rule != EyeRule::EqualFreeLength) {
-        not_offered(file, "/eye/rule", "this rule", "use \"equal-free-length\"");
+    if (kind != LayerKind::Imported && !job.eye.lengths.empty()) {
+        not_offered(file, "/eye/lengths",
+                    "a free length by stretches of fibre that is yet to be planned",
+                    "plan without it, then give path.csv and this job to meshwind post");
     }
-    if (job.redundancy != RedundancyRule::CentralAngle) {
-        not_offered(file, "/redundancy", "this rule", "use \"central-angle\"");
+}
+
+// What the job may ask for but this version does not do is refused at once, in words. Where landing
+// points are given the layers are not read.
+void refuse_what_is_not_offered(const Job& job, const fs::path& file, bool read_layers) {
+    if (job.mandrel.turn != TurnKind::Friction) {
+        not_offered(file, "/mandrel/turn", "turning on pins or over a pole", "use \"friction\"");
+    }
+    if (read_layers) {
+        refuse_layers_not_offered(job, file);
+    }
+}
+
+// A job that says nothing gets the best that the machine can do; one that asks for a turn that the
+// machine cannot choose is refused.
+void refuse_turns_not_free(const Job& job, const fs::path& file, const Machine& machine) {
+    const bool asks =
+        job.redundancy == RedundancyRule::Hold || job.redundancy == RedundancyRule::Oscillate;
+    if (asks && !machine_class(machine).free_turn) {
+        throw InputError("job.turn_forced", file.string() + ": /redundancy",
+                         machine.name +
+                             " has fewer than three linear axes, so that the place of "
+                             "the eye says how the mandrel turns; remove "
+                             "\"redundancy\"");
     }
 }
 
@@ -109,14 +138,27 @@ private:
     void read() {
         tell("import", 0.0);
         setup_ = read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
+        setup_.dialect->check(setup_.machine);
         mandrel_digest_ = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
-        refuse_what_is_not_offered(setup_.job, request_.job);
-        const SpindleWristInverse inverse(setup_.machine);       // refuses what cannot be solved
+        refuse_what_is_not_offered(setup_.job, request_.job, !request_.import);
+        const EyeLaw& eye = setup_.job.eye;
+        require_main_job(setup_.machine, eye.rule == EyeRule::Cylinder ? eye.radius_mm : 0.0);
+        refuse_turns_not_free(setup_.job, request_.job, setup_.machine);
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         watch_.stage("import");
     }
 
     void plan() {
+        if (const auto import = import_of(request_, setup_.job)) {
+            tell("plan", 0.0);
+            result_.plan = import_plan(setup_, *import, request_.seed, result_.import.emplace());
+            watch_.stage("plan");
+            return;
+        }
+        plan_courses();
+    }
+
+    void plan_courses() {
         const Job& job = setup_.job;
         CoverOptions options;
         options.tow = {job.tow.width_mm, job.tow.thickness_mm, kPlannedFriction * job.tow.friction,
@@ -176,6 +218,8 @@ private:
     void wind_fibre(std::span<const Piece> pieces, bool in_spite, FibreProgram& program) {
         PieceProgramOptions options;
         options.in_spite = in_spite;
+        options.optimal = setup_.job.redundancy == RedundancyRule::Optimal &&
+                          machine_class(setup_.machine).free_turn;
         options.through_text = [&](const PieceProgram& made) {
             return setup_.dialect->read(text_of(made), program.file, setup_.machine);
         };
@@ -192,7 +236,11 @@ private:
 
     void check() {
         check_fibres();
-        check_coverage();
+        if (result_.import) {
+            check_import();
+        } else {
+            check_coverage();
+        }
         for (std::size_t fibre = 0; fibre < result_.programs.size(); ++fibre) {
             std::vector<Check> found = checks_of(result_.programs[fibre].made);
             for (Check& check : found) {
@@ -216,6 +264,17 @@ private:
                 " separate fibres; a slimmer head, less clearance, a longer extension or more "
                 "friction gives more courses to join them";
         }
+        result_.checks.push_back(check);
+    }
+
+    // Points too far off are refused before; how far they were tells of their mandrel.
+    void check_import() {
+        const ImportFit& fit = *result_.import;
+        Check check{"import", true, {}, {}};
+        check.numbers = {{"worst_mm", fit.worst_mm},
+                         {"mean_mm", fit.mean_mm},
+                         {"limit_mm", fit.limit_mm},
+                         {"worst_line", static_cast<double>(fit.worst_line)}};
         result_.checks.push_back(check);
     }
 
@@ -258,10 +317,7 @@ private:
         Check check{"eye", blocked.empty(), {}, {}};
         check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
         if (!check.ok) {
-            check.words = "no free fibre length between " +
-                          fixed(setup_.rule.free_fibre.min_mm, 0) + " and " +
-                          fixed(setup_.rule.free_fibre.max_mm, 0) + " mm is clear at " +
-                          place_of(made.eyes.path[blocked.front()]);
+            check.words = made.eyes.words + " at " + place_of(made.eyes.path[blocked.front()]);
         }
         return check;
     }

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/imported_plan.h"
 #include "cli/piece_program.h"
 #include "cli/setup.h"
 #include "postproc/verify.h"
@@ -21,6 +23,8 @@ struct WindRequest {
     std::filesystem::path job;  ///< empty: the defaults
     std::filesystem::path out = "meshwind-out";
     double unit_mm = 0.0;  ///< overrides the job's units where > 0
+    /// Landing points to wind instead of what the job's layers ask for.
+    std::optional<ImportRequest> import;
     std::uint64_t seed = 1;
     int effort = 1;      ///< how long the plan is improved, as a multiple
     bool force = false;  ///< write the program although a check failed
@@ -38,6 +42,7 @@ struct FibreProgram {
 struct WindResult {
     Setup setup;
     Plan plan;
+    std::optional<ImportFit> import;     ///< of landing points
     std::vector<FibreProgram> programs;  ///< one for each fibre of the plan
     /// Of the plan, then of each program: those of a further fibre end in its number, "slip-2".
     std::vector<Check> checks;

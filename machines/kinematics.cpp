@@ -19,6 +19,13 @@ constexpr double kParallel = 1e-9;
 constexpr double kLeastVolume = 1e-3;
 constexpr double kPointTolerance_mm = 1e-9;
 
+Eigen::Isometry3d pose_of(const MandrelMount& mount) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() << mount.x, mount.z.cross(mount.x), mount.z;
+    pose.translation() = mount.origin_mm;
+    return pose;
+}
+
 Eigen::Isometry3d exponential(const Axis& axis, double value) {
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
     if (axis.type == AxisType::Linear) {
@@ -45,8 +52,9 @@ double distance_to_axis(const Axis& axis, const Eigen::Vector3d& point_mm) {
 [[noreturn]] void unsupported(const Machine& machine, const std::string& words) {
     throw InputError("machine.unsupported_chain", machine.name,
                      words +
-                         "; the closed form needs a spindle along Z, three linear axes, a head "
-                         "roll along X and at most a head swing along Y, both through the eye");
+                         "; the closed form needs a spindle along Z, one to three linear axes and "
+                         "at most a head roll along X and a head swing along Y, both through the "
+                         "eye");
 }
 
 [[noreturn]] void missing(const Machine& machine, const std::string& words) {
@@ -70,35 +78,76 @@ Eigen::Isometry3d base_from_mandrel(const Machine& machine, std::span<const doub
     for (std::size_t i = 0; i < machine.mandrel_chain.size(); ++i) {
         pose = pose * exponential(machine.mandrel_chain[i], q[i]);
     }
-    return pose;
+    return machine.mount ? pose * pose_of(*machine.mount) : pose;
 }
 
 Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double> q, char link) {
     assert(q.size() == machine.axis_count());
-    const std::size_t first = machine.mandrel_chain.size();
+    const std::size_t eye = machine.mandrel_chain.size();
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    for (std::size_t i = 0; i < machine.eye_chain.size(); ++i) {
-        pose = pose * exponential(machine.eye_chain[i], q[first + i]);
-        if (machine.eye_chain[i].letter == link) {
+    for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
+        if (joint == eye) {
+            pose.setIdentity();
+        }
+        pose = pose * exponential(machine.axis(joint), q[joint]);
+        if (machine.axis(joint).letter == link) {
             return pose;
         }
     }
-    assert(false && "link is not in the eye chain");
+    assert(false && "link is in neither chain");
     return pose;
 }
 
 Eigen::Isometry3d base_from_eye(const Machine& machine, std::span<const double> q) {
-    return base_from_link(machine, q, machine.eye_chain.back().letter) *
-           Eigen::Translation3d(machine.eye.position_mm);
+    const Eigen::Translation3d eye(machine.eye.position_mm);
+    return machine.eye_chain.empty()
+               ? Eigen::Isometry3d(eye)
+               : base_from_link(machine, q, machine.eye_chain.back().letter) * eye;
+}
+
+std::vector<PlacedAxis> placed_axes(const Machine& machine, std::span<const double> q) {
+    assert(q.size() == machine.axis_count());
+    std::vector<PlacedAxis> placed;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
+        if (joint == machine.mandrel_chain.size()) {
+            pose.setIdentity();
+        }
+        const Axis& axis = machine.axis(joint);
+        placed.push_back({axis.type, pose.linear() * axis.direction, pose * axis.point_mm});
+        pose = pose * exponential(axis, q[joint]);
+    }
+    return placed;
 }
 
 Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q) {
     return base_from_mandrel(machine, q).inverse() * base_from_eye(machine, q);
 }
 
+Eigen::Matrix3Xd eye_moves(const Machine& machine, std::span<const double> q) {
+    const Eigen::Vector3d eye_mm = base_from_eye(machine, q).translation();
+    Eigen::Matrix3Xd moves(3, static_cast<Eigen::Index>(machine.axis_count()));
+    Eigen::Index joint = 0;
+    const auto add = [&](const std::vector<Axis>& chain, double sign) {
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        for (const Axis& axis : chain) {
+            const Eigen::Vector3d direction = pose.linear() * axis.direction;
+            const Eigen::Vector3d arm_mm = eye_mm - pose * axis.point_mm;
+            moves.col(joint) =
+                sign * (axis.type == AxisType::Linear ? direction : direction.cross(arm_mm));
+            pose = pose * exponential(axis, q[static_cast<std::size_t>(joint)]);
+            ++joint;
+        }
+    };
+    add(machine.mandrel_chain, -1.0);
+    add(machine.eye_chain, 1.0);
+    return moves;
+}
+
 SpindleWristInverse::SpindleWristInverse(const Machine& machine)
     : eye_zero_mm_(machine.eye.position_mm) {
     recognise_spindle(machine);
+    recognise_mount(machine);
     recognise_linear(machine);
     recognise_wrist(machine);
     if (sign_along(machine.eye.roller, Eigen::Vector3d::UnitZ()) == 0.0) {
@@ -124,27 +173,61 @@ void SpindleWristInverse::recognise_spindle(const Machine& machine) {
     }
 }
 
+void SpindleWristInverse::recognise_mount(const Machine& machine) {
+    if (!machine.mount) {
+        return;
+    }
+    const MandrelMount& mount = *machine.mount;
+    if (mount.origin_mm.head<2>().norm() > kPointTolerance_mm ||
+        (mount.x - Eigen::Vector3d::UnitX()).norm() > kParallel ||
+        (mount.z - Eigen::Vector3d::UnitZ()).norm() > kParallel) {
+        unsupported(machine, "the mandrel frame at zero is not the machine frame moved along Z");
+    }
+    eye_zero_mm_.z() -= mount.origin_mm.z();  // what is left to move when the eye is at the target
+}
+
 void SpindleWristInverse::recognise_linear(const Machine& machine) {
-    std::size_t count = 0;
+    std::size_t& count = linear_count_;
     while (count < machine.eye_chain.size() && machine.eye_chain[count].type == AxisType::Linear) {
         ++count;
     }
-    if (count < 3) {
-        missing(machine, "the eye chain starts with " + std::to_string(count) +
-                             " linear axes; three are needed before the rotary ones");
+    if (count == 0) {
+        missing(machine, "the eye chain does not start with a linear axis; add the carriage");
     }
     if (count > 3) {
         unsupported(machine, "the eye chain has more than three linear axes");
     }
-    Eigen::Matrix3d directions;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         linear_[i] = machine.mandrel_chain.size() + i;
-        directions.col(static_cast<Eigen::Index>(i)) = machine.eye_chain[i].direction;
+        linear_axis_[i] = machine.eye_chain[i];
+        machine_from_linear_.col(static_cast<Eigen::Index>(i)) = machine.eye_chain[i].direction;
     }
-    if (std::abs(directions.determinant()) < kLeastVolume) {
-        unsupported(machine, "the three linear axes lie in one plane");
+    if (count == 3) {
+        if (std::abs(machine_from_linear_.determinant()) < kLeastVolume) {
+            unsupported(machine, "the three linear axes lie in one plane");
+        }
+        linear_from_machine_ = machine_from_linear_.inverse();
+        return;
     }
-    linear_from_machine_ = directions.inverse();
+    if (count == 2 &&
+        machine_from_linear_.col(0).cross(machine_from_linear_.col(1)).norm() < kLeastVolume) {
+        unsupported(machine, "the two linear axes are parallel");
+    }
+    Eigen::Matrix3d products = machine_from_linear_.transpose() * machine_from_linear_;
+    for (auto i = static_cast<Eigen::Index>(count); i < 3; ++i) {
+        products(i, i) = 1.0;  // an axis that is not there stays at zero
+    }
+    linear_from_machine_ = products.inverse() * machine_from_linear_.transpose();
+}
+
+bool SpindleWristInverse::reaches_all() const {
+    if (linear_count_ != 2) {
+        return linear_count_ == 3;
+    }
+    const Eigen::Vector3d normal =
+        machine_from_linear_.col(0).cross(machine_from_linear_.col(1)).normalized();
+    return sign_along(normal, Eigen::Vector3d::UnitY()) != 0.0 &&
+           std::abs(eye_zero_mm_.y()) < kPointTolerance_mm;
 }
 
 void SpindleWristInverse::recognise_wrist(const Machine& machine) {
@@ -157,21 +240,21 @@ void SpindleWristInverse::recognise_wrist(const Machine& machine) {
         if (axis.type != AxisType::Rotary || joint.sign == 0.0) {
             unsupported(machine, name_of(axis) + " is not a rotary axis along " + words);
         }
-        if (distance_to_axis(axis, eye_zero_mm_) > kPointTolerance_mm) {
+        if (distance_to_axis(axis, machine.eye.position_mm) > kPointTolerance_mm) {
             unsupported(machine, name_of(axis) + " does not pass through the eye");
         }
         return joint;
     };
-    const std::size_t links = machine.eye_chain.size();
-    if (links < 4) {
-        missing(machine, "the eye chain has no head roll; add a rotary axis along X");
+    const std::size_t links = machine.eye_chain.size() - linear_count_;
+    has_roll_ = links > 0;
+    has_swing_ = links > 1;
+    if (has_roll_) {
+        roll_ = rotary(linear_count_, Eigen::Vector3d::UnitX(), "X (head roll)");
     }
-    roll_ = rotary(3, Eigen::Vector3d::UnitX(), "X (head roll)");
-    has_swing_ = links > 4;
     if (has_swing_) {
-        swing_ = rotary(4, Eigen::Vector3d::UnitY(), "Y (head swing)");
+        swing_ = rotary(linear_count_ + 1, Eigen::Vector3d::UnitY(), "Y (head swing)");
     }
-    if (links > 5) {
+    if (links > 2) {
         unsupported(machine, "the eye chain has more than two rotary axes");
     }
 }
@@ -204,19 +287,11 @@ void SpindleWristInverse::consider(double roll_rad, double swing_rad, Choice& be
     }
 }
 
-WristState SpindleWristInverse::solve(const EyeTarget& target, double turn_rad,
-                                      std::span<const double> previous,
-                                      std::span<double> joints) const {
-    const Eigen::Matrix3d machine_from_mandrel =
-        Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    Choice best{.previous_roll = previous[roll_.joint],
-                .previous_swing = has_swing_ ? previous[swing_.joint] : 0.0};
-    const Eigen::Vector3d tau = machine_from_mandrel * target.tangent;
-    const Eigen::Vector3d binormal = machine_from_mandrel * target.binormal;
+// Roll and swing for the fibre and its binormal, both in the machine frame.
+void SpindleWristInverse::turn_head(const Eigen::Vector3d& tau, const Eigen::Vector3d& binormal,
+                                    Choice& best, WristState& state) const {
     const Eigen::Vector3d wanted =
         has_swing_ ? binormal : Eigen::Vector3d(Eigen::Vector3d::UnitX().cross(tau));
-
-    WristState state;
     state.singular_sine = std::hypot(wanted.y(), wanted.z());
     state.held = state.singular_sine < kSingularSine;
     const double held_roll = roll_.sign * best.previous_roll;
@@ -236,19 +311,98 @@ WristState SpindleWristInverse::solve(const EyeTarget& target, double turn_rad,
         const Eigen::Vector3d roller(0.0, -std::sin(a), std::cos(a));
         state.twist_rad = std::atan2(roller.cross(binormal).norm(), std::abs(roller.dot(binormal)));
     }
-    state.flip = std::abs(best.roll - best.previous_roll) > 0.5 * kPi;
+    state.flip_rad = std::abs(best.roll - best.previous_roll);
+    state.flip = state.flip_rad > 0.5 * kPi;
+}
 
-    const Eigen::Vector3d linear =
-        linear_from_machine_ * (machine_from_mandrel * target.eye_mm - eye_zero_mm_);
+WristState SpindleWristInverse::solve(const EyeTarget& target, double turn_rad,
+                                      std::span<const double> previous,
+                                      std::span<double> joints) const {
+    const Eigen::Matrix3d machine_from_mandrel =
+        Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    Choice best{.previous_roll = has_roll_ ? previous[roll_.joint] : 0.0,
+                .previous_swing = has_swing_ ? previous[swing_.joint] : 0.0};
+    const Eigen::Vector3d binormal = machine_from_mandrel * target.binormal;
+    WristState state;
+    if (has_roll_) {
+        turn_head(machine_from_mandrel * target.tangent, binormal, best, state);
+    } else {
+        const Eigen::Vector3d roller = Eigen::Vector3d::UnitZ();
+        state.twist_rad = std::atan2(roller.cross(binormal).norm(), std::abs(roller.dot(binormal)));
+    }
+    const Eigen::Vector3d way = machine_from_mandrel * target.eye_mm - eye_zero_mm_;
+    const Eigen::Vector3d linear = linear_from_machine_ * way;
     joints[0] = spindle_sign_ * turn_rad;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < linear_count_; ++i) {
         joints[linear_[i]] = linear[static_cast<Eigen::Index>(i)];
     }
-    joints[roll_.joint] = best.roll;
+    if (linear_count_ < 3) {
+        state.residual_mm = (way - machine_from_linear_ * linear).norm();
+    }
+    if (has_roll_) {
+        joints[roll_.joint] = best.roll;
+    }
     if (has_swing_) {
         joints[swing_.joint] = best.swing;
     }
     return state;
+}
+
+bool SpindleWristInverse::within_travel(const Eigen::Vector3d& linear) const {
+    for (std::size_t i = 0; i < linear_count_; ++i) {
+        const double value = linear[static_cast<Eigen::Index>(i)];
+        if (value < linear_axis_[i].min || value > linear_axis_[i].max) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::optional<double> SpindleWristInverse::forced_turn(const EyeTarget& target,
+                                                       double near_rad) const {
+    const Eigen::Vector3d& eye = target.eye_mm;
+    const double radius = eye.head<2>().norm();
+    if (linear_count_ == 3 || radius < kPointTolerance_mm) {
+        return std::nullopt;
+    }
+    // The axes leave the direction `normal` of the machine frame out: its component of the turned
+    // eye, a cos t + b sin t, must be c.
+    Eigen::Vector3d normal = machine_from_linear_.col(0).cross(machine_from_linear_.col(1));
+    const Eigen::Vector3d zero_out(eye_zero_mm_.x(), eye_zero_mm_.y(), 0.0);
+    std::array<double, 2> turns{};
+    if (linear_count_ == 1) {
+        if (sign_along(machine_from_linear_.col(0), Eigen::Vector3d::UnitZ()) == 0.0 ||
+            zero_out.norm() < kPointTolerance_mm) {
+            return std::nullopt;
+        }
+        turns.fill(std::atan2(zero_out.y(), zero_out.x()) - std::atan2(eye.y(), eye.x()));
+    } else {
+        normal.normalize();
+        const double a = normal.x() * eye.x() + normal.y() * eye.y();
+        const double b = normal.y() * eye.x() - normal.x() * eye.y();
+        const double c = normal.dot(eye_zero_mm_) - normal.z() * eye.z();
+        const double most = std::hypot(a, b);
+        if (normal.head<2>().norm() < kParallel) {
+            return std::nullopt;
+        }
+        const double half = std::acos(std::clamp(c / most, -1.0, 1.0));
+        turns = {std::atan2(b, a) + half, std::atan2(b, a) - half};
+    }
+    std::optional<double> best;
+    bool best_inside = false;
+    for (const double turn : turns) {
+        const double nearest = nearest_turn(turn, near_rad, 2.0 * kPi);
+        const Eigen::Vector3d turned =
+            Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * eye;
+        const bool inside = within_travel(linear_from_machine_ * (turned - eye_zero_mm_));
+        if (!best ||
+            (inside == best_inside ? std::abs(nearest - near_rad) < std::abs(*best - near_rad)
+                                   : inside)) {
+            best = nearest;
+            best_inside = inside;
+        }
+    }
+    return best;
 }
 
 }  // namespace meshwind

@@ -57,6 +57,20 @@ struct EyeHead {
     std::vector<EnvelopePart> envelope;
 };
 
+/// How the mandrel sits on the end of its chain: its frame in the machine frame at zero.
+struct MandrelMount {
+    Eigen::Vector3d origin_mm = Eigen::Vector3d::Zero();
+    Eigen::Vector3d x = Eigen::Vector3d::UnitX();  ///< unit
+    Eigen::Vector3d z = Eigen::Vector3d::UnitZ();  ///< unit, at a right angle to x
+};
+
+/// A part that does not belong to the eye's chain: a chuck, a shaft, a bed.
+struct MachineBody {
+    /// Letter of the axis of the mandrel's chain that carries it; nothing: it stands on the base.
+    std::optional<char> link;
+    std::variant<Capsule, EnvelopeMesh> shape;
+};
+
 /// What the fibre path from the creel to the eye can do.
 struct FibreLimits {
     double min_free_length_mm = 0.0;
@@ -81,8 +95,10 @@ struct Controller {
 struct Machine {
     std::string name;
     std::vector<Axis> mandrel_chain;
-    std::vector<Axis> eye_chain;
+    std::vector<Axis> eye_chain;        ///< empty: the eye stands still
+    std::optional<MandrelMount> mount;  ///< nothing: the mandrel frame is the machine frame at zero
     EyeHead eye;
+    std::vector<MachineBody> bodies;
     FibreLimits fibre;
     Controller controller;
 

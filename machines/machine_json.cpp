@@ -110,10 +110,60 @@ std::vector<Axis> read_chain(const JsonValue& value, const std::vector<Axis>& be
         }
         chain.push_back(std::move(axis));
     }
-    if (chain.empty()) {
-        value.fail("machine.missing_axis", "has no axis; list at least one");
-    }
     return chain;
+}
+
+// The capsule or mesh of an envelope part or a body.
+std::variant<Capsule, EnvelopeMesh> read_shape(const JsonValue& value,
+                                               const std::filesystem::path& folder) {
+    const JsonObject object =
+        value.object({"type", "link", "from", "to", "radius", "file", "note"});
+    if (object.required("type").one_of({"capsule", "mesh"}) == 0) {
+        (void)value.object({"type", "link", "from", "to", "radius", "note"});
+        return Capsule{.from_mm = position(object.required("from")),
+                       .to_mm = position(object.required("to")),
+                       .radius_mm = object.required("radius").number(kPositive)};
+    }
+    (void)value.object({"type", "link", "file", "note"});
+    const std::filesystem::path name = object.required("file").string();
+    return EnvelopeMesh{(name.is_absolute() ? name : folder / name).string()};
+}
+
+MachineBody read_body(const JsonValue& value, const std::vector<Axis>& mandrel_chain,
+                      const std::filesystem::path& folder) {
+    MachineBody body{{}, read_shape(value, folder)};
+    const JsonValue link =
+        value.object({"type", "link", "from", "to", "radius", "file", "note"}).required("link");
+    if (link.string() != "base") {
+        body.link = axis_letter(link);
+        if (!has_letter(mandrel_chain, *body.link)) {
+            link.fail("machine.link", std::string("axis ") + *body.link +
+                                          " is not in the mandrel chain; name the axis that "
+                                          "carries the body, or \"base\"");
+        }
+    }
+    return body;
+}
+
+MandrelMount read_mount(const JsonValue& value) {
+    const JsonObject object = value.object({"origin", "x", "z", "note"});
+    MandrelMount mount;
+    if (const auto origin = object.optional("origin")) {
+        mount.origin_mm = position(*origin);
+    }
+    if (const auto x = object.optional("x")) {
+        mount.x = unit_vector(*x);
+    }
+    if (const auto z = object.optional("z")) {
+        mount.z = unit_vector(*z);
+    }
+    if (std::abs(mount.x.dot(mount.z)) > kUnitTolerance) {
+        value.fail("machine.mount",
+                   "x and z are not at right angles; give both, or leave both out");
+    }
+    // Six digits are enough in the file; inside the axes are at right angles to the last bit.
+    mount.x = (mount.x - mount.x.dot(mount.z) * mount.z).normalized();
+    return mount;
 }
 
 EnvelopePart read_part(const JsonValue& value, const std::vector<Axis>& eye_chain,
@@ -127,16 +177,7 @@ EnvelopePart read_part(const JsonValue& value, const std::vector<Axis>& eye_chai
         link.fail("machine.link", std::string("axis ") + part.link +
                                       " is not in the eye chain; name the axis that carries it");
     }
-    if (object.required("type").one_of({"capsule", "mesh"}) == 0) {
-        (void)value.object({"type", "link", "from", "to", "radius", "note"});
-        part.shape = Capsule{.from_mm = position(object.required("from")),
-                             .to_mm = position(object.required("to")),
-                             .radius_mm = object.required("radius").number(kPositive)};
-    } else {
-        (void)value.object({"type", "link", "file", "note"});
-        const std::filesystem::path name = object.required("file").string();
-        part.shape = EnvelopeMesh{(name.is_absolute() ? name : folder / name).string()};
-    }
+    part.shape = read_shape(value, folder);
     return part;
 }
 
@@ -211,7 +252,7 @@ Controller read_controller(const JsonValue& value) {
 Machine machine_from(const JsonDocument& document, const std::string& file) {
     const JsonObject object =
         document.root().object({"schema", "name", "description", "mandrel_chain", "eye_chain",
-                                "eye", "fibre", "controller"});
+                                "mandrel", "eye", "bodies", "fibre", "controller"});
     const JsonValue schema = object.required("schema");
     if (schema.string() != "meshwind-machine-1") {
         schema.fail("machine.schema",
@@ -223,9 +264,21 @@ Machine machine_from(const JsonDocument& document, const std::string& file) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     Machine machine;
     machine.name = object.required("name").string();
-    machine.mandrel_chain = read_chain(object.required("mandrel_chain"), {});
+    const JsonValue mandrel_chain = object.required("mandrel_chain");
+    machine.mandrel_chain = read_chain(mandrel_chain, {});
+    if (machine.mandrel_chain.empty()) {
+        mandrel_chain.fail("machine.missing_axis", "has no axis; list at least one");
+    }
     machine.eye_chain = read_chain(object.required("eye_chain"), machine.mandrel_chain);
+    if (const auto mount = object.optional("mandrel")) {
+        machine.mount = read_mount(*mount);
+    }
     machine.eye = read_eye(object.required("eye"), machine.eye_chain, folder);
+    if (const auto bodies = object.optional("bodies")) {
+        for (const JsonValue& body : bodies->array()) {
+            machine.bodies.push_back(read_body(body, machine.mandrel_chain, folder));
+        }
+    }
     machine.fibre = read_fibre(object.required("fibre"));
     machine.controller = read_controller(object.required("controller"));
     return machine;

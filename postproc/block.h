@@ -67,6 +67,9 @@ struct BlockList {
 /// "block 17 (line 40)"; without the line where it is unknown.
 [[nodiscard]] std::string block_words(const BlockList& list, std::size_t block);
 
+/// The machine with other steps. \pre steps has an entry for each axis, in the joints' order
+[[nodiscard]] Machine with_steps(Machine machine, std::span<const BlockAxis> steps);
+
 /// A program's blocks and what their durations come from.
 struct TimedBlocks {
     BlockList list;

@@ -70,6 +70,16 @@ int decimals_of(std::int64_t resolution_nano) {
     return decimals;
 }
 
+Machine with_steps(Machine machine, std::span<const BlockAxis> steps) {
+    assert(steps.size() == machine.axis_count());
+    const std::size_t turning = machine.mandrel_chain.size();
+    for (std::size_t a = 0; a < steps.size(); ++a) {
+        Axis& axis = a < turning ? machine.mandrel_chain[a] : machine.eye_chain[a - turning];
+        axis.resolution_nano = steps[a].resolution_nano;
+    }
+    return machine;
+}
+
 TimedBlocks make_blocks(const Machine& machine, const EyePath& path, const JointPath& joints,
                         std::span<const double> fibre_mm, const TimeLawOptions& options) {
     assert(path.size() == joints.size() && path.size() == fibre_mm.size());

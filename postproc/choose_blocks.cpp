@@ -388,6 +388,8 @@ EyePoint point_between(const EyePoint& from, const EyePoint& to, double share) {
     point.binormal = at.binormal;
     point.eye_mm = at.eye_mm();
     point.free_length_mm = at.free_length_mm;
+    point.turn_rad += share * (to.turn_rad - from.turn_rad);
+    point.azimuth_rad += share * (to.azimuth_rad - from.azimuth_rad);
     return point;
 }
 

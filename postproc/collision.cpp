@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
 #include "machines/kinematics.h"
+#include "postproc/chunk.h"
 
 namespace meshwind {
 namespace {
@@ -16,61 +20,19 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kStepChunk = 64;
 
-// A convex piece of the envelope: a segment (two corners) or a triangle, thickened by a radius.
-struct Chunk {
-    std::array<Vector3d, 3> corner;
-    int corners = 2;
-    double radius_mm = 0.0;
-
-    [[nodiscard]] Vector3d centre() const {
-        return corners == 2 ? Vector3d(0.5 * (corner[0] + corner[1]))
-                            : Vector3d((corner[0] + corner[1] + corner[2]) / 3.0);
-    }
-    [[nodiscard]] double reach() const {
-        const Vector3d c = centre();
-        double reach = 0.0;
-        for (int i = 0; i < corners; ++i) {
-            reach = std::max(reach, (corner[static_cast<std::size_t>(i)] - c).norm());
-        }
-        return reach;
-    }
-    // Cut across its longest side.
-    [[nodiscard]] std::array<Chunk, 2> halves() const {
-        std::size_t from = 0;
-        double longest = -1.0;
-        for (std::size_t i = 0; i < (corners == 2 ? 1U : 3U); ++i) {
-            const double length = (corner[(i + 1) % 3] - corner[i]).norm();
-            if (length > longest) {
-                longest = length;
-                from = i;
-            }
-        }
-        const std::size_t to = (from + 1) % 3;
-        const Vector3d middle = 0.5 * (corner[from] + corner[to]);
-        std::array<Chunk, 2> both{*this, *this};
-        both[0].corner[to] = middle;
-        both[1].corner[from] = middle;
-        return both;
-    }
-};
-
 struct LinkedChunk {
     char link = '?';
     Chunk chunk;
 };
 
-std::vector<LinkedChunk> chunks_of(const HeadEnvelope& envelope) {
+std::vector<LinkedChunk> chunks_of(const std::vector<HeadEnvelope::Part>& parts) {
     std::vector<LinkedChunk> chunks;
-    for (const HeadEnvelope::Part& part : envelope.parts) {
+    for (const HeadEnvelope::Part& part : parts) {
         if (part.triangles.faces.empty()) {
-            const Capsule& c = part.capsule;
-            chunks.push_back({part.link, {{c.from_mm, c.to_mm, c.to_mm}, 2, c.radius_mm}});
+            chunks.push_back({part.link, chunk_of(part.capsule)});
         }
-        for (const auto& f : part.triangles.faces) {
-            const auto at = [&](std::size_t i) {
-                return part.triangles.points_mm[static_cast<std::size_t>(f[i])];
-            };
-            chunks.push_back({part.link, {{at(0), at(1), at(2)}, 3, 0.0}});
+        for (const Chunk& chunk : chunks_of(part.triangles)) {
+            chunks.push_back({part.link, chunk});
         }
     }
     return chunks;
@@ -86,7 +48,77 @@ Joints between(std::span<const double> a, std::span<const double> b, double shar
     return q;
 }
 
-// The head's sweep over one step, in the mandrel frame.
+// Pose of a link of either chain, or of the base.
+Isometry3d base_from_part(const Machine& machine, std::span<const double> q, char link) {
+    return link == kBaseLink ? Isometry3d::Identity() : base_from_link(machine, q, link);
+}
+
+// The axes between a part's link and the frame in which it is swept, in the order in which they
+// carry a point of the part there, and how far they move it.
+class Way {
+public:
+    // To the frame of the link `to`, or of the mandrel.
+    Way(const Machine& machine, char link, std::optional<char> to) : machine_(machine) {
+        const std::size_t eye = machine.mandrel_chain.size();
+        const std::size_t carrier = joints_of(machine, link);
+        for (std::size_t j = carrier; j > eye; --j) {
+            steps_.push_back({j - 1, 1.0});
+        }
+        const std::size_t on_mandrel = carrier > eye ? 0 : carrier;
+        const std::size_t goal = to ? joints_of(machine, *to) : eye;
+        for (std::size_t j = on_mandrel; j > goal; --j) {
+            steps_.push_back({j - 1, 1.0});
+        }
+        for (std::size_t j = on_mandrel; j < goal; ++j) {
+            steps_.push_back({j, -1.0});
+        }
+    }
+
+    // Upper bound of how far a ball around `point_mm` (machine frame at zero) moves while the
+    // joints go from `q` by half_share of the step: isometries do not change distances, so each
+    // axis counts with the ball's distance from it as those before have placed the ball. Linear
+    // axes in a row add up as vectors.
+    [[nodiscard]] double motion_mm(const Joints& q, std::span<const double> from,
+                                   std::span<const double> to, double half_share, Vector3d point_mm,
+                                   double ball_mm) const {
+        double moved = 0.0;
+        Vector3d slide = Vector3d::Zero();
+        for (const auto& [joint, sign] : steps_) {
+            const Axis& axis = machine_.axis(joint);
+            const double change = half_share * (to[joint] - from[joint]);
+            if (axis.type == AxisType::Linear) {
+                slide += sign * change * axis.direction;
+                point_mm += sign * q[joint] * axis.direction;
+                continue;
+            }
+            moved += slide.norm();
+            slide.setZero();
+            const Vector3d arm = point_mm - axis.point_mm;
+            const Vector3d across = axis.direction.cross(arm);
+            moved += std::abs(change) * (across.norm() + ball_mm);
+            const double sine = std::sin(sign * q[joint]);
+            const double versine = 1.0 - std::cos(sign * q[joint]);
+            point_mm += sine * across + versine * axis.direction.cross(across);
+        }
+        return moved + slide.norm();
+    }
+
+private:
+    struct Step {
+        std::size_t joint;
+        double sign;
+    };
+
+    // One more than the joint that carries the link; 0 for the base.
+    static std::size_t joints_of(const Machine& machine, char link) {
+        return link == kBaseLink ? 0 : *machine.joint_of(link) + 1;
+    }
+
+    const Machine& machine_;
+    std::vector<Step> steps_;
+};
+
+// The sweep of a piece over one step, in the mandrel frame.
 class StepSweep {
 public:
     StepSweep(const Machine& machine, const RayQuery& obstacles, double need_mm,
@@ -94,43 +126,18 @@ public:
         : machine_(machine), obstacles_(obstacles), need_mm_(need_mm), from_(from), to_(to) {}
 
     [[nodiscard]] bool clear(const LinkedChunk& part) const {
-        return clear(part.link, part.chunk, 0.0, 1.0);
+        return clear(part, Way(machine_, part.link, std::nullopt), part.chunk, 0.0, 1.0);
     }
 
 private:
-    [[nodiscard]] Isometry3d mandrel_from_link(const Joints& q, char link) const {
-        return base_from_mandrel(machine_, q).inverse() * base_from_link(machine_, q, link);
-    }
-
-    // Upper bound of how far a piece moves against the mandrel while the joints go from the middle
-    // of [low, high] to an end: linear axes add up, rotary ones count with the piece's distance.
-    [[nodiscard]] double motion(const Chunk& chunk, const Isometry3d& pose, double share) const {
-        const Vector3d centre = pose * chunk.centre();
-        const double from_spindle =
-            std::hypot(centre.x(), centre.y()) + chunk.reach() + chunk.radius_mm;
-        double linear_squared = 0.0;
-        double turned = 0.0;
-        for (std::size_t j = 0; j < from_.size(); ++j) {
-            const double change = 0.5 * share * std::abs(to_[j] - from_[j]);
-            const Axis& axis = machine_.axis(j);
-            if (axis.type == AxisType::Linear) {
-                linear_squared += change * change;
-            } else if (j < machine_.mandrel_chain.size()) {
-                turned += change * from_spindle;
-            } else {
-                const double arm = (chunk.centre() - axis.point_mm).cross(axis.direction).norm() +
-                                   chunk.centre().norm();
-                turned += change * (arm + chunk.reach() + chunk.radius_mm);
-            }
-        }
-        return std::sqrt(linear_squared) + turned;
-    }
-
-    [[nodiscard]] bool clear(char link, const Chunk& chunk, double low, double high) const {
+    [[nodiscard]] bool clear(const LinkedChunk& part, const Way& way, const Chunk& chunk,
+                             double low, double high) const {
         const Joints q = between(from_, to_, 0.5 * (low + high));
-        const Isometry3d pose = mandrel_from_link(q, link);
-        const double move = motion(chunk, pose, high - low);
-        const double reach = chunk.reach();
+        const Isometry3d pose =
+            base_from_mandrel(machine_, q).inverse() * base_from_part(machine_, q, part.link);
+        const double reach = chunk.reach_mm();
+        const double move = way.motion_mm(q, from_, to_, 0.5 * (high - low), chunk.centre(),
+                                          reach + chunk.radius_mm);
         const double need = chunk.radius_mm + need_mm_;
         const double search = reach + need + move;
         const Vector3d centre = pose * chunk.centre();
@@ -146,10 +153,10 @@ private:
         }
         if (move > reach) {
             const double middle = 0.5 * (low + high);
-            return clear(link, chunk, low, middle) && clear(link, chunk, middle, high);
+            return clear(part, way, chunk, low, middle) && clear(part, way, chunk, middle, high);
         }
         const auto halves = chunk.halves();
-        return clear(link, halves[0], low, high) && clear(link, halves[1], low, high);
+        return clear(part, way, halves[0], low, high) && clear(part, way, halves[1], low, high);
     }
 
     const Machine& machine_;
@@ -159,10 +166,95 @@ private:
     std::span<const double> to_;
 };
 
+// Head and free fibre against one body over one step, in the frame of the body's link.
+class BodySweep {
+public:
+    BodySweep(const Machine& machine, const LinkedChunk& body, std::span<const double> from,
+              std::span<const double> to)
+        : machine_(machine), body_(body), from_(from), to_(to) {}
+
+    [[nodiscard]] bool clear(const LinkedChunk& part, double need_mm) const {
+        const Way way(machine_, part.link, body_.link);
+        return clear([&](const Joints& q,
+                         double /*share*/) { return part.chunk.moved(body_from(q, part.link)); },
+                     [&](const Joints& q, double /*share*/, double half) {
+                         return way.motion_mm(q, from_, to_, half, part.chunk.centre(),
+                                              part.chunk.reach_mm() + part.chunk.radius_mm);
+                     },
+                     need_mm, 0.0, 1.0);
+    }
+
+    // The straight fibre from the landing point, which the mandrel carries, to the eye.
+    [[nodiscard]] bool clear_of_fibre(const EyePoint& a, const EyePoint& b) const {
+        const char last = machine_.mandrel_chain.back().letter;
+        const Way of_landing(machine_, last, body_.link);
+        const char eye_link =
+            machine_.eye_chain.empty() ? kBaseLink : machine_.eye_chain.back().letter;
+        const Way of_eye(machine_, eye_link, body_.link);
+        const auto landing_at_zero = [&](const Joints& q, double share) {
+            const Vector3d landing = a.landing_mm + share * (b.landing_mm - a.landing_mm);
+            return base_from_part(machine_, q, last).inverse() *
+                   (base_from_mandrel(machine_, q) * landing);
+        };
+        const auto fibre = [&](const Joints& q, double share) {
+            Chunk chunk;
+            chunk.corner[0] = body_from(q, last) * landing_at_zero(q, share);
+            chunk.corner[1] = body_from(q, eye_link) * machine_.eye.position_mm;
+            chunk.corner[2] = chunk.corner[1];
+            return chunk;
+        };
+        const auto motion = [&](const Joints& q, double share, double half) {
+            const double landing =
+                of_landing.motion_mm(q, from_, to_, half, landing_at_zero(q, share), 0.0) +
+                half * (b.landing_mm - a.landing_mm).norm();
+            return std::max(landing,
+                            of_eye.motion_mm(q, from_, to_, half, machine_.eye.position_mm, 0.0));
+        };
+        return clear(fibre, motion, 0.0, 0.0, 1.0);
+    }
+
+private:
+    [[nodiscard]] Isometry3d body_from(const Joints& q, char link) const {
+        return base_from_part(machine_, q, body_.link).inverse() *
+               base_from_part(machine_, q, link);
+    }
+
+    // `piece` at a joint position, in the body's frame; `motion` bounds how far any of its points
+    // gets from there within half a share of the step.
+    template <typename Piece, typename Motion>
+    [[nodiscard]] bool clear(const Piece& piece, const Motion& motion, double need_mm, double low,
+                             double high) const {
+        const double middle = 0.5 * (low + high);
+        const Joints q = between(from_, to_, middle);
+        const Chunk at = piece(q, middle);
+        const double move = motion(q, middle, 0.5 * (high - low));
+        const double search = need_mm + move;
+        const double balls = (at.centre() - body_.chunk.centre()).norm() - at.reach_mm() -
+                             body_.chunk.reach_mm() - at.radius_mm - body_.chunk.radius_mm;
+        if (balls >= search) {
+            return true;
+        }
+        const double distance = chunk_distance_mm(at, body_.chunk);
+        if (distance >= search) {
+            return true;
+        }
+        if (distance < need_mm || move < kSweepResolution_mm) {
+            return false;
+        }
+        return clear(piece, motion, need_mm, low, middle) &&
+               clear(piece, motion, need_mm, middle, high);
+    }
+
+    const Machine& machine_;
+    const LinkedChunk& body_;
+    std::span<const double> from_;
+    std::span<const double> to_;
+};
+
 // Least distance of a piece at one joint position, if below `best`.
 double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const Chunk& chunk,
                       double best) {
-    const double reach = chunk.reach();
+    const double reach = chunk.reach_mm();
     const double search = best + reach + chunk.radius_mm;
     if (obstacles.distance_at_least_mm(pose * chunk.centre()) >= search) {
         return best;
@@ -201,60 +293,150 @@ bool fibre_blocked(const RayQuery& obstacles, const EyePoint& a, const EyePoint&
     return false;
 }
 
+HeadEnvelope::Part part_of(char link, const std::variant<Capsule, EnvelopeMesh>& shape,
+                           TriangleSoup (*load_mesh)(const std::string& file)) {
+    HeadEnvelope::Part part;
+    part.link = link;
+    if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+        part.capsule = *capsule;
+    } else {
+        part.triangles = load_mesh(std::get<EnvelopeMesh>(shape).file);
+    }
+    return part;
+}
+
+bool turns_with_mandrel(const Machine& machine, const MachineBody& body) {
+    return body.link && *body.link == machine.mandrel_chain.back().letter;
+}
+
+// What one step and its end point touch.
+struct StepFinding {
+    bool fibre = false;
+    bool head = false;
+    bool body = false;
+    double clearance_mm = 0.0;
+};
+
+class StepCheck {
+public:
+    StepCheck(const Machine& machine, const HeadEnvelope& envelope, const RayQuery& obstacles,
+              const CollisionRule& rule)
+        : machine_(machine),
+          obstacles_(obstacles),
+          rule_(rule),
+          parts_(chunks_of(envelope.parts)),
+          bodies_(chunks_of(envelope.bodies)) {}
+
+    [[nodiscard]] StepFinding find(const EyePath& path, const JointPath& joints,
+                                   std::size_t i) const {
+        const std::size_t before = i > 0 ? i - 1 : i;
+        const std::span<const double> from = joints.row(before);
+        const std::span<const double> to = joints.row(i);
+        StepFinding found;
+        found.clearance_mm = rule_.told_mm;
+        found.fibre = fibre_blocked(obstacles_, path[before], path[i], rule_);
+        const StepSweep sweep(machine_, obstacles_, rule_.clearance_mm, from, to);
+        const Isometry3d mandrel = base_from_mandrel(machine_, to).inverse();
+        for (const LinkedChunk& part : parts_) {
+            found.head = found.head || !sweep.clear(part);
+            const Isometry3d pose = mandrel * base_from_link(machine_, to, part.link);
+            found.clearance_mm = least_distance(obstacles_, pose, part.chunk, found.clearance_mm);
+        }
+        for (const LinkedChunk& body : bodies_) {
+            look_at(body, path[before], path[i], from, to, found);
+        }
+        return found;
+    }
+
+private:
+    void look_at(const LinkedChunk& body, const EyePoint& a, const EyePoint& b,
+                 std::span<const double> from, std::span<const double> to,
+                 StepFinding& found) const {
+        const BodySweep sweep(machine_, body, from, to);
+        found.fibre = found.fibre || !sweep.clear_of_fibre(a, b);
+        found.body = found.body || !StepSweep(machine_, obstacles_, 0.0, from, to).clear(body);
+        const Isometry3d body_from_base = base_from_part(machine_, to, body.link).inverse();
+        for (const LinkedChunk& part : parts_) {
+            found.head = found.head || !sweep.clear(part, rule_.clearance_mm);
+            const Chunk at =
+                part.chunk.moved(body_from_base * base_from_link(machine_, to, part.link));
+            found.clearance_mm = std::min(found.clearance_mm, chunk_distance_mm(at, body.chunk));
+        }
+    }
+
+    const Machine& machine_;
+    const RayQuery& obstacles_;
+    const CollisionRule& rule_;
+    std::vector<LinkedChunk> parts_;
+    std::vector<LinkedChunk> bodies_;
+};
+
 }  // namespace
 
 HeadEnvelope head_envelope(const Machine& machine,
                            TriangleSoup (*load_mesh)(const std::string& file)) {
     HeadEnvelope envelope;
     for (const EnvelopePart& part : machine.eye.envelope) {
-        HeadEnvelope::Part piece;
-        piece.link = part.link;
-        if (const auto* capsule = std::get_if<Capsule>(&part.shape)) {
-            piece.capsule = *capsule;
-        } else {
-            piece.triangles = load_mesh(std::get<EnvelopeMesh>(part.shape).file);
+        envelope.parts.push_back(part_of(part.link, part.shape, load_mesh));
+    }
+    for (const MachineBody& body : machine.bodies) {
+        if (!turns_with_mandrel(machine, body)) {
+            envelope.bodies.push_back(
+                part_of(body.link.value_or(kBaseLink), body.shape, load_mesh));
         }
-        envelope.parts.push_back(std::move(piece));
     }
     return envelope;
+}
+
+std::vector<TriangleSoup> bodies_on_mandrel(const Machine& machine,
+                                            TriangleSoup (*load_mesh)(const std::string& file)) {
+    const std::vector<double> zero(machine.axis_count(), 0.0);
+    const Isometry3d mandrel = base_from_mandrel(machine, zero).inverse();
+    std::vector<TriangleSoup> soups;
+    for (const MachineBody& body : machine.bodies) {
+        if (!turns_with_mandrel(machine, body)) {
+            continue;
+        }
+        HeadEnvelope::Part part = part_of(*body.link, body.shape, load_mesh);
+        if (part.triangles.faces.empty()) {
+            part.triangles = capsule_mesh(part.capsule, kBodyMesh_mm);
+        }
+        for (Vector3d& point : part.triangles.points_mm) {
+            point = mandrel * point;
+        }
+        soups.push_back(std::move(part.triangles));
+    }
+    return soups;
 }
 
 CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
                                  const RayQuery& obstacles, const EyePath& path,
                                  const JointPath& joints, const CollisionRule& rule) {
-    const std::vector<LinkedChunk> chunks = chunks_of(envelope);
-    std::vector<char> fibre(path.size(), 0);
-    std::vector<char> head(path.size(), 0);
-    std::vector<double> clearance(path.size(), rule.told_mm);
+    const StepCheck check(machine, envelope, obstacles, rule);
+    std::vector<StepFinding> found(path.size());
     parallel_for(path.size(), kStepChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t before = i > 0 ? i - 1 : i;
-            fibre[i] = fibre_blocked(obstacles, path[before], path[i], rule) ? 1 : 0;
-            const StepSweep sweep(machine, obstacles, rule.clearance_mm, joints.row(before),
-                                  joints.row(i));
-            const Isometry3d mandrel = base_from_mandrel(machine, joints.row(i)).inverse();
-            for (const LinkedChunk& part : chunks) {
-                head[i] = static_cast<char>(head[i] != 0 || !sweep.clear(part));
-                const Isometry3d pose = mandrel * base_from_link(machine, joints.row(i), part.link);
-                clearance[i] = least_distance(obstacles, pose, part.chunk, clearance[i]);
-            }
+            found[i] = check.find(path, joints, i);
         }
     });
     CollisionReport report;
     report.min_clearance_mm = rule.told_mm;
     for (std::size_t i = 0; i < path.size(); ++i) {
-        if (fibre[i] != 0) {
+        if (found[i].fibre) {
             report.fibre_hits.push_back(i);
         }
-        if (head[i] != 0) {
+        if (found[i].head) {
             report.head_hits.push_back(i);
         }
-        if (clearance[i] < report.min_clearance_mm) {
-            report.min_clearance_mm = clearance[i];
+        if (found[i].body) {
+            report.body_hits.push_back(i);
+        }
+        report.clearance_mm.push_back(found[i].clearance_mm);
+        if (found[i].clearance_mm < report.min_clearance_mm) {
+            report.min_clearance_mm = found[i].clearance_mm;
             report.min_clearance_point = i;
         }
     }
-    report.clearance_mm = std::move(clearance);
     return report;
 }
 

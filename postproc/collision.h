@@ -22,11 +22,25 @@ struct HeadEnvelope {
         TriangleSoup triangles;
     };
     std::vector<Part> parts;
+    /// Bodies that do not turn with the mandrel: on the base (link kBaseLink) and on axes of the
+    /// mandrel chain before its last one. Those on the last one belong to the obstacles.
+    std::vector<Part> bodies;
 };
+
+/// Link of bodies that stand on the base.
+inline constexpr char kBaseLink = ' ';
+
+/// Capsules among the obstacles are meshes that stick out by this at most.
+inline constexpr double kBodyMesh_mm = 0.1;
 
 /// \param load_mesh reads the triangles of an envelope mesh file, in mm
 [[nodiscard]] HeadEnvelope head_envelope(const Machine& machine,
                                          TriangleSoup (*load_mesh)(const std::string& file));
+
+/// Bodies that turn with the mandrel, as obstacles in its frame: closed meshes, capsules grown by
+/// kBodyMesh_mm at most.
+[[nodiscard]] std::vector<TriangleSoup> bodies_on_mandrel(
+    const Machine& machine, TriangleSoup (*load_mesh)(const std::string& file));
 
 /// Clearances beyond this are of no interest.
 inline constexpr double kClearanceCap_mm = 100.0;
@@ -42,7 +56,9 @@ struct CollisionRule {
 struct CollisionReport {
     std::vector<std::size_t> fibre_hits;  ///< steps in which the free fibre meets the mandrel
     std::vector<std::size_t>
-        head_hits;                     ///< steps in which the head comes nearer than the clearance
+        head_hits;  ///< steps in which the head comes nearer than the clearance
+    std::vector<std::size_t>
+        body_hits;  ///< steps in which a body touches what turns with the mandrel
     std::vector<double> clearance_mm;  ///< of the head at each eye point, up to told_mm
     double min_clearance_mm = 0.0;     ///< least of them
     std::size_t min_clearance_point = 0;
@@ -54,6 +70,10 @@ struct CollisionReport {
 /// within the clearance: nothing slips through between points (conservative to
 /// kSweepResolution_mm). The free fibre: rays from landing point to eye, so close that the eye
 /// moves at most `fibre_step_mm`.
+/// Bodies of the envelope are kept clear of by head and free fibre in the same way: each pair's
+/// exact distance in the middle of a share of the step, less all that both can move in it, or the
+/// share is halved. The head keeps the clearance, the free fibre must not touch, and neither must
+/// what turns with the mandrel.
 [[nodiscard]] CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
                                                const RayQuery& obstacles, const EyePath& path,
                                                const JointPath& joints, const CollisionRule& rule);

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "postproc/linuxcnc.h"
+#include "postproc/pulses.h"
 
 namespace meshwind {
 namespace {
@@ -17,11 +18,30 @@ std::unique_ptr<Dialect> make() {
 }
 
 // One line per dialect.
-constexpr std::array<std::pair<std::string_view, Maker>, 1> kDialects = {{
+constexpr std::array<std::pair<std::string_view, Maker>, 6> kDialects = {{
     {"linuxcnc", make<LinuxCnc>},
+    {"fanuc", make<Fanuc>},
+    {"siemens", make<Siemens>},
+    {"grbl", make<Grbl>},
+    {"marlin", make<Marlin>},
+    {"pulses", make<Pulses>},
 }};
 
 }  // namespace
+
+void Dialect::check(const Machine& machine) const {
+    BlockList list;
+    for (std::size_t a = 0; a < machine.axis_count(); ++a) {
+        const Axis& axis = machine.axis(a);
+        list.axes.push_back({axis.letter, axis.type, axis.resolution_nano});
+    }
+    list.blocks = {{}, {.duration_s = 1.0}};
+    list.nano.assign(2 * list.axes.size(), 0);
+    for (std::size_t a = 0; a < list.axes.size(); ++a) {
+        list.nano[list.axes.size() + a] = list.axes[a].resolution_nano;
+    }
+    (void)write(machine, list, ProgramHeader{});
+}
 
 std::unique_ptr<Dialect> make_dialect(std::string_view name) {
     std::string known;

@@ -1,6 +1,7 @@
 /// What every controller language offers: blocks to text and text to blocks.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,9 +38,22 @@ public:
     /// With the point, e.g. ".ngc".
     [[nodiscard]] virtual std::string extension() const = 0;
 
+    /// How far the controller may leave the corners between blocks, mm of the linear axes, as the
+    /// machine's header lines tell it; infinite when they do not say, for then it keeps the feed.
+    [[nodiscard]] virtual double corner_tolerance_mm(const Machine&) const {
+        return std::numeric_limits<double>::infinity();
+    }
+    /// Blocks last whole ticks of this length; 0: any time.
+    [[nodiscard]] virtual double tick_s() const { return 0.0; }
+
+    /// What the machine file asks of the controller, before anything is planned for it.
+    /// \throws InputError what `write` throws for letters, feed and header lines
+    void check(const Machine& machine) const;
+
     /// The blocks as the controller needs them: what it would execute wrongly is written in another
     /// way (more blocks, same positions). Tables beside the program are made from this result.
-    /// prepare(prepare(list)) = prepare(list).
+    /// prepare(prepare(list)) = prepare(list). Axes may get other steps, then with positions on
+    /// these. \throws InputError dialect.float32
     [[nodiscard]] virtual BlockList prepare(BlockList list) const = 0;
 
     /// Folds circuits that repeat where the language has subprograms; here nothing.
@@ -49,7 +63,8 @@ public:
 
     /// The program of prepare(list), a line for each block.
     /// \pre list has the axes of the machine and at least one block
-    /// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line, dialect.duration
+    /// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line,
+    /// dialect.placeholder, dialect.duration, dialect.digits, dialect.long_line
     [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
                                     const ProgramHeader& header) const {
         return write(machine, prepare(list), {}, header);

@@ -1,11 +1,13 @@
 #include "postproc/eye_path.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
+#include "core/text_number.h"
 
 namespace meshwind {
 namespace {
@@ -39,36 +41,6 @@ void straighten_bridges(const Piece& piece, std::span<EyePoint> points,
         }
         first = end;
     }
-}
-
-struct LandingPoints {
-    EyePath path;
-    std::vector<double> ahead_mm;  // how far ahead of each the free fibre begins
-};
-
-LandingPoints landing_points(std::span<const Piece> pieces) {
-    LandingPoints points;
-    EyePath& path = points.path;
-    double laid_mm = 0.0;
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        const Piece& piece = pieces[p];
-        for (std::size_t i = 0; i < piece.path.size(); ++i) {
-            const PathPoint& station = piece.path[i];
-            EyePoint point;
-            point.piece = static_cast<std::int32_t>(p);
-            point.point = static_cast<std::int32_t>(i);
-            point.s_mm = laid_mm + station.s_mm;
-            point.landing_mm = station.position_mm;
-            point.tangent = station.tangent;
-            point.binormal = station.normal.cross(station.tangent);
-            path.push_back(point);
-        }
-        points.ahead_mm.resize(path.size(), 0.0);
-        straighten_bridges(piece, std::span(path).last(piece.path.size()),
-                           std::span(points.ahead_mm).last(piece.path.size()));
-        laid_mm += piece.path.back().s_mm;
-    }
-    return points;
 }
 
 // Lengths for the points. Where the wish is free all along it is taken, which is what
@@ -115,9 +87,50 @@ FreeLengths free_lengths(std::span<const EyePoint> path, std::span<const double>
 
 }  // namespace
 
-EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& obstacles,
-                                const FreeFibreRule& rule,
-                                std::span<const double> more_clearance_mm) {
+LandingPoints landing_points(std::span<const Piece> pieces) {
+    LandingPoints points;
+    EyePath& path = points.path;
+    double laid_mm = 0.0;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const Piece& piece = pieces[p];
+        for (std::size_t i = 0; i < piece.path.size(); ++i) {
+            const PathPoint& station = piece.path[i];
+            EyePoint point;
+            point.piece = static_cast<std::int32_t>(p);
+            point.point = static_cast<std::int32_t>(i);
+            point.s_mm = laid_mm + station.s_mm;
+            point.landing_mm = station.position_mm;
+            point.tangent = station.tangent;
+            point.binormal = station.normal.cross(station.tangent);
+            path.push_back(point);
+        }
+        points.ahead_mm.resize(path.size(), 0.0);
+        straighten_bridges(piece, std::span(path).last(piece.path.size()),
+                           std::span(points.ahead_mm).last(piece.path.size()));
+        laid_mm += piece.path.back().s_mm;
+    }
+    return points;
+}
+
+void set_eye(EyePoint& point, double length_mm) {
+    point.free_length_mm = length_mm;
+    point.eye_mm = point.landing_mm + length_mm * point.tangent;
+}
+
+void measure_lengths(EyePathResult& result) {
+    if (result.path.empty()) {
+        return;
+    }
+    const auto [shortest, longest] = std::minmax_element(
+        result.path.begin(), result.path.end(),
+        [](const EyePoint& a, const EyePoint& b) { return a.free_length_mm < b.free_length_mm; });
+    result.shortest_mm = shortest->free_length_mm;
+    result.longest_mm = longest->free_length_mm;
+}
+
+EyePathResult adaptive_free_length(std::span<const Piece> pieces, const RayQuery& obstacles,
+                                   const FreeFibreRule& rule,
+                                   std::span<const double> more_clearance_mm) {
     EyePathResult result;
     EyePath& path = result.path;
     LandingPoints points = landing_points(pieces);
@@ -135,15 +148,26 @@ EyePathResult equal_free_length(std::span<const Piece> pieces, const RayQuery& o
     }
     FreeLengths lengths = free_lengths(path, points.ahead_mm, obstacles, rules, wish);
     result.blocked = std::move(lengths.blocked);
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        EyePoint& point = path[i];
-        point.free_length_mm = std::min(lengths.high_mm[i], std::max(lengths.low_mm[i], wish));
-        point.eye_mm = point.landing_mm + point.free_length_mm * point.tangent;
-        result.shortest_mm =
-            i == 0 ? point.free_length_mm : std::min(result.shortest_mm, point.free_length_mm);
-        result.longest_mm = std::max(result.longest_mm, point.free_length_mm);
+    if (!result.blocked.empty()) {
+        result.words = "no free fibre length between " + fixed(rule.min_mm, 0) + " and " +
+                       fixed(rule.max_mm, 0) + " mm is clear";
     }
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        set_eye(path[i], std::min(lengths.high_mm[i], std::max(lengths.low_mm[i], wish)));
+    }
+    measure_lengths(result);
+    result.ahead_mm = std::move(points.ahead_mm);
     return result;
+}
+
+std::vector<double> fibre_moved_mm(const EyePath& path) {
+    std::vector<double> fibre_mm(path.size(), 0.0);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double laid = path[i].s_mm - path[i - 1].s_mm;
+        const double longer = path[i].free_length_mm - path[i - 1].free_length_mm;
+        fibre_mm[i] = std::max(std::abs(laid), std::abs(laid + longer));
+    }
+    return fibre_mm;
 }
 
 }  // namespace meshwind

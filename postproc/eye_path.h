@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,27 +26,52 @@ struct EyePoint {
                                                          ///< parallel to it, sign free
     Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();    ///< E = P + free_length tau
     double free_length_mm = 0.0;                         ///< L
+    double turn_rad = 0.0;  ///< of the mandrel about +Z, where it is chosen with the eye
+    /// Polar angle about the spindle axis at which the eye stands in the machine; not 0 only where
+    /// the rule says it (eye_rules.h), and the mandrel then turns for it.
+    double azimuth_rad = 0.0;
 };
 
 using EyePath = std::vector<EyePoint>;
 
-/// Eye points, and where no free length was possible.
+/// Eye points, and where there is none that may be taken.
 struct EyePathResult {
     EyePath path;
-    std::vector<std::size_t>
-        blocked;               ///< eye points for which no allowed length is free of collision
-    double shortest_mm = 0.0;  ///< free lengths used
+    std::vector<std::size_t> blocked;  ///< eye points that the rule does not allow, ascending
+    std::string words;                 ///< what is wrong with the first of them; else empty
+    std::vector<double> ahead_mm;      ///< per point: how far ahead of it the free fibre begins
+    double shortest_mm = 0.0;          ///< free lengths used
     double longest_mm = 0.0;
 };
 
-/// Rule equal-free-length (fu_2009_post_processing, sec. 1): L is the preferred length wherever
-/// free fibre and head are clear, and leaves it only as far as it must, at most by the rates of
-/// free_fibre.h. Stations under a bridge are taken on the taut string; the fibre ahead
-/// of it is no shorter than the machine's shortest. One eye point per station of
-/// the pieces. \param more_clearance_mm per piece, on top of the rule's: lengths are clear at the
+/// Landing points of pieces, without eyes.
+struct LandingPoints {
+    EyePath path;                  ///< one per station of the pieces
+    std::vector<double> ahead_mm;  ///< how far ahead of each the free fibre begins: 0, but for
+                                   ///< stations from which a bridge runs on
+};
+
+/// Stations under a bridge are taken on the taut string.
+[[nodiscard]] LandingPoints landing_points(std::span<const Piece> pieces);
+
+/// Puts the eye on the free fibre, `length_mm` from the landing point.
+void set_eye(EyePoint& point, double length_mm);
+
+/// Shortest and longest free length of the path.
+void measure_lengths(EyePathResult& result);
+
+/// Rule adaptive: L is the preferred length wherever free fibre and head are clear, and leaves it
+/// only as far as it must, at most by the rates of free_fibre.h; the fibre ahead of a bridge is no
+/// shorter than the machine's shortest. Blocked are points for which no allowed length is free of
+/// collision. \param more_clearance_mm per piece, on top of the rule's: lengths are clear at the
 /// stations, and between two of them the head may come nearer; empty: none
-[[nodiscard]] EyePathResult equal_free_length(std::span<const Piece> pieces,
-                                              const RayQuery& obstacles, const FreeFibreRule& rule,
-                                              std::span<const double> more_clearance_mm = {});
+[[nodiscard]] EyePathResult adaptive_free_length(std::span<const Piece> pieces,
+                                                 const RayQuery& obstacles,
+                                                 const FreeFibreRule& rule,
+                                                 std::span<const double> more_clearance_mm = {});
+
+/// What the fibre's speed counts at each point of a path, in mm: max(|ds|, |ds + dL|), fibre laid,
+/// and drawn through the eye, evenly from the point before; 0 for the first.
+[[nodiscard]] std::vector<double> fibre_moved_mm(const EyePath& path);
 
 }  // namespace meshwind

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 
-#include "core/units.h"
-#include "machines/kinematics.h"
+#include "machines/eye_inverse.h"
 
 namespace meshwind {
 namespace {
@@ -14,6 +14,8 @@ namespace {
 constexpr double kNearSingularSine = 0.0175;
 // An eye this near to the axis asks for a quarter turn of the spindle per few mm of path.
 constexpr double kNearAxis_mm = 5.0;
+// Places that are missed by less are rounding of positions of some metres over a thousand turns.
+constexpr double kReached_mm = 1e-6;
 // Axis::resolution_nano counts these per mm or degree.
 constexpr double kNanoPerUnit = 1e9;
 
@@ -27,8 +29,9 @@ void note(JointPath& path, JointNoteKind kind, std::size_t point, double measure
                                      [kind](const JointNote& other) { return other.kind == kind; });
     if (latest != path.notes.rend() && latest->last + 1 == point) {
         latest->last = point;
-        latest->measure = kind == JointNoteKind::WristFlip ? std::max(latest->measure, measure)
-                                                           : std::min(latest->measure, measure);
+        const bool most = kind == JointNoteKind::WristFlip || kind == JointNoteKind::EyeOutOfReach;
+        latest->measure =
+            most ? std::max(latest->measure, measure) : std::min(latest->measure, measure);
     } else {
         path.notes.push_back({.kind = kind, .first = point, .last = point, .measure = measure});
     }
@@ -71,17 +74,112 @@ void find_violations(const Axis& axis, std::size_t joint, JointPath& path) {
     }
 }
 
+EyeTarget target_of(const EyePoint& point) {
+    return {.eye_mm = point.eye_mm, .tangent = point.tangent, .binormal = point.binormal};
+}
+
+JointPath solve_from(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
+                     std::span<const double> turns_rad, std::vector<double> joints) {
+    JointPath result;
+    result.axis_count = machine.axis_count();
+    result.joints.resize(path.size() * result.axis_count);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const WristState state = inverse.solve(target_of(path[i]), turns_rad[i], joints, joints);
+        std::copy(joints.begin(), joints.end(),
+                  result.joints.begin() + static_cast<std::ptrdiff_t>(i * result.axis_count));
+        result.worst_twist_rad = std::max(result.worst_twist_rad, state.twist_rad);
+        result.worst_miss_mm = std::max(result.worst_miss_mm, state.residual_mm);
+        if (state.singular_sine < kNearSingularSine) {
+            note(result, JointNoteKind::WristNearSingular, i, state.singular_sine);
+        }
+        if (state.flip && i > 0) {
+            note(result, JointNoteKind::WristFlip, i, state.flip_rad);
+        }
+        if (eye_radius_mm(path[i]) < kNearAxis_mm) {
+            note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
+        }
+        if (state.residual_mm > kReached_mm) {
+            note(result, JointNoteKind::EyeOutOfReach, i, state.residual_mm);
+        }
+    }
+    find_travel_violations(machine, result);
+    return result;
+}
+
+// Points beyond the travel of one axis, and flips.
+std::size_t troubles(const JointPath& path, char letter) {
+    std::size_t count = 0;
+    for (const LimitViolation& violation : path.violations) {
+        count += violation.axis == letter ? violation.last - violation.first + 1 : 0;
+    }
+    for (const JointNote& note : path.notes) {
+        count += note.kind == JointNoteKind::WristFlip ? 1 : 0;
+    }
+    return count;
+}
+
+// From all axes at zero. A head roll with end stops that runs into one on the way may start half a
+// turn or a turn further back: the roller is the same.
+JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
+                std::span<const double> turns_rad) {
+    const std::vector<double> zero(machine.axis_count(), 0.0);
+    JointPath best = solve_from(machine, inverse, path, turns_rad, zero);
+    std::size_t roll = machine.mandrel_chain.size();
+    while (roll < machine.axis_count() && machine.axis(roll).type != AxisType::Rotary) {
+        ++roll;
+    }
+    if (roll == machine.axis_count()) {
+        return best;
+    }
+    const Axis& axis = machine.axis(roll);
+    if (!std::isfinite(axis.min) && !std::isfinite(axis.max)) {
+        return best;
+    }
+    for (const double half_turns : {1.0, -1.0, 2.0, -2.0}) {
+        const std::size_t least = troubles(best, axis.letter);
+        if (least == 0) {
+            break;
+        }
+        std::vector<double> start = zero;
+        start[roll] = half_turns * kPi;
+        JointPath other = solve_from(machine, inverse, path, turns_rad, start);
+        if (troubles(other, axis.letter) < least) {
+            best = std::move(other);
+        }
+    }
+    return best;
+}
+
+double play_rad(RedundancyPolicy policy) {
+    switch (policy) {
+        case RedundancyPolicy::Hold:
+            return kHoldPlay_rad;
+        case RedundancyPolicy::Oscillate:
+            return kOscillatePlay_rad;
+        default:
+            return 0.0;
+    }
+}
+
 }  // namespace
 
 std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) {
     std::vector<double> turns(path.size(), 0.0);
+    if (policy == RedundancyPolicy::Chosen) {
+        std::transform(path.begin(), path.end(), turns.begin(),
+                       [](const EyePoint& point) { return point.turn_rad; });
+        return turns;
+    }
+    const double play = play_rad(policy);
+    double central = 0.0;
     double turn = 0.0;
     for (std::size_t i = 0; i < path.size(); ++i) {
-        const bool moves = i == 0 || policy == RedundancyPolicy::CentralAngle;
-        if (moves && eye_radius_mm(path[i]) > kLeastEyeRadius_mm) {
-            const double central = -std::atan2(path[i].eye_mm.y(), path[i].eye_mm.x());
-            turn += std::remainder(central - turn, 2.0 * kPi);
+        if (eye_radius_mm(path[i]) > kLeastEyeRadius_mm) {
+            const double wrapped =
+                path[i].azimuth_rad - std::atan2(path[i].eye_mm.y(), path[i].eye_mm.x());
+            central += std::remainder(wrapped - central, 2.0 * kPi);
         }
+        turn = i == 0 ? central : std::clamp(turn, central - play, central + play);
         turns[i] = turn;
     }
     return turns;
@@ -90,32 +188,8 @@ std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) 
 JointPath solve_joints(const Machine& machine, const EyePath& path,
                        std::span<const double> turns_rad) {
     assert(turns_rad.size() == path.size());
-    const SpindleWristInverse inverse(machine);
-    JointPath result;
-    result.axis_count = machine.axis_count();
-    result.joints.resize(path.size() * result.axis_count);
-    std::vector<double> joints(result.axis_count, 0.0);
-    const std::size_t roll = machine.mandrel_chain.size() + 3;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        const double roll_before = joints[roll];
-        const EyeTarget target{
-            .eye_mm = path[i].eye_mm, .tangent = path[i].tangent, .binormal = path[i].binormal};
-        const WristState state = inverse.solve(target, turns_rad[i], joints, joints);
-        std::copy(joints.begin(), joints.end(),
-                  result.joints.begin() + static_cast<std::ptrdiff_t>(i * result.axis_count));
-        result.worst_twist_rad = std::max(result.worst_twist_rad, state.twist_rad);
-        if (state.singular_sine < kNearSingularSine) {
-            note(result, JointNoteKind::WristNearSingular, i, state.singular_sine);
-        }
-        if (state.flip && i > 0) {
-            note(result, JointNoteKind::WristFlip, i, std::abs(joints[roll] - roll_before));
-        }
-        if (eye_radius_mm(path[i]) < kNearAxis_mm) {
-            note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
-        }
-    }
-    find_travel_violations(machine, result);
-    return result;
+    const std::unique_ptr<EyeInverse> inverse = make_eye_inverse(machine);
+    return solve(machine, *inverse, path, turns_rad);
 }
 
 void find_travel_violations(const Machine& machine, JointPath& path) {
@@ -125,7 +199,14 @@ void find_travel_violations(const Machine& machine, JointPath& path) {
 }
 
 JointPath solve_joints(const Machine& machine, const EyePath& path, RedundancyPolicy policy) {
-    return solve_joints(machine, path, spindle_turns(path, policy));
+    const std::unique_ptr<EyeInverse> inverse = make_eye_inverse(machine);
+    std::vector<double> turns = spindle_turns(path, policy);
+    double before = 0.0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        turns[i] = inverse->forced_turn(target_of(path[i]), before).value_or(turns[i]);
+        before = turns[i];
+    }
+    return solve(machine, *inverse, path, turns);
 }
 
 }  // namespace meshwind

@@ -1,7 +1,7 @@
 /// Programs for LinuxCNC (RS274/NGC): incremental, inverse-time feed.
 #pragma once
 
-#include "postproc/dialect.h"
+#include "postproc/nc_dialects.h"
 
 namespace meshwind {
 
@@ -29,24 +29,12 @@ namespace meshwind {
 /// absolute word has placed before the first feed move, a comment that begins with "tie on" and
 /// goes on in another way or stands twice, and a file without M2, M30 or a closing
 /// `%`. Source: linuxcnc_g_code, g-code.adoc (G93, G64), machining-center.adoc (feed rate).
-class LinuxCnc final : public Dialect {
+class LinuxCnc final : public NcDialect {
 public:
-    [[nodiscard]] std::string name() const override { return "linuxcnc"; }
-    [[nodiscard]] std::string extension() const override { return ".ngc"; }
-    [[nodiscard]] BlockList prepare(BlockList list) const override;
-    [[nodiscard]] FoldedProgram fold(BlockList list) const override;
-    using Dialect::write;
-    [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
-                                    const ProgramLayout& layout,
-                                    const ProgramHeader& header) const override;
-    [[nodiscard]] BlockList read(std::string_view text, const std::string& file,
-                                 const Machine& machine) const override;
+    LinuxCnc() : NcDialect(linuxcnc_flavour()) {}
+    /// P of the last G64 of the header lines; without it, and with P0, there is none.
+    [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const override;
 };
-
-/// The header and footer lines of the machine's controller must be such that the reader takes them,
-/// and must neither move nor end the program.
-/// \throws InputError dialect.header_line
-void check_linuxcnc_lines(const Machine& machine);
 
 /// Characters of a line that the interpreter still reads, comments included.
 inline constexpr std::size_t kLinuxCncLineLength = 252;

@@ -39,10 +39,18 @@ bool is_o_line(std::string_view text) {
     return i != std::string_view::npos && (text[i] == 'o' || text[i] == 'O');
 }
 
+enum class Words { LinuxCnc, Fanuc };
+
+// Of subprograms that Fanuc controls call, and the main program.
+constexpr std::size_t kFanucLevels = 5;
+
 class FlowParser {
 public:
-    FlowParser(std::span<const std::string_view> lines, const std::string& file) : lines_(lines) {
+    FlowParser(std::span<const std::string_view> lines, const std::string& file, Words words)
+        : lines_(lines), words_(words) {
         line_.file = &file;
+        line_.style =
+            words == Words::Fanuc ? NcComments::Brackets : NcComments::BracketsOrSemicolon;
         open_.push_back({});
     }
 
@@ -52,6 +60,7 @@ public:
             ++line_.number;
             if (text == "%" && any) {
                 closing_percent();
+                closed_ = true;
                 break;
             }
             percent_ = percent_ || text == "%";
@@ -65,6 +74,10 @@ public:
         if (open_.size() > 1) {
             line_.number = open_.back().first;
             not_closed("nothing closes it");
+        }
+        if (words_ == Words::Fanuc) {
+            check_percent();
+            flow_.levels = kFanucLevels;
         }
         flow_.main = std::move(open_.front().body);
         return std::move(flow_);
@@ -100,6 +113,13 @@ private:
         } else {
             steps.push_back(
                 {.kind = FlowStep::Kind::Lines, .first = line_.number, .last = line_.number});
+        }
+    }
+
+    void check_percent() const {
+        if (!percent_ || !closed_) {
+            line_.fail("nc.no_end", std::string("no % ") + (percent_ ? "closes" : "opens") +
+                                        " the program; the file may be cut off");
         }
     }
 
@@ -253,6 +273,8 @@ private:
         }
         if (rest.empty() && !named) {
             number_line(label);
+        } else if (words_ == Words::Fanuc) {
+            unknown_o_word(code);
         } else if (rest == "sub") {
             if (open_.size() > 1) {
                 not_closed("a subprogram cannot be defined within");
@@ -329,17 +351,23 @@ private:
     }
 
     std::span<const std::string_view> lines_;
+    Words words_;
     NcLine line_;
     ProgramFlow flow_;
     std::vector<Open> open_;
     bool percent_ = false;  // the first line is one
+    bool closed_ = false;   // so is the last
     bool main_ended_ = false;
 };
 
 }  // namespace
 
 ProgramFlow linuxcnc_flow(std::span<const std::string_view> lines, const std::string& file) {
-    return FlowParser(lines, file).flow();
+    return FlowParser(lines, file, Words::LinuxCnc).flow();
+}
+
+ProgramFlow fanuc_flow(std::span<const std::string_view> lines, const std::string& file) {
+    return FlowParser(lines, file, Words::Fanuc).flow();
 }
 
 }  // namespace meshwind

@@ -23,4 +23,10 @@ namespace meshwind {
 [[nodiscard]] ProgramFlow linuxcnc_flow(std::span<const std::string_view> lines,
                                         const std::string& file);
 
+/// The same for Fanuc controls: subprograms only as `O1001` .. `M99` behind M30, called by `M98
+/// P1001 L20`; five levels with the main program; the file opens and closes with `%`. \throws
+/// InputError as above; nc.no_end without the `%`
+[[nodiscard]] ProgramFlow fanuc_flow(std::span<const std::string_view> lines,
+                                     const std::string& file);
+
 }  // namespace meshwind

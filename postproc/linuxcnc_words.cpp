@@ -48,10 +48,12 @@ void NcLine::split(std::string_view text) {
         const char c = text[i];
         if (c == ' ' || c == '\t') {
             ++i;
-        } else if (c == ';') {
+        } else if (c == ';' && style != NcComments::Brackets) {
+            rest_of_line(text.substr(i + 1));
             return;
         } else {
-            i = c == '(' ? comment(text, i) : word(text, i);
+            const bool opens = c == '(' && style != NcComments::Semicolon;
+            i = opens ? comment(text, i) : word(text, i);
         }
     }
 }
@@ -60,9 +62,13 @@ std::string NcLine::split_comments(std::string_view text) {
     comments.clear();
     std::string code;
     std::size_t i = 0;
-    while (i < text.size() && text[i] != ';') {
+    while (i < text.size()) {
         const char c = text[i];
-        if (c == '(') {
+        if (c == ';' && style != NcComments::Brackets) {
+            rest_of_line(text.substr(i + 1));
+            break;
+        }
+        if (c == '(' && style != NcComments::Semicolon) {
             i = comment(text, i);
             continue;
         }
@@ -72,6 +78,13 @@ std::string NcLine::split_comments(std::string_view text) {
         ++i;
     }
     return code;
+}
+
+void NcLine::rest_of_line(std::string_view text) {
+    if (style == NcComments::Semicolon) {
+        text.remove_prefix(!text.empty() && text.front() == ' ' ? 1 : 0);
+        comments.push_back(text);
+    }
 }
 
 // The place after the comment that opens at `open`.

@@ -8,6 +8,13 @@
 
 namespace meshwind {
 
+/// What opens a comment.
+enum class NcComments {
+    Brackets,             ///< ( ) alone
+    BracketsOrSemicolon,  ///< both; what stands behind ; means nothing
+    Semicolon,            ///< ; to the end of the line alone
+};
+
 /// A letter, in upper case, and the text of its number.
 struct NcWord {
     char letter = '?';
@@ -19,7 +26,8 @@ struct NcLine {
     const std::string* file = nullptr;  ///< name used in messages
     std::int32_t number = 0;            ///< from 1
     std::vector<NcWord> words{};
-    std::vector<std::string_view> comments{};  ///< of the form ( ), in order
+    NcComments style = NcComments::BracketsOrSemicolon;
+    std::vector<std::string_view> comments{};  ///< in order; behind ; where there is no ( )
 
     /// Replaces words and comments by those of `text`, which must outlive them.
     /// \throws InputError nc.comment, nc.not_understood, nc.number, nc.word_twice
@@ -42,6 +50,7 @@ struct NcLine {
 
 private:
     [[noreturn]] void no_expressions() const;
+    void rest_of_line(std::string_view text);
     std::size_t comment(std::string_view text, std::size_t open);
     std::size_t word(std::string_view text, std::size_t i);
 };

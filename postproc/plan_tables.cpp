@@ -1,7 +1,6 @@
 #include "postproc/plan_tables.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -9,6 +8,7 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "machines/kinematics.h"
+#include "postproc/csv_table.h"
 
 namespace meshwind {
 namespace {
@@ -16,77 +16,9 @@ namespace {
 // Bridges under this height are rounding of the table's fourth decimal.
 constexpr double kLifted_mm = 5e-5;
 
-// A table of comma-separated cells with a line of names.
-class Table {
-public:
-    Table(std::string_view text, const std::string& file) : rest_(text), file_(file) {
-        next();
-        names_ = cells_;
-    }
-
-    // Goes to the next line; false at the end.
-    bool next() {
-        if (rest_.empty()) {
-            return false;
-        }
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-        std::string_view line = rest_.substr(0, end);
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
-        if (!line.empty() && line.back() == '\r') {
-            line.remove_suffix(1);
-        }
-        ++line_;
-        cells_.clear();
-        for (;;) {
-            const std::size_t comma = line.find(',');
-            cells_.push_back(line.substr(0, comma));
-            if (comma == std::string_view::npos) {
-                break;
-            }
-            line.remove_prefix(comma + 1);
-        }
-        if (!names_.empty() && cells_.size() != names_.size()) {
-            fail("plan.number", "has " + std::to_string(cells_.size()) + " cells, its first line " +
-                                    std::to_string(names_.size()) + "; write the table again");
-        }
-        return true;
-    }
-
-    [[nodiscard]] std::size_t column(std::string_view name) const {
-        const auto found = std::find(names_.begin(), names_.end(), name);
-        if (found == names_.end()) {
-            fail("plan.column", "has no column '" + std::string(name) +
-                                    "'; name the folder that the main job wrote");
-        }
-        return static_cast<std::size_t>(found - names_.begin());
-    }
-
-    [[nodiscard]] double number(std::size_t column) const {
-        const std::string_view cell = cells_[column];
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-        if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
-            fail("plan.number", "'" + std::string(cell) + "' in column " +
-                                    std::string(names_[column]) + " is not a number");
-        }
-        return value;
-    }
-
-    [[nodiscard]] Eigen::Vector3d vector(const std::array<std::size_t, 3>& columns) const {
-        return {number(columns[0]), number(columns[1]), number(columns[2])};
-    }
-
-    [[noreturn]] void fail(const char* code, const std::string& words) const {
-        throw InputError(code, file_ + ":" + std::to_string(line_), words);
-    }
-
-private:
-    std::string_view rest_;
-    std::string file_;
-    int line_ = 0;
-    std::vector<std::string_view> names_;
-    std::vector<std::string_view> cells_;
-};
+constexpr CsvErrors kErrors{.column = "plan.column",
+                            .number = "plan.number",
+                            .column_mend = "name the folder that the main job wrote"};
 
 // Words when two values differ by more than `slack`.
 std::optional<std::string> differing(const std::string& name, double is, double planned,
@@ -126,7 +58,7 @@ std::optional<std::string> block_difference(const Machine& machine, const BlockL
 }  // namespace
 
 PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
-    Table table(text, file);
+    CsvTable table(text, file, kErrors);
     const std::size_t course = table.column("course");
     const std::size_t point = table.column("point");
     const std::size_t bridge = table.column("bridge_mm");
@@ -148,7 +80,7 @@ PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
 
 std::vector<PlannedMotion> read_motion_csv(std::string_view text, const std::string& file,
                                            const Machine& machine) {
-    Table table(text, file);
+    CsvTable table(text, file, kErrors);
     const std::size_t time = table.column("time_s");
     const std::array eye = {table.column("ex_mm"), table.column("ey_mm"), table.column("ez_mm")};
     const std::array roller = {table.column("rx"), table.column("ry"), table.column("rz")};

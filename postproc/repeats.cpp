@@ -153,15 +153,24 @@ public:
     }
 
     // False when the circuits of the run are not as equal as their blocks; then it stays as it is.
-    bool fold(const Run& run) {
+    bool fold(Run run) {
         close_circuit(run);
+        if (ends_list(run) && !ends_exactly(run)) {
+            --run.count;  // the last circuit is written out
+        }
         std::vector<std::size_t> groups;  // circuits that begin at their planned place
         std::vector<std::int64_t> base;
         std::vector<std::int64_t> rows;
         for (std::size_t k = 0; k < run.count; ++k) {
-            if (k == 0 || !within(run, k, base)) {
-                const auto place = planned_.row(run.start + k * run.length);
+            const bool last = k + 1 == run.count && ends_list(run);
+            if (k == 0 || !within(run, k, base) || (last && base != begin_of_last(run))) {
+                // Right behind another run the first circuit begins where that one has led.
+                const BlockList& from = k == 0 ? result_.list : planned_;
+                const auto place = from.row(run.start + k * run.length);
                 base.assign(place.begin(), place.end());
+                if (last) {
+                    base = begin_of_last(run);
+                }
                 groups.push_back(k);
                 if (!within(run, k, base)) {
                     return false;
@@ -221,6 +230,25 @@ private:
             }
         }
         return true;
+    }
+
+    // Behind a run that ends the program no block leads back to the plan.
+    [[nodiscard]] bool ends_list(const Run& run) const {
+        return run.start + run.count * run.length + 1 == planned_.blocks.size();
+    }
+
+    // Where the last circuit must begin for the program to end exactly where it is planned to.
+    [[nodiscard]] std::vector<std::int64_t> begin_of_last(const Run& run) const {
+        const auto end = planned_.row(planned_.blocks.size() - 1);
+        std::vector<std::int64_t> begin(end.begin(), end.end());
+        for (std::size_t a = 0; a < begin.size(); ++a) {
+            begin[a] -= offset(run.length, a);
+        }
+        return begin;
+    }
+
+    [[nodiscard]] bool ends_exactly(const Run& run) const {
+        return within(run, run.count - 1, begin_of_last(run));
     }
 
     void take(const Run& run, const std::vector<std::int64_t>& rows) {

@@ -69,7 +69,9 @@ inline constexpr double kFoldedShare = 0.5;
 /// time. What the true circuit has beyond that adds up until it would pass the tolerance. Then the
 /// first block of the next circuit is written out, to its planned position, and a second subprogram
 /// has the rest of the circuit; so no correction takes a block or time of its own. The block after
-/// a run is written to its planned position, too.
+/// a run is written to its planned position, too; where a run ends the program, its last circuit
+/// begins so that it ends exactly as planned. So the tolerance holds in between and nothing is off
+/// at the end.
 ///
 /// \return the list unchanged, with an empty layout, when nothing repeats or it does not pay.
 /// Otherwise as many blocks with the same pieces and points, positions within the tolerance (or a

@@ -8,7 +8,7 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "geodesic/measure.h"
-#include "postproc/time_law.h"
+#include "postproc/axis_loads.h"
 
 namespace meshwind {
 namespace {
@@ -220,14 +220,20 @@ private:
                          place_words(laid.samples[sample].landing_mm));
             }
         };
-        for (const auto* const hits : {&report.fibre_hits, &report.head_hits}) {
+        if (!task_.envelope.bodies.empty()) {
+            check.numbers["body_hits"] = static_cast<double>(report.body_hits.size());
+        }
+        for (const auto* const hits : {&report.fibre_hits, &report.head_hits, &report.body_hits}) {
             for (const std::size_t sample : *hits) {
                 note_coarse(laid.block[sample]);
             }
         }
-        say(report.fibre_hits, "the free fibre meets the mandrel");
-        say(report.head_hits, "the head comes within " + fixed(rules_.collision.clearance_mm, 1) +
-                                  " mm of the mandrel");
+        const std::string what =
+            task_.envelope.bodies.empty() ? "the mandrel" : "the mandrel or a body";
+        say(report.fibre_hits, "the free fibre meets " + what);
+        say(report.head_hits,
+            "the head comes within " + fixed(rules_.collision.clearance_mm, 1) + " mm of " + what);
+        say(report.body_hits, "the mandrel meets a body that does not turn with it");
         found_.checks.push_back(check);
     }
 
@@ -276,10 +282,15 @@ private:
             step_s.push_back(block.duration_s);
         }
         find_travel_violations(task_.machine, joints);
-        const auto [velocity, acceleration] = axis_loads(task_.machine, joints, step_s);
+        const AxisLoads loads = axis_loads(task_.machine, joints, step_s);
         check.numbers = {{"violations", static_cast<double>(joints.violations.size())},
-                         {"velocity_ratio", velocity.ratio},
-                         {"acceleration_ratio", acceleration.ratio}};
+                         {"velocity_ratio", loads.velocity.ratio},
+                         {"acceleration_ratio", loads.acceleration.ratio},
+                         {"corner_mm", loads.linear.mm},
+                         {"corner_eye_mm", loads.eye.mm}};
+        if (!std::isinf(rules_.corner_mm)) {
+            check.numbers.emplace("limit_corner_mm", rules_.corner_mm);
+        }
         if (!joints.violations.empty()) {
             const LimitViolation& first = *std::min_element(
                 joints.violations.begin(), joints.violations.end(),
@@ -290,8 +301,15 @@ private:
                      ", past its end at " + shown(joint, first.limit) + ", from " +
                      words_of(first.first) + " on");
         }
-        say_load(check, velocity, "velocity");
-        say_load(check, acceleration, "acceleration");
+        say_load(check, loads.velocity, "velocity");
+        say_load(check, loads.acceleration, "acceleration");
+        const CornerCut& corner = loads.linear.mm > loads.eye.mm ? loads.linear : loads.eye;
+        if (corner.mm > rules_.corner_mm * (1.0 + kLimitSlack) && check.ok) {
+            fail(check, corner.step,
+                 "rounding the corner after " + words_of(corner.step) + " takes " +
+                     fixed(corner.mm, 3) + " mm, more than the controller's " +
+                     fixed(rules_.corner_mm, 3) + " mm");
+        }
         found_.checks.push_back(check);
     }
 

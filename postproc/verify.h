@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,6 +33,8 @@ struct VerifyRules {
     double friction = 0.2;
     double bridging_tolerance_mm = 0.5;
     double tow_width_mm = 6.0;
+    /// How far the controller may leave corners, Dialect::corner_tolerance_mm.
+    double corner_mm = std::numeric_limits<double>::infinity();
     LaydownTolerance laydown;
     LaydownOptions simulation;
 };
@@ -72,7 +75,8 @@ struct Verification {
 ///  - bridging: height of the straight fibre over the wall;
 ///  - collision: free fibre and head, swept between the samples;
 ///  - free_length: within what the machine can wind with;
-///  - limits: travel, velocity and acceleration of the axes (time_law.h);
+///  - limits: travel, velocity and acceleration of the axes, and corners cut no more than the
+///    controller may (axis_loads.h);
 ///  - payout: speed of the fibre through the eye, and length to be taken back, which is slack.
 /// The words of a failed check name the block and its line.
 /// \throws InputError verify.tie_on without a tie-on, or with one off the mandrel

@@ -16,19 +16,33 @@ constexpr double kArmStep_mm = 3.0;
 // Longest step of the search: an arm's far end moves faster than the eye.
 constexpr double kLongestStep_mm = 12.0;
 
+// Marches along each part of the arm by what is free around it.
+bool arm_clear(const RayQuery& obstacles, const FreeFibreRule& rule, const Eigen::Vector3d& eye_mm,
+               const Eigen::Vector3d& outward, double more_mm) {
+    for (const ArmPart& part : rule.arm) {
+        for (double along = part.from_mm; along <= part.to_mm;) {
+            const double spare = obstacles.distance_estimate_mm(eye_mm + along * outward) -
+                                 part.radius_mm - rule.clearance_mm - more_mm;
+            if (spare < 0.0) {
+                return false;
+            }
+            along += std::max(spare, kArmStep_mm);
+        }
+    }
+    return true;
+}
+
 class Window {
 public:
     Window(const RayQuery& obstacles, const Eigen::Vector3d& landing,
            const Eigen::Vector3d& tangent, const FreeFibreRule& rule)
         : obstacles_(obstacles), landing_(landing), tangent_(tangent), rule_(rule) {}
 
-    // Estimated distance from head and arm to the next thing beyond the clearance; negative where
-    // too near.
+    // With the arm straight away from the spindle.
     [[nodiscard]] double spare(double length) const {
         const Eigen::Vector3d eye = landing_ + length * tangent_;
-        const double ball =
-            obstacles_.distance_estimate_mm(eye) - rule_.head_radius_mm - rule_.clearance_mm;
-        return ball >= 0.0 && !arm_clear(eye) ? -kStep_mm : ball;
+        return head_spare_mm(obstacles_, rule_, eye,
+                             Eigen::Vector3d(eye.x(), eye.y(), 0.0).normalized());
     }
 
     // Appends the clear ranges within [from, to].
@@ -53,22 +67,6 @@ public:
     }
 
 private:
-    // Marches along each part of the arm by what is free around it.
-    [[nodiscard]] bool arm_clear(const Eigen::Vector3d& eye) const {
-        const Eigen::Vector3d outward = Eigen::Vector3d(eye.x(), eye.y(), 0.0).normalized();
-        for (const ArmPart& part : rule_.arm) {
-            for (double along = part.from_mm; along <= part.to_mm;) {
-                const double spare = obstacles_.distance_estimate_mm(eye + along * outward) -
-                                     part.radius_mm - rule_.clearance_mm;
-                if (spare < 0.0) {
-                    return false;
-                }
-                along += std::max(spare, kArmStep_mm);
-            }
-        }
-        return true;
-    }
-
     const RayQuery& obstacles_;
     const Eigen::Vector3d& landing_;
     const Eigen::Vector3d& tangent_;
@@ -137,15 +135,29 @@ FreeLengths choose_windows(std::span<const double> s_mm,
 
 }  // namespace
 
+double head_spare_mm(const RayQuery& obstacles, const FreeFibreRule& rule,
+                     const Eigen::Vector3d& eye_mm, const Eigen::Vector3d& outward,
+                     double more_mm) {
+    const double ball =
+        obstacles.distance_estimate_mm(eye_mm) - rule.head_radius_mm - rule.clearance_mm - more_mm;
+    return ball >= 0.0 && !arm_clear(obstacles, rule, eye_mm, outward, more_mm) ? -kStep_mm : ball;
+}
+
+double unobstructed_mm(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
+                       const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,
+                       const FreeFibreRule& rule) {
+    const Eigen::Vector3d origin =
+        landing_mm + rule.stand_off_mm * normal + rule.start_mm * tangent;
+    return std::min(rule.max_mm,
+                    rule.start_mm + obstacles.first_hit_mm(origin, tangent, rule.max_mm));
+}
+
 std::vector<FreeFibreWindow> free_fibre_windows(const RayQuery& obstacles,
                                                 const Eigen::Vector3d& landing_mm,
                                                 const Eigen::Vector3d& normal,
                                                 const Eigen::Vector3d& tangent,
                                                 const FreeFibreRule& rule) {
-    const Eigen::Vector3d origin =
-        landing_mm + rule.stand_off_mm * normal + rule.start_mm * tangent;
-    const double free = rule.start_mm + obstacles.first_hit_mm(origin, tangent, rule.max_mm);
-    const double longest = std::min(rule.max_mm, free);
+    const double longest = unobstructed_mm(obstacles, landing_mm, normal, tangent, rule);
     std::vector<FreeFibreWindow> windows;
     if (longest < rule.min_mm) {
         return windows;
@@ -162,11 +174,9 @@ std::vector<FreeFibreWindow> free_fibre_windows(const RayQuery& obstacles,
 bool is_free_length(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
                     const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,
                     const FreeFibreRule& rule, double length_mm) {
-    const Eigen::Vector3d origin =
-        landing_mm + rule.stand_off_mm * normal + rule.start_mm * tangent;
     return length_mm >= rule.min_mm && length_mm <= rule.max_mm &&
            Window(obstacles, landing_mm, tangent, rule).spare(length_mm) >= 0.0 &&
-           rule.start_mm + obstacles.first_hit_mm(origin, tangent, rule.max_mm) >= length_mm;
+           unobstructed_mm(obstacles, landing_mm, normal, tangent, rule) >= length_mm;
 }
 
 FreeLengths choose_free_lengths(std::span<const double> s_mm,

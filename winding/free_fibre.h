@@ -50,6 +50,19 @@ struct FreeFibreWindow {
                                                               const Eigen::Vector3d& tangent,
                                                               const FreeFibreRule& rule);
 
+/// How much nearer head and arm could come to the next thing before the clearance is broken, by
+/// estimate, with the eye at a place; negative where it is.
+/// \param outward unit, where the arm leads away from the eye
+/// \param more_mm clearance on top of the rule's
+[[nodiscard]] double head_spare_mm(const RayQuery& obstacles, const FreeFibreRule& rule,
+                                   const Eigen::Vector3d& eye_mm, const Eigen::Vector3d& outward,
+                                   double more_mm = 0.0);
+
+/// The longest free fibre that meets nothing, up to the rule's.
+[[nodiscard]] double unobstructed_mm(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
+                                     const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,
+                                     const FreeFibreRule& rule);
+
 /// True when `length_mm` is one of the lengths that free_fibre_windows() tells: much cheaper.
 [[nodiscard]] bool is_free_length(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
                                   const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,

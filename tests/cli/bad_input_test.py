@@ -135,7 +135,15 @@ class BadInput(program.ProgramTest):
             with self.subTest("without " + letter):
                 machine = without(letter)
                 machine["eye"]["envelope"] = bare["eye"]["envelope"]
-                self.refused_machine(machine, "axis" if letter == "A" else "axes")
+                file = self.write("machine.json", json.dumps(machine))
+                # valid each; whether the main job can be run with it is told
+                said = self.done("validate", file).stdout
+                if letter == "Y":  # the turn of the spindle stands in for it
+                    self.assertIn("can be run", said)
+                else:
+                    self.assertIn("cannot be run", said)
+                    self.refused("cylinder.stl", "--machine", file, "-o", self.folder / "out",
+                                 word="axis" if letter == "A" else "axes")
         with self.subTest("no spindle"):
             self.refused_machine(changed(lambda m: m.update(mandrel_chain=[])), "mandrel")
         with self.subTest("unknown key"):
@@ -171,7 +179,12 @@ class BadInput(program.ProgramTest):
                            ('{"eye": {"free_length": 5}}', "/eye/free_length"),
                            ('{"eye": {"free_length": 900}}', "/eye/free_length"),
                            ('{"mandrel": {"keep_regions": [77]}}', "77"),
-                           ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "/layers/0"),
+                           ('{"eye": {"rule": "equal-free-length", "lengths": [{"course": 0, '
+                            '"free_length": 900}]}}', "/eye/lengths/0/free_length"),
+                           ('{"eye": {"rule": "cylinder"}}', "radius"),
+                           ('{"eye": {"radius": 200}}', "/eye/radius"),
+                           ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "x.csv"),
+                           ('{"layers": [{"kind": "hoop"}]}', "/layers/0/kind"),
                            ('{"mandrel": {"turn": "pins"}}', "/mandrel/turn")):
             with self.subTest(text):
                 self.refused_job(text, word)

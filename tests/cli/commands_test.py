@@ -19,7 +19,7 @@ class Commands(program.ProgramTest):
         for arguments in (["--help"], ["wind", "--help"], ["inspect", "--help"],
                           ["make", "--help"], ["make", "tee", "--help"], ["trace", "--help"],
                           ["study", "--help"], ["study", "mesh-size", "--help"], ["verify", "--help"],
-                          ["validate", "--help"]):
+                          ["post", "--help"], ["carry", "--help"], ["validate", "--help"]):
             result = self.done(*arguments)
             self.assertIn("--help", result.stdout)
             self.assertEqual(result.stderr, "")

@@ -64,8 +64,8 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "\"bridging_tolerance\":0.5},\n"
               "  \"layers\":[{\"kind\":\"auto\", \"target_layers\":1}],\n"
               "  \"fibres\":1,\n"
-              "  \"eye\":{\"rule\":\"equal-free-length\", \"free_length\":200},\n"
-              "  \"redundancy\":\"central-angle\",\n"
+              "  \"eye\":{\"rule\":\"adaptive\", \"free_length\":200},\n"
+              "  \"redundancy\":\"optimal\",\n"
               "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5},\n"
               "  \"speed\":{\"fibre\":30} }\n");
 }
@@ -90,11 +90,53 @@ TEST(Job, EveryKeyReachesItsField) {
     EXPECT_EQ(job.fibres, 3);
     EXPECT_EQ(job.eye.rule, EyeRule::Cylinder);
     EXPECT_EQ(job.eye.free_length_mm, 180.0);
-    EXPECT_EQ(job.redundancy, RedundancyRule::Optimal);
+    EXPECT_EQ(job.eye.radius_mm, 258.5);
+    EXPECT_EQ(job.redundancy, RedundancyRule::Hold);
     EXPECT_EQ(job.tolerance.laydown_mm, 0.1);
     EXPECT_EQ(job.tolerance.laydown_angle_deg, 0.5);
     EXPECT_EQ(job.tolerance.clearance_mm, 0.0);
     EXPECT_EQ(job.speed.fibre_m_min, 45.0);
+}
+
+TEST(Job, NumbersOfTheEyeRulesReachTheirFields) {
+    const EyeLaw lengths = read_job(kCorpus / "valid/eye_lengths.json").eye;
+    EXPECT_EQ(lengths.rule, EyeRule::EqualFreeLength);
+    ASSERT_EQ(lengths.lengths.size(), 2U);
+    EXPECT_FALSE(lengths.lengths[0].piece.has_value());
+    EXPECT_EQ(lengths.lengths[0].from_mm, 0.0);
+    EXPECT_EQ(lengths.lengths[0].to_mm, 1200.0);
+    EXPECT_EQ(lengths.lengths[0].free_length_mm, 250.0);
+    EXPECT_EQ(lengths.lengths[1].piece, 3);
+    EXPECT_EQ(lengths.lengths[1].free_length_mm, 220.5);
+    const EyeLaw vertical = read_job(kCorpus / "valid/eye_vertical_plane.json").eye;
+    EXPECT_EQ(vertical.rule, EyeRule::VerticalPlane);
+    EXPECT_EQ(vertical.plane_x_mm, 260.0);
+    const EyeLaw horizontal = read_job(kCorpus / "valid/eye_horizontal_plane.json").eye;
+    EXPECT_EQ(horizontal.rule, EyeRule::HorizontalPlane);
+    EXPECT_EQ(horizontal.plane_y_mm, -180.5);
+    EXPECT_NE(job_text(read_job(kCorpus / "valid/eye_lengths.json")).find("\"course\":3"),
+              std::string::npos);
+}
+
+TEST(Job, RedundancyLeftOutIsTheBestThatTheRuleLeaves) {
+    EXPECT_EQ(parse_job("{}", "").redundancy, RedundancyRule::Optimal);
+    EXPECT_EQ(parse_job(R"({"eye": {"rule": "cylinder", "radius": 250}})", "").redundancy,
+              RedundancyRule::Optimal);
+    EXPECT_EQ(parse_job(R"({"redundancy": "oscillate"})", "").redundancy,
+              RedundancyRule::Oscillate);
+    // The planes leave nothing to choose.
+    for (const std::string eye : {R"({"rule": "vertical-plane", "plane_x": 260})",
+                                  R"({"rule": "horizontal-plane", "plane_y": -180})"}) {
+        const std::string rest = R"({"eye": )" + eye;
+        EXPECT_EQ(parse_job(rest + "}", "").redundancy, RedundancyRule::CentralAngle);
+        EXPECT_EQ(parse_job(rest + R"(, "redundancy": "central-angle"})", "").redundancy,
+                  RedundancyRule::CentralAngle);
+        for (const std::string word : {"hold", "oscillate", "optimal"}) {
+            const InputError error = error_of(rest + R"(, "redundancy": ")" + word + "\"}");
+            EXPECT_EQ(error.code(), "job.turn_forced");
+            EXPECT_EQ(error.place(), "job.json: /redundancy");
+        }
+    }
 }
 
 TEST(Job, TextReadsBackAsTheSameJob) {

@@ -22,7 +22,8 @@ CHECK_KEYS = {"continuity": {"fibres", "limit"}, "coverage": {"limit", "fraction
               "slip": {"limit", "worst"}, "bridging": {"limit_mm", "worst_mm"},
               "collision": {"fibre_hits", "head_hits", "min_clearance_mm"},
               "free_length": {"min_mm", "max_mm", "limit_min_mm", "limit_max_mm"},
-              "limits": {"violations", "velocity_ratio", "acceleration_ratio"},
+              "limits": {"violations", "velocity_ratio", "acceleration_ratio", "corner_mm",
+                         "corner_eye_mm", "limit_corner_mm"},
               "payout": {"limit_mm", "worst_mm", "max_speed_mm_s", "limit_mm_s"}}
 VERIFIED = ["laydown", "slip", "bridging", "collision", "free_length", "limits", "payout"]
 TIMES = {"import", "plan", "post", "verify", "write", "total"}

@@ -65,9 +65,9 @@ void expect_rates(const EyePath& path) {
     }
 }
 
-TEST(EqualFreeLength, KeepsThePreferredLengthWhereNothingIsInTheWay) {
+TEST(AdaptiveFreeLength, KeepsThePreferredLengthWhereNothingIsInTheWay) {
     const std::vector<Piece> pieces{helix(100.0), helix(60.0)};
-    const EyePathResult eyes = equal_free_length(pieces, nothing_near(), rule_of(200.0));
+    const EyePathResult eyes = adaptive_free_length(pieces, nothing_near(), rule_of(200.0));
     ASSERT_EQ(eyes.path.size(), 26U + 16U);
     EXPECT_TRUE(eyes.blocked.empty());
     EXPECT_EQ(eyes.shortest_mm, 200.0);
@@ -81,13 +81,13 @@ TEST(EqualFreeLength, KeepsThePreferredLengthWhereNothingIsInTheWay) {
 }
 
 // From the station before a bridge to the one after it the fibre is one straight line.
-TEST(EqualFreeLength, TakesStationsUnderABridgeOnTheStraightFibre) {
+TEST(AdaptiveFreeLength, TakesStationsUnderABridgeOnTheStraightFibre) {
     std::vector<Piece> pieces{helix(20.0)};
     for (const std::size_t i : {2U, 3U}) {
         pieces[0].string.gap_mm[i] = 0.4;
     }
     const SurfacePath& wall = pieces[0].path;
-    const EyePath path = equal_free_length(pieces, nothing_near(), rule_of(200.0)).path;
+    const EyePath path = adaptive_free_length(pieces, nothing_near(), rule_of(200.0)).path;
     const Vector3d chord = wall[4].position_mm - wall[1].position_mm;
     for (const std::size_t i : {2U, 3U}) {
         const Vector3d place = wall[1].position_mm + static_cast<double>(i - 1) / 3.0 * chord;
@@ -103,14 +103,14 @@ TEST(EqualFreeLength, TakesStationsUnderABridgeOnTheStraightFibre) {
 }
 
 // The fibre that is in the air over a hollow is not the free one: that begins where it lands.
-TEST(EqualFreeLength, CountsFromTheFarEndOfABridge) {
+TEST(AdaptiveFreeLength, CountsFromTheFarEndOfABridge) {
     std::vector<Piece> pieces{helix(60.0)};
     for (const std::size_t i : {7U, 8U}) {
         pieces[0].string.gap_mm[i] = 0.4;
     }
     FreeFibreRule rule = rule_of(200.0);
     rule.min_mm = 200.0;
-    const EyePathResult eyes = equal_free_length(pieces, nothing_near(), rule);
+    const EyePathResult eyes = adaptive_free_length(pieces, nothing_near(), rule);
     EXPECT_TRUE(eyes.blocked.empty());
     const Vector3d& lands = pieces[0].path[9].position_mm;
     for (const std::size_t i : {6U, 7U, 8U}) {
@@ -120,21 +120,21 @@ TEST(EqualFreeLength, CountsFromTheFarEndOfABridge) {
     expect_rates(eyes.path);
 }
 
-TEST(EqualFreeLength, KeepsWithinTheMachinesRange) {
+TEST(AdaptiveFreeLength, KeepsWithinTheMachinesRange) {
     const std::vector<Piece> pieces{helix(20.0)};
-    EXPECT_EQ(equal_free_length(pieces, nothing_near(), rule_of(10.0)).longest_mm, 40.0);
-    EXPECT_EQ(equal_free_length(pieces, nothing_near(), rule_of(900.0)).shortest_mm, 400.0);
+    EXPECT_EQ(adaptive_free_length(pieces, nothing_near(), rule_of(10.0)).longest_mm, 40.0);
+    EXPECT_EQ(adaptive_free_length(pieces, nothing_near(), rule_of(900.0)).shortest_mm, 400.0);
 }
 
 // A post beside the eye's way at the preferred length: the length gives way in time and comes back.
-TEST(EqualFreeLength, LeavesThePreferredLengthByTheRatesAndComesBack) {
+TEST(AdaptiveFreeLength, LeavesThePreferredLengthByTheRatesAndComesBack) {
     const std::vector<Piece> pieces{helix(700.0)};
     const PathPoint& station = pieces[0].path[90];
     const Vector3d post = station.position_mm + 200.0 * station.tangent + 12.0 * station.normal;
     const Vector3d half(4.0, 4.0, 4.0);
     const TriangleSoup soup = test::box(post - half, post + half);
     const RayQuery obstacles({&soup, 1});
-    const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
+    const EyePathResult eyes = adaptive_free_length(pieces, obstacles, rule_of(200.0));
     EXPECT_TRUE(eyes.blocked.empty());
     expect_eye_on_the_free_fibre(eyes.path);
     expect_rates(eyes.path);
@@ -147,7 +147,7 @@ TEST(EqualFreeLength, LeavesThePreferredLengthByTheRatesAndComesBack) {
     }
 }
 
-TEST(EqualFreeLength, KeepsMoreClearanceOnThePiecesThatAskForIt) {
+TEST(AdaptiveFreeLength, KeepsMoreClearanceOnThePiecesThatAskForIt) {
     const std::vector<Piece> pieces{helix(300.0), helix(300.0)};
     const Vector3d half(4.0, 4.0, 4.0);
     const PathPoint& station = pieces[0].path[40];  // the second piece lies over the first
@@ -155,7 +155,7 @@ TEST(EqualFreeLength, KeepsMoreClearanceOnThePiecesThatAskForIt) {
     const TriangleSoup soup = test::box(post - half, post + half);
     const RayQuery obstacles({&soup, 1});
     const std::vector<double> more{0.0, 5.0};
-    const EyePath path = equal_free_length(pieces, obstacles, rule_of(200.0), more).path;
+    const EyePath path = adaptive_free_length(pieces, obstacles, rule_of(200.0), more).path;
     const auto least = [&](std::int32_t piece) {
         double distance = 1e9;
         for (const EyePoint& p : path) {
@@ -170,14 +170,14 @@ TEST(EqualFreeLength, KeepsMoreClearanceOnThePiecesThatAskForIt) {
     EXPECT_GE(least(1), 20.0 - 0.05);
 }
 
-TEST(EqualFreeLength, NamesThePointsWhereNoLengthIsPossible) {
+TEST(AdaptiveFreeLength, NamesThePointsWhereNoLengthIsPossible) {
     const std::vector<Piece> pieces{helix(100.0)};
     const PathPoint& station = pieces[0].path[10];
     const Vector3d wall = station.position_mm + 30.0 * station.tangent;
     const Vector3d half(2.0, 2.0, 2.0);
     const TriangleSoup soup = test::box(wall - half, wall + half);
     const RayQuery obstacles({&soup, 1});
-    const EyePathResult eyes = equal_free_length(pieces, obstacles, rule_of(200.0));
+    const EyePathResult eyes = adaptive_free_length(pieces, obstacles, rule_of(200.0));
     EXPECT_NE(std::find(eyes.blocked.begin(), eyes.blocked.end(), 10U), eyes.blocked.end());
     EXPECT_EQ(std::find(eyes.blocked.begin(), eyes.blocked.end(), 0U), eyes.blocked.end());
     ASSERT_EQ(eyes.path.size(), pieces[0].path.size());

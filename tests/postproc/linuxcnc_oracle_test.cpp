@@ -16,6 +16,7 @@
 #include "postproc/linuxcnc.h"
 #include "postproc/motion_csv.h"
 #include "tests/postproc/block_lists.h"
+#include "tests/postproc/dialect_lists.h"
 #include "tests/postproc/synthetic_paths.h"
 
 namespace meshwind {
@@ -154,7 +155,7 @@ TEST_F(LinuxCncOracle, OtherMachineFiles) {
     };
     replace("\"resolution\": 0.001", "\"resolution\": 0.015625");
     replace("\"resolution\": 0.001", "\"resolution\": 0.0005");
-    replace("G64 P0.02", "G91 G64 P0.05 (a mode that the start must not inherit)");
+    replace("G64 P2 Q0.01", "G91 G64 P0.05 (a mode that the start must not inherit)");
     const std::string file = (folder_ / "machine.json").string();
     save(file, text);
     const Machine machine = read_machine(file);
@@ -169,6 +170,28 @@ TEST_F(LinuxCncOracle, RepeatedCircuits) {
     EXPECT_TRUE(check(six_axis_, test::pattern(machine, {.circuits = 50, .advance_deg = 1234.5})));
     EXPECT_TRUE(
         check(six_axis_, test::pattern(machine, {.circuits = 500, .length = 4, .lead = 1})));
+}
+
+// LinuxCNC takes Fanuc's form as well: header, points, subprograms between % and %.
+TEST_F(LinuxCncOracle, FanucPrograms) {
+    const Machine machine = test::machine_for("fanuc");
+    const Fanuc fanuc;
+    for (const BlockList& planned :
+         {test::random_list(machine, 6, 5000), test::small_program(machine),
+          test::pattern(machine, {.advance_deg = 1234.56746}),
+          test::pattern(machine, {.circuits = 50, .advance_deg = 1234.5, .lead = 0})}) {
+        const BlockList list = LinuxCnc().prepare(planned);  // for the feed floor
+        const FoldedProgram folded = fanuc.fold(list);
+        compare(six_axis_, fanuc.write(machine, list, {}, {.mandrel = "pipe (1).stl"}), list);
+        compare(six_axis_, fanuc.write(machine, folded.list, folded.layout, {}), folded.list);
+    }
+}
+
+// And GRBL's, as long as nothing is lost in floats.
+TEST_F(LinuxCncOracle, GrblPrograms) {
+    const Machine machine = test::machine_for("grbl");
+    const BlockList list = LinuxCnc().prepare(Grbl().prepare(test::random_list(machine, 6, 5000)));
+    compare(six_axis_, Grbl().write(machine, list, {}, {.mandrel = "pipe (1).stl"}), list);
 }
 
 TEST_F(LinuxCncOracle, FormsThatTheReaderTakes) {

@@ -55,7 +55,7 @@ TEST(LinuxCnc, WritesThisProgram) {
               "(time: 0.0 s)\n"
               "(blocks: 2)\n"
               "G21 G90 G94 G17 G40 G49 G80\n"
-              "G64 P0.02\n"
+              "G64 P2 Q0.01\n"
               "(approach: rotary axes turn first, then the linear axes move together;)\n"
               "(bring the eye clear of the mandrel by hand before the start)\n"
               "G90 G0 A66.078 B-0.001 C-63.666\n"
@@ -159,6 +159,21 @@ TEST(LinuxCnc, ControllerLinesMustBeHarmless) {
     machine.controller.header = {"G91 G64 P0.05 (a mode that the start must not inherit)"};
     const BlockList list = random_list(machine, 1, 3);
     EXPECT_EQ(LinuxCnc().read(write(machine, list), "p.ngc", machine).nano, list.nano);
+}
+
+TEST(LinuxCnc, TakesTheCornerToleranceFromTheHeader) {
+    Machine machine = six_axis();
+    const auto tolerance_mm = [&](std::vector<std::string> header) {
+        machine.controller.header = std::move(header);
+        return LinuxCnc().corner_tolerance_mm(machine);
+    };
+    EXPECT_EQ(LinuxCnc().corner_tolerance_mm(machine), 2.0);
+    EXPECT_EQ(tolerance_mm({"g64 p.25 q1"}), 0.25);
+    EXPECT_EQ(tolerance_mm({"G64 P1", "M8", "(G64 P7) G4 P3", "G64P0.5"}), 0.5);
+    for (const char* const line : {"", "G64", "G64 P0", "G61", "G4 P3", "(G64 P1)"}) {
+        EXPECT_TRUE(std::isinf(tolerance_mm({line}))) << line;
+    }
+    EXPECT_TRUE(std::isinf(tolerance_mm({"G64 P1", "G64"})));
 }
 
 TEST(LinuxCnc, RefusesLettersFeedAndRestingBlocks) {

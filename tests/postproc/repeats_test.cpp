@@ -118,6 +118,49 @@ TEST(Repeats, CoarseAxesAreHeldToAStep) {
     check(machine, planned, folded);
 }
 
+// No block behind the circuits leads back to the plan, so the last circuit must.
+TEST(Repeats, EndOfTheProgramIsExact) {
+    const Machine machine = six_axis();
+    for (const double advance_deg : {1234.56746, 400.0005, 777.773, 360.0 * std::sqrt(2.0)}) {
+        for (const std::int64_t step : {1'000'000, 15'625'000}) {
+            Machine coarse = machine;
+            coarse.mandrel_chain[0].resolution_nano = step;
+            const BlockList planned =
+                pattern(coarse, {.circuits = 100, .advance_deg = advance_deg, .lead = 0});
+            const FoldedProgram folded = fold_repeats(planned);
+            ASSERT_FALSE(folded.layout.main.empty());
+            EXPECT_GT(folded.layout.drift_nano[0], 0);
+            check(coarse, planned, folded);
+            const std::size_t end = planned.blocks.size() - 1;
+            for (std::size_t a = 0; a < planned.axes.size(); ++a) {
+                EXPECT_EQ(folded.list.row(end)[a], planned.row(end)[a]) << advance_deg;
+            }
+        }
+    }
+}
+
+// The second run begins where the first one has led, which is not quite where it is planned.
+TEST(Repeats, RunsNextToOneAnother) {
+    const Machine machine = six_axis();
+    for (int i = 0; i < 20; ++i) {
+        BlockList planned =
+            pattern(machine, {.circuits = 50, .advance_deg = 400.0001 + 0.0007 * i, .lead = 0});
+        const BlockList second =
+            pattern(machine, {.circuits = 60, .length = 20, .advance_deg = 500.0004, .lead = 0});
+        const std::size_t end = planned.blocks.size() - 1;
+        for (std::size_t b = 1; b < second.blocks.size(); ++b) {
+            planned.blocks.push_back(second.blocks[b]);
+            for (std::size_t a = 0; a < planned.axes.size(); ++a) {
+                planned.nano.push_back(planned.row(end)[a] + second.row(b)[a] - second.row(0)[a]);
+            }
+        }
+        const FoldedProgram folded = fold_repeats(planned);
+        ASSERT_FALSE(folded.layout.main.empty());
+        check(machine, planned, folded);
+        EXPECT_EQ(folded.list.nano.back(), planned.nano.back());
+    }
+}
+
 // Count, length, advance and lead at random, two patterns one after the other.
 TEST(Repeats, RandomPatterns) {
     const Machine machine = six_axis();

@@ -330,6 +330,18 @@ Job rushed() {
     return job;
 }
 
+TEST(Verify, SeesCornersThatTheControllerMayNotCut) {
+    Job job(helix(240.0));
+    const double cut_mm = check_of(job.verified(), "limits").numbers.at("corner_eye_mm");
+    EXPECT_GT(cut_mm, 0.0);
+    EXPECT_EQ(check_of(job.verified(), "limits").numbers.count("limit_corner_mm"), 0U);
+    job.rules.corner_mm = 1.01 * cut_mm;
+    EXPECT_EQ(failed(job.verified()), "");
+    job.rules.corner_mm = 0.5 * cut_mm;
+    (void)expect_fails(job, "limits", "rounding the corner after ");
+    EXPECT_EQ(check_of(job.verified(), "limits").numbers.at("limit_corner_mm"), 0.5 * cut_mm);
+}
+
 TEST(Verify, SeesTooFastAFibre) {
     const std::size_t block = expect_fails(
         rushed(), "payout", "the fibre runs at 1000 mm/s, faster than the machine's 600 mm/s");

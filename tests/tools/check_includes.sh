@@ -26,7 +26,7 @@ nlohmann/               machines/strict_json.cpp
 nlohmann/               */*_json.cpp
 nlohmann/               cli/report*.cpp
 nlohmann/               cli/report*.h
-nlohmann/               cli/main.cpp
+nlohmann/               cli/commands.cpp
 CLI/                    cli/main.cpp
 tbb/                    core/parallel.cpp
 nettle/                 cli/digest.cpp

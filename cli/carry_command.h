@@ -1,0 +1,88 @@
+/// `meshwind carry`: a frame on a robot through a fixed ring head.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "machines/machine.h"
+#include "postproc/carried_path.h"
+#include "postproc/frame_axis.h"
+#include "postproc/krl.h"
+#include "postproc/ring_head.h"
+#include "postproc/verify.h"
+
+namespace meshwind {
+
+/// The dialect of machines that carry; its programs are no lists of axis blocks (dialect.h).
+inline constexpr const char* kCarryDialect = "krl";
+
+struct CarryRequest {
+    std::filesystem::path axis;     ///< table of postproc/frame_axis.h
+    std::filesystem::path machine;  ///< its eye stands still: the centre of the head
+    std::filesystem::path out;
+    std::string name = "program";  ///< of the program and its file
+    double speed_mm_s = 20.0;      ///< passage of the frame's axis through the head
+    double tolerance_mm = 0.2;     ///< of the axis from the centre of the head
+    double tolerance_deg = 0.2;    ///< of the frame's turn from what is wanted
+    double tube_radius_mm = 20.0;
+    double ring_radius_mm = 40.0;
+    double ring_distance_mm = 70.0;
+    double clearance_mm = 5.0;  ///< of the frame from bodies on the machine's base
+    double angle_deg = 45.0;    ///< wanted of the rings' fibres, one ring to each side
+    int tows = 12;              ///< on each ring
+    std::optional<double> tow_width_mm;
+    /// Frame of the axis' table on the robot's flange: x, y, z in mm, a, b, c in deg.
+    std::array<double, 6> tool{};
+    bool force = false;
+};
+
+/// What one ring lays.
+struct RingResult {
+    double lowest_deg = 0.0;  ///< angle laid where the ring turns at one speed all the way
+    double highest_deg = 0.0;
+    double slowest_rev_min = 0.0;  ///< speeds that keep the wanted angle
+    double fastest_rev_min = 0.0;
+};
+
+struct CarryOutcome {
+    std::string axis_file;
+    std::string axis_digest;
+    CarryRequest request;
+    Machine machine;
+    RingHead head;
+    std::size_t stations = 0;
+    double length_mm = 0.0;
+    CarryPoints points;
+    RingFit fit;
+    std::vector<CarriedSample> samples;
+    CarriedJoints joints;
+    TimedPath planned;               ///< why the moves take the time that they take
+    KrlProgram program;              ///< as it was read back
+    std::vector<double> duration_s;  ///< of its moves
+    CarryError program_error;        ///< on its moves
+    AxisLoads loads;                 ///< of its moves
+    double turns_per_mm = 0.0;       ///< of a ring, for the wanted angle
+    std::array<RingResult, 2> ring;  ///< right-handed, left-handed
+    double longitudinal_deg = 0.0;   ///< largest lean of fibres along the axis, of the frame's turn
+    std::vector<Check>
+        checks;  ///< ring, reach, limits, wrist, clearance (with bodies), interpolation, rounding
+    bool written = false;  ///< the program
+
+    [[nodiscard]] bool passed() const;
+    [[nodiscard]] double total_s() const;
+};
+
+/// Works everything out, reads the program back from its text, checks it and writes the folder:
+/// NAME.src where all checks passed or `force` is set, motion.csv and report.json.
+/// \throws InputError carry.*, axis.*, krl.*; IoError; nothing is written then
+[[nodiscard]] CarryOutcome run_carry(const CarryRequest& request);
+
+/// Frame on the flange from X,Y,Z,A,B,C. \throws InputError carry.tool
+[[nodiscard]] std::array<double, 6> tool_of(const std::string& text);
+
+}  // namespace meshwind

@@ -1,0 +1,144 @@
+#include "cli/report_carry.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/report_checks.h"
+#include "core/text_number.h"
+#include "core/units.h"
+#include "version.h"
+
+namespace meshwind {
+namespace {
+
+using nlohmann::json;
+
+json vector_json(const Eigen::Vector3d& v) {
+    return {report_number(v.x()), report_number(v.y()), report_number(v.z())};
+}
+
+const char* name_of(Singularity kind) {
+    switch (kind) {
+        case Singularity::Shoulder:
+            return "shoulder";
+        case Singularity::Elbow:
+            return "elbow";
+        case Singularity::Wrist:
+            return "wrist";
+        case Singularity::Other:
+            break;
+    }
+    return "other";
+}
+
+// "D acceleration" as "A4 acceleration"; velocities count with the passage (time_moves).
+std::string limit_name(const Machine& machine, const std::string& name) {
+    if (name == "fibre") {
+        return "passage and velocities";
+    }
+    return "A" + std::to_string(machine.joint_of(name.front()).value() + 1) + name.substr(1);
+}
+
+json winding_json(const CarryOutcome& outcome) {
+    const CarryRequest& request = outcome.request;
+    json rings = json::array();
+    for (const RingResult& ring : outcome.ring) {
+        rings.push_back(
+            {{"laid_deg_at_even_speed",
+              {{"min", report_number(ring.lowest_deg)}, {"max", report_number(ring.highest_deg)}}},
+             {"rev_min_for_angle",
+              {{"min", report_number(ring.slowest_rev_min)},
+               {"max", report_number(ring.fastest_rev_min)}}}});
+    }
+    json winding = {
+        {"angle_deg", request.angle_deg},
+        {"tube_radius_mm", request.tube_radius_mm},
+        {"tows_per_ring", request.tows},
+        {"turns_per_mm", report_number(outcome.turns_per_mm)},
+        {"mm_per_turn", outcome.turns_per_mm > 0.0 ? json(report_number(1.0 / outcome.turns_per_mm))
+                                                   : json(nullptr)},
+        {"rings", rings},
+        {"longitudinal_lean_deg", report_number(outcome.longitudinal_deg)},
+        {"coverage", nullptr}};
+    if (request.tow_width_mm) {
+        winding["coverage"] =
+            report_number(ring_coverage(request.tows, *request.tow_width_mm,
+                                        rad_from_deg(request.angle_deg), request.tube_radius_mm));
+    }
+    return winding;
+}
+
+json axes_json(const CarryOutcome& outcome) {
+    json axes = json::object();
+    for (std::size_t a = 0; a < outcome.joints.path.axis_count; ++a) {
+        double low = outcome.joints.path.row(0)[a];
+        double high = low;
+        for (std::size_t i = 1; i < outcome.joints.path.size(); ++i) {
+            low = std::min(low, outcome.joints.path.row(i)[a]);
+            high = std::max(high, outcome.joints.path.row(i)[a]);
+        }
+        axes["A" + std::to_string(a + 1)] = {{"min", report_number(deg_from_rad(low))},
+                                             {"max", report_number(deg_from_rad(high))}};
+    }
+    return axes;
+}
+
+}  // namespace
+
+std::string carry_json(const CarryOutcome& outcome) {
+    json binding = json::object();
+    for (const BindingLimit& limit : outcome.planned.binding) {
+        binding[limit_name(outcome.machine, limit.name)] = report_number(limit.time_s);
+    }
+    const CarriedJoints& joints = outcome.joints;
+    const json report = {
+        {"meshwind", kVersion},
+        {"axis",
+         {{"file", outcome.axis_file},
+          {"sha256", outcome.axis_digest},
+          {"points", outcome.stations},
+          {"length_mm", report_number(outcome.length_mm)}}},
+        {"machine", outcome.machine.name},
+        {"head",
+         {{"centre_mm", vector_json(outcome.head.centre_mm)},
+          {"direction", vector_json(outcome.head.direction)},
+          {"reference", vector_json(outcome.head.reference)},
+          {"ring_distance_mm", outcome.head.ring_distance_mm},
+          {"ring_radius_mm", outcome.head.ring_radius_mm}}},
+        {"tool", outcome.request.tool},
+        {"winding", winding_json(outcome)},
+        {"robot",
+         {{"singular",
+           {{"least", report_number(joints.singular)},
+            {"kind", name_of(joints.nearest)},
+            {"s_mm", report_number(outcome.samples[joints.singular_at].s_mm)}}},
+          {"axes_deg", axes_json(outcome)},
+          {"time_set_by_s", binding}}},
+        {"checks", checks_report(outcome.checks)},
+        {"program",
+         {{"file", outcome.written ? json(outcome.request.name + ".src") : json(nullptr)},
+          {"dialect", kCarryDialect},
+          {"moves", outcome.program.moves.size()},
+          {"duration_s", report_number(outcome.total_s())}}},
+        {"ok", outcome.passed()}};
+    return report.dump(1) + "\n";
+}
+
+void print_carry(std::ostream& out, const CarryOutcome& outcome) {
+    const RingResult& ring = outcome.ring.front();
+    out << outcome.axis_file << " on " << outcome.machine.name << ": "
+        << fixed(outcome.length_mm, 1) << " mm of axis in " << outcome.program.moves.size()
+        << " moves, " << fixed(outcome.total_s(), 1) << " s\n"
+        << "rings: " << fixed(outcome.turns_per_mm * outcome.request.speed_mm_s * 60.0, 2)
+        << " rev/min each way lay " << fixed(ring.lowest_deg, 1) << " to "
+        << fixed(ring.highest_deg, 1) << " and " << fixed(outcome.ring.back().lowest_deg, 1)
+        << " to " << fixed(outcome.ring.back().highest_deg, 1)
+        << " deg; motion.csv has the speeds that keep " << fixed(outcome.request.angle_deg, 1)
+        << " deg\n";
+    print_checks(out, outcome.checks);
+    out << (outcome.written ? "written: " + outcome.request.name + ".src" : "no program written")
+        << ", motion.csv and report.json in " << outcome.request.out.string() << '\n';
+}
+
+}  // namespace meshwind

@@ -1,0 +1,158 @@
+#include "postproc/mend_motion.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+// Clearance that is added each time, so far to either side.
+constexpr double kMoreClearance_mm = 1.0;
+constexpr double kNear_mm = 20.0;
+
+// Fibre to either side whose motion may change: in it the axes come from their speed to rest and
+// back.
+constexpr double kMendReach_mm = 100.0;
+
+// And about a place where the first motion is put back, with lengths perhaps 200 mm longer.
+constexpr double kPutBackReach_mm = 400.0;
+
+// Fibre that lies wrong was pulled there over about so much.
+constexpr double kPulledReach_mm = 100.0;
+
+// Places of a mending: about the stations themselves.
+constexpr double kMendingKnot_mm = 3.0;
+
+}  // namespace
+
+MotionImprover::MotionImprover(const Machine& machine, const RayQuery& obstacles,
+                               const FreeFibreRule& rule, double fibre_speed_mm_s,
+                               bool fixed_lengths, EyePath safe, std::vector<double> ahead_mm)
+    : machine_(machine),
+      obstacles_(obstacles),
+      rule_(rule),
+      fibre_speed_mm_s_(fibre_speed_mm_s),
+      fixed_lengths_(fixed_lengths),
+      safe_(std::move(safe)),
+      path_(safe_),
+      ahead_mm_(std::move(ahead_mm)),
+      more_mm_(safe_.size(), 0.0),
+      tries_(safe_.size(), 0),
+      given_up_(safe_.size(), 0) {}
+
+void MotionImprover::choose() {
+    optimise({}, false);
+    changed_ = {{0, path_.size() - 1}};
+}
+
+void MotionImprover::optimise(std::span<const char> free, bool mending) {
+    path_ = optimal_motion({.machine = machine_,
+                            .obstacles = obstacles_,
+                            .path = path_,
+                            .ahead_mm = ahead_mm_,
+                            .rule = rule_,
+                            .more_mm = more_mm_,
+                            .free = free,
+                            .fibre_speed_mm_s = fibre_speed_mm_s_,
+                            .knot_mm = mending ? kMendingKnot_mm : kKnot_mm,
+                            .from_given = mending,
+                            .fixed_lengths = fixed_lengths_});
+}
+
+void MotionImprover::mark(std::size_t station, double reach_mm, std::vector<char>& marks) const {
+    const double s_mm = path_[station].s_mm;
+    for (std::size_t i = station + 1; i-- > 0 && s_mm - path_[i].s_mm <= reach_mm;) {
+        marks[i] = 1;
+    }
+    for (std::size_t i = station; i < path_.size() && path_[i].s_mm - s_mm <= reach_mm; ++i) {
+        marks[i] = 1;
+    }
+}
+
+bool MotionImprover::mend(std::span<const std::size_t> stations) {
+    std::vector<char> near(path_.size(), 0);
+    std::vector<char> free(path_.size(), 0);
+    std::vector<char> back(path_.size(), 0);
+    bool any_back = false;
+    for (const std::size_t station : stations) {
+        if (given_up_[station] != 0) {
+            return false;
+        }
+        mark(station, kNear_mm, near);
+        mark(station, kMendReach_mm, free);
+        if (tries_[station] >= kMendings) {
+            mark(station, kNear_mm, back);
+            any_back = true;
+        }
+    }
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        more_mm_[i] += near[i] != 0 ? kMoreClearance_mm : 0.0;
+        tries_[i] += near[i] != 0 ? 1 : 0;
+    }
+    std::vector<char> changed = free;
+    if (any_back) {
+        put_back(back, changed);
+    }
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        free[i] = static_cast<char>(free[i] != 0 && given_up_[i] == 0);
+    }
+    optimise(free, true);
+    note_changes(changed);
+    return true;
+}
+
+bool MotionImprover::give_up(std::span<const std::size_t> stations) {
+    std::vector<char> back(path_.size(), 0);
+    for (const std::size_t station : stations) {
+        if (given_up_[station] != 0) {
+            return false;
+        }
+        mark(station, kPulledReach_mm, back);
+    }
+    std::vector<char> changed(path_.size(), 0);
+    put_back(back, changed);
+    note_changes(changed);
+    return true;
+}
+
+// Turned on by whole turns to where the present motion is; what is to either side comes there and
+// goes from there by the grid.
+void MotionImprover::put_back(const std::vector<char>& marks, std::vector<char>& changed) {
+    std::vector<char> free(path_.size(), 0);
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        if (marks[i] == 0) {
+            continue;
+        }
+        const double whole_rad =
+            2.0 * kPi * std::round((path_[i].turn_rad - safe_[i].turn_rad) / (2.0 * kPi));
+        path_[i] = safe_[i];
+        path_[i].turn_rad += whole_rad;
+        given_up_[i] = 1;
+        if (i == 0 || i + 1 == marks.size() || marks[i - 1] == 0 || marks[i + 1] == 0) {
+            mark(i, kPutBackReach_mm, free);
+        }
+    }
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        changed[i] = static_cast<char>(changed[i] != 0 || free[i] != 0 || marks[i] != 0);
+        free[i] = static_cast<char>(free[i] != 0 && given_up_[i] == 0);
+    }
+    optimise(free, false);
+}
+
+void MotionImprover::note_changes(const std::vector<char>& changed) {
+    changed_.clear();
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+        if (changed[i] == 0) {
+            continue;
+        }
+        if (!changed_.empty() && changed_.back().second + 1 == i) {
+            changed_.back().second = i;
+        } else {
+            changed_.emplace_back(i, i);
+        }
+    }
+}
+
+}  // namespace meshwind

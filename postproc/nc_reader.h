@@ -1,0 +1,41 @@
+/// The one reader of G-code: text to blocks, as a flavour has it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/block.h"
+#include "postproc/nc_flavour.h"
+
+namespace meshwind {
+
+/// The blocks that the controller would run. Taken are G0 G1 G90 G91 G93 G94, F, N, M0 M1, the ends
+/// and what the flavour calls harmless.
+/// \param file name used in messages
+/// \throws InputError nc.* with the place "file:line" for anything else
+[[nodiscard]] BlockList read_nc(const NcFlavour& flavour, std::string_view text,
+                                const std::string& file, const Machine& machine);
+
+/// A line of the controller's own must be one that the reader takes, and must neither move nor end
+/// the program nor tie the fibre on. \throws InputError dialect.header_line
+void check_own_line(const NcFlavour& flavour, const Machine& machine, const std::string& line);
+
+/// Text as lines without their ends.
+[[nodiscard]] std::vector<std::string_view> lines_of_text(std::string_view text);
+
+/// The comments with a meaning: "course 3" and "tie on at X1.000 Y2.000 Z3.000 on the mandrel".
+class NcMarks {
+public:
+    /// \throws InputError nc.tie_on
+    void read(const NcLine& line, BlockList& list);
+    [[nodiscard]] std::int32_t piece() const { return piece_; }
+
+private:
+    static void tie_on(const NcLine& line, std::string_view comment, BlockList& list);
+    std::int32_t piece_ = -1;
+};
+
+}  // namespace meshwind

@@ -1,0 +1,170 @@
+"""meshwind carry: the L-frame through the ring head, its files, failed checks and bad input."""
+import csv
+import json
+import math
+import re
+import sys
+import unittest
+
+import program
+
+CARRY = ("carry", "l_frame_axis.csv", "--machine", "robot_kr16.json")
+FRAME = re.compile(r"LIN \{X (\S+),Y (\S+),Z (\S+),A (\S+),B (\S+),C ([^}]+)\}( C_DIS)?$")
+
+
+def rotation(a, b, c):
+    """Rz(a) Ry(b) Rx(c), degrees."""
+    ca, sa, cb, sb, cc, sc = (f(math.radians(x)) for x in (a, b, c) for f in (math.cos, math.sin))
+    return [[ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc],
+            [sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc],
+            [-sb, cb * sc, cb * cc]]
+
+
+def times(matrix, vector):
+    return [sum(m * v for m, v in zip(row, vector)) for row in matrix]
+
+
+class Carry(program.ProgramTest):
+    def rows(self, name):
+        with open(name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_program_is_the_one_of_the_project(self):
+        self.done(*CARRY, "--name", "l_frame", "-o", "out")
+        self.assertEqual((self.folder / "out/l_frame.src").read_text(),
+                         (program.SOURCE / "data/programs/l_frame.src").read_text())
+        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()),
+                         ["l_frame.src", "motion.csv", "report.json"])
+
+    def test_frames_of_the_program_have_the_axis_in_the_head(self):
+        """From the text alone: each frame's origin and turn put a point of the axis at H."""
+        report = json.loads(self.done(*CARRY, "-o", "out", "--json").stdout)
+        self.assertEqual(json.loads((self.folder / "out/report.json").read_text()), report)
+        self.assertTrue(report["ok"])
+        stations = [[float(row[k]) for k in ("x_mm", "y_mm", "z_mm", "tx", "ty", "tz")]
+                    for row in self.rows(program.SOURCE / "data/l_frame_axis.csv")]
+        lines = (self.folder / "out/program.src").read_text().splitlines()
+        frames = [FRAME.match(line) for line in lines if line.startswith("LIN")]
+        self.assertEqual(len(frames), report["program"]["moves"])
+        self.assertEqual([bool(f[7]) for f in frames],
+                         [False] + [True] * (len(frames) - 2) + [False])
+        met = set()
+        for frame in frames:
+            x, y, z, a, b, c = (float(frame[i]) for i in range(1, 7))
+            turn = rotation(a, b, c)
+            for i, station in enumerate(stations):
+                place = [p + q for p, q in zip(times(turn, station[:3]), (x, y, z))]
+                along = times(turn, station[3:])
+                if math.dist(place, (-1000, 1070, 990)) < 1e-3 and along[1] > 1 - 1e-9:
+                    met.add(i)
+        self.assertEqual(met & {0, 105}, {0, 105})
+        self.assertTrue(set(range(55, 70)) <= met, "all stations of the bend are points")
+
+    def test_motion_follows_the_time_of_the_program(self):
+        report = json.loads(self.done(*CARRY, "--speed", "12", "-o", "out", "--json").stdout)
+        rows = self.rows(self.folder / "out/motion.csv")
+        time = [float(row["time_s"]) for row in rows]
+        self.assertEqual(time, sorted(time))
+        self.assertAlmostEqual(time[-1], report["program"]["duration_s"], places=5)
+        self.assertGreaterEqual(time[-1], 1050 / 12 - 0.01)
+        for axis, ends in report["robot"]["axes_deg"].items():
+            values = [float(row[axis]) for row in rows]
+            self.assertAlmostEqual(min(values), ends["min"], places=4)
+            self.assertAlmostEqual(max(values), ends["max"], places=4)
+            self.assertLess(max(abs(p - q) for p, q in zip(values, values[1:])), 3)
+        # Euler angles go on over the cut at 180 degrees.
+        for name in ("a_deg", "b_deg", "c_deg"):
+            values = [float(row[name]) for row in rows]
+            self.assertLess(max(abs(p - q) for p, q in zip(values, values[1:])), 5)
+        # The ring that keeps 45 degrees makes up for the frame's own turn in the bend.
+        straight = 12 * 60 / (2 * math.pi * 20)
+        self.assertAlmostEqual(float(rows[1]["ring1_rev_min"]), straight, delta=1e-3)
+        self.assertAlmostEqual(float(rows[1]["ring2_rev_min"]), -straight, delta=1e-3)
+        bend = 0.5 / 140 * 12 * 60
+        self.assertAlmostEqual(max(float(row["ring1_rev_min"]) for row in rows), straight + bend,
+                               delta=0.02)
+
+    def test_winding_numbers(self):
+        report = json.loads(self.done(*CARRY, "--tow-width", "7.4", "-o", "out", "--json").stdout)
+        winding = report["winding"]
+        self.assertAlmostEqual(winding["mm_per_turn"], 40 * math.pi, places=6)
+        self.assertAlmostEqual(winding["longitudinal_lean_deg"],
+                               math.degrees(math.atan(math.pi * 20 / 140)), delta=1e-3)
+        low, high = (math.degrees(math.atan(1 + d * math.pi * 20 / 140)) for d in (-1, 0))
+        self.assertAlmostEqual(winding["rings"][0]["laid_deg_at_even_speed"]["min"], low, delta=0.05)
+        self.assertAlmostEqual(winding["rings"][0]["laid_deg_at_even_speed"]["max"], high,
+                               delta=0.05)
+        self.assertAlmostEqual(winding["coverage"], 12 * 7.4 * math.sqrt(2) / (40 * math.pi),
+                               places=6)
+        self.assertAlmostEqual(report["checks"]["ring"]["reach_mm"], 28.9068, places=3)
+
+    def test_finer_tolerance_has_more_points(self):
+        def moves(tolerance):
+            report = json.loads(self.done(*CARRY, "--tolerance", tolerance, "-o", "out",
+                                          "--json").stdout)
+            check = report["checks"]["interpolation"]
+            self.assertLessEqual(check["distance_mm"], float(tolerance))
+            return report["program"]["moves"]
+        self.assertLess(moves("1"), moves("0.2"))
+        self.assertLess(moves("0.2"), moves("0.02"))
+
+    def failed(self, *arguments, check, word):
+        self.done(*CARRY, "-o", "out")
+        result = self.run_program(*CARRY, *arguments, "-o", "out", "--quiet")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn(f"check failed: {check}: ", result.stderr)
+        self.assertIn(word, result.stderr)
+        self.assertFalse((self.folder / "out/program.src").exists(), "the old one is taken away")
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertFalse(report["checks"][check]["ok"])
+        self.assertIsNone(report["program"]["file"])
+        forced = self.run_program(*CARRY, *arguments, "-o", "out", "--quiet", "--force")
+        self.assertEqual(forced.returncode, 1)
+        self.assertIn(f"; FAILED check {check}: ", (self.folder / "out/program.src").read_text())
+
+    def test_failed_checks(self):
+        self.failed("--ring-radius", "28", check="ring", word="28.91")
+        self.failed("--tool", "0,0,1200,0,0,0", check="reach", word=" mm ")
+
+    def test_limit_of_an_axis(self):
+        machine = json.loads((program.SOURCE / "machines/robot_kr16.json").read_text())
+        machine["mandrel_chain"][3].update(min=-80, max=80)
+        self.write("narrow.json", json.dumps(machine))
+        result = self.run_program("carry", "l_frame_axis.csv", "--machine", "narrow.json", "--quiet")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"limits: A\d goes to \S+ deg at \S+ mm of the axis, \S+ deg "
+                                        r"beyond its end")
+
+    def test_body_in_the_way(self):
+        machine = json.loads((program.SOURCE / "machines/robot_kr16.json").read_text())
+        machine["bodies"][1]["to"][2] = 900
+        self.write("tall_stand.json", json.dumps(machine))
+        result = self.run_program("carry", "l_frame_axis.csv", "--machine", "tall_stand.json",
+                                  "--quiet")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"clearance: the frame comes within \S+ mm of body 2 ")
+
+    def refused(self, *arguments, word):
+        result = self.run_program(*arguments, "--quiet")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn(word, result.stderr)
+        self.assertFalse((self.folder / "meshwind-out").exists())
+
+    def test_bad_input(self):
+        self.refused("carry", "none.csv", word="none.csv")
+        self.refused("carry", self.write("a.csv", "x,y\n1,2\n"), word="a.csv:1")
+        self.refused("carry", self.write("b.csv", "x_mm,y_mm,z_mm\n0,0,0\n0,0,x\n"), word="b.csv:3")
+        self.refused(*CARRY, "--speed", "0", word="--speed")
+        self.refused(*CARRY, "--speed", "1e300", word="--speed")
+        self.refused(*CARRY, "--tows", "0", word="--tows")
+        self.refused(*CARRY, "--tolerance", "nan", word="--tolerance")
+        self.refused(*CARRY, "--angle", "90", word="--angle")
+        self.refused(*CARRY, "--tool", "1,2,3", word="--tool")
+        self.refused(*CARRY, "--tool", "1,2,3,4,5,6,7", word="--tool")
+        self.refused(*CARRY, "--name", "7 frames", word="name")
+        self.refused("carry", "l_frame_axis.csv", "--machine", "six_axis.json", word="robot_kr16")
+
+
+if __name__ == "__main__":
+    program.main(sys.modules[__name__])
