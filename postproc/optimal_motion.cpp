@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kChunk = 256;
 
-// But no nearer to the place before than this: the motion would have to be smooth over nothing.
+// Places that a change asks for are no nearer to the one before: the motion would have to be smooth
+// over nothing.
 constexpr double kLeastKnot_mm = 1.0;
 
 // Places kept at either end of a stretch: what the accelerations at its first free one need.
@@ -219,8 +220,9 @@ void move_stretch(const OptimalMotionTask& task, std::size_t first, std::size_t 
     }
     const Spline turn_at(at, turn);
     const Spline length_at(at, length);
-    // Behind the stretch the mandrel may have turned more often than before.
-    const double whole_rad = turn.back() - path[last].turn_rad;
+    // Behind a stretch the mandrel may have turned more often than before.
+    const double before_rad = path[first].turn_rad - task.path[first].turn_rad;
+    const double whole_rad = turn.back() - task.path[last].turn_rad;
     std::size_t k = 0;
     for (std::size_t i = first; i <= last; ++i) {
         EyePoint& point = path[i];
@@ -231,7 +233,7 @@ void move_stretch(const OptimalMotionTask& task, std::size_t first, std::size_t 
             point.turn_rad += turn[k] - knots[k].given.turn_rad;
             continue;
         }
-        point.turn_rad = turn_at(k, point.s_mm);
+        point.turn_rad = before_rad + turn_at(k, point.s_mm);
         if (!task.fixed_lengths) {
             point.free_length_mm =
                 std::max(task.rule.min_mm + task.ahead_mm[i], length_at(k, point.s_mm));

@@ -20,7 +20,7 @@ inline constexpr double kKnot_mm = 12.0;
 struct OptimalMotionTask {
     const Machine& machine;
     const RayQuery& obstacles;
-    const EyePath& path;               ///< a motion that works; at least its stations stay
+    const EyePath& path;               ///< its stations stay; a motion that works, with its turns
     std::span<const double> ahead_mm;  ///< per station: how far ahead the free fibre begins
     const FreeFibreRule& rule;
     std::span<const double> more_mm;  ///< per station: clearance on top of the rule's
