@@ -52,7 +52,8 @@ std::unique_ptr<Dialect> make_dialect(std::string_view name) {
         known += (known.empty() ? "" : ", ") + std::string(word);
     }
     throw InputError("dialect.unknown", "",
-                     "dialect \"" + std::string(name) + "\" is not known; choose one of " + known);
+                     "dialect \"" + std::string(name) + "\" is not known; choose one of " + known +
+                         " (KRL is written by meshwind carry)");
 }
 
 }  // namespace meshwind
