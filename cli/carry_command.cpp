@@ -427,7 +427,7 @@ private:
             }
             const std::size_t into = std::max<std::size_t>(move, 1);
             append(passage_mm_s(into), 4);
-            for (const std::size_t ring : {0, 1}) {
+            for (const std::size_t ring : {0U, 1U}) {
                 append(ring_rad_s(ring, into) / (2.0 * kPi) * kSecondsPerMinute, 5);
             }
             text += '\n';
