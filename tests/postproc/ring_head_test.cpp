@@ -118,7 +118,8 @@ CarryError worst_half_way(double h) {
 }
 
 TEST(LinBetween, LeavesTheHeadByThePublishedExamplesNumbers) {
-    for (const Json& row : test::l_frame_reference()["interpolation"]) {
+    const Json reference = test::l_frame_reference();
+    for (const Json& row : reference["interpolation"]) {
         const CarryError error = worst_half_way(row["h_mm"].get<double>());
         EXPECT_NEAR(error.distance_mm, row["distance_mm"].get<double>(), 1e-6);
         EXPECT_NEAR(deg_from_rad(error.tilt_rad), row["tilt_deg"].get<double>(), 1e-6);
@@ -156,7 +157,8 @@ TEST(LinBetween, TheTwoLawsOfTurningMeetAtTheEndsAndDifferByAnEighthOfTheirProdu
 TEST(LinError, MeasuresTheSameBetweenTheStationsOfATable) {
     const RingHead head = test::l_frame_head();
     const FrameAxis axis = test::l_frame(10.0);
-    for (const Json& row : test::l_frame_reference()["interpolation"]) {
+    const Json reference = test::l_frame_reference();
+    for (const Json& row : reference["interpolation"]) {
         const double h = row["h_mm"].get<double>();
         CarryError worst;
         for (double s = 0.0; s < test::kFrame_mm - 0.5 * h; s += h) {
