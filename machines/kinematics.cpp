@@ -26,15 +26,26 @@ Eigen::Isometry3d pose_of(const MandrelMount& mount) {
     return pose;
 }
 
-Eigen::Isometry3d exponential(const Axis& axis, double value) {
-    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+// Multiplies `pose` by the exponential of one axis. A linear axis leaves the directions as they
+// are.
+void append(Eigen::Isometry3d& pose, const Axis& axis, double value) {
     if (axis.type == AxisType::Linear) {
-        motion.translation() = value * axis.direction;
-        return motion;
+        const Eigen::Vector3d way_mm = value * axis.direction;
+        pose.translate(way_mm);
+        return;
     }
-    motion.linear() = Eigen::AngleAxisd(value, axis.direction).toRotationMatrix();
-    motion.translation() = axis.point_mm - motion.linear() * axis.point_mm;
-    return motion;
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(value, axis.direction).toRotationMatrix();
+    const Eigen::Vector3d shift_mm = axis.point_mm - turn * axis.point_mm;
+    pose.translate(shift_mm).rotate(turn);
+}
+
+Eigen::Isometry3d product_of_exponentials(const std::vector<Axis>& chain,
+                                          std::span<const double> q) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        append(pose, chain[i], q[i]);
+    }
+    return pose;
 }
 
 // +1 or -1 when the axis runs along +-`line`, else 0.
@@ -74,10 +85,7 @@ double nearest_turn(double value, double reference, double period) {
 
 Eigen::Isometry3d base_from_mandrel(const Machine& machine, std::span<const double> q) {
     assert(q.size() == machine.axis_count());
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    for (std::size_t i = 0; i < machine.mandrel_chain.size(); ++i) {
-        pose = pose * exponential(machine.mandrel_chain[i], q[i]);
-    }
+    const Eigen::Isometry3d pose = product_of_exponentials(machine.mandrel_chain, q);
     return machine.mount ? pose * pose_of(*machine.mount) : pose;
 }
 
@@ -89,7 +97,7 @@ Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double>
         if (joint == eye) {
             pose.setIdentity();
         }
-        pose = pose * exponential(machine.axis(joint), q[joint]);
+        append(pose, machine.axis(joint), q[joint]);
         if (machine.axis(joint).letter == link) {
             return pose;
         }
@@ -99,10 +107,9 @@ Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double>
 }
 
 Eigen::Isometry3d base_from_eye(const Machine& machine, std::span<const double> q) {
-    const Eigen::Translation3d eye(machine.eye.position_mm);
-    return machine.eye_chain.empty()
-               ? Eigen::Isometry3d(eye)
-               : base_from_link(machine, q, machine.eye_chain.back().letter) * eye;
+    assert(q.size() == machine.axis_count());
+    return product_of_exponentials(machine.eye_chain, q.subspan(machine.mandrel_chain.size())) *
+           Eigen::Translation3d(machine.eye.position_mm);
 }
 
 std::vector<PlacedAxis> placed_axes(const Machine& machine, std::span<const double> q) {
@@ -115,7 +122,7 @@ std::vector<PlacedAxis> placed_axes(const Machine& machine, std::span<const doub
         }
         const Axis& axis = machine.axis(joint);
         placed.push_back({axis.type, pose.linear() * axis.direction, pose * axis.point_mm});
-        pose = pose * exponential(axis, q[joint]);
+        append(pose, axis, q[joint]);
     }
     return placed;
 }
@@ -135,7 +142,7 @@ Eigen::Matrix3Xd eye_moves(const Machine& machine, std::span<const double> q) {
             const Eigen::Vector3d arm_mm = eye_mm - pose * axis.point_mm;
             moves.col(joint) =
                 sign * (axis.type == AxisType::Linear ? direction : direction.cross(arm_mm));
-            pose = pose * exponential(axis, q[static_cast<std::size_t>(joint)]);
+            append(pose, axis, q[static_cast<std::size_t>(joint)]);
             ++joint;
         }
     };
