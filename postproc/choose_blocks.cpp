@@ -57,6 +57,12 @@ struct Place {
     double share = 0.0;
 };
 
+// Where the fibre touches down.
+struct Landing {
+    Place place;
+    FibreFrame at;
+};
+
 double angle_between_lines(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
@@ -87,7 +93,7 @@ public:
         Deviation worst;
         worst.offset_mm = offset_mm;
         worst.tilt_rad = -offset_mm / path_[first].free_length_mm;
-        Place landing{first, 0.0};
+        Landing landing{{first, 0.0}, fibre_at(path_[first])};
         Place nearest{first, 0.0};
         Payout before = payout(nearest, last);
         std::vector<double> q(task_.joints.axis_count);
@@ -169,33 +175,34 @@ private:
     }
 
     // Moves on to the landing point under the eye; stays where the eye is above the tangent plane.
-    FibreFrame advance(const Vector3d& eye_mm, std::size_t last, Place& landing) const {
-        while (landing.step < last && height(landing.step + 1, eye_mm) <= 0.0) {
-            landing = {landing.step + 1, 0.0};
+    void advance(const Vector3d& eye_mm, std::size_t last, Landing& landing) const {
+        Place& place = landing.place;
+        while (place.step < last && height(place.step + 1, eye_mm) <= 0.0) {
+            place = {place.step + 1, 0.0};
+            landing.at = fibre_at(path_[place.step]);
         }
-        FibreFrame at = frame(landing, last);
-        double low = height(at, eye_mm);
-        if (landing.step == last || low >= 0.0) {
-            return at;
+        double low = height(landing.at, eye_mm);
+        if (place.step == last || low >= 0.0) {
+            return;
         }
-        double left = landing.share;
+        double left = place.share;
         double right = 1.0;
-        double high = height(landing.step + 1, eye_mm);
+        double high = height(place.step + 1, eye_mm);
         for (int i = 0; i < kSecants; ++i) {
-            landing.share = left + (right - left) * low / (low - high);
-            at = frame(landing, last);
-            const double middle = height(at, eye_mm);
-            (middle < 0.0 ? left : right) = landing.share;
+            place.share = left + (right - left) * low / (low - high);
+            landing.at = fibre_between(path_[place.step], path_[place.step + 1], place.share);
+            const double middle = height(landing.at, eye_mm);
+            (middle < 0.0 ? left : right) = place.share;
             (middle < 0.0 ? low : high) = middle;
         }
-        return at;
     }
 
     // Lays the fibre up to the landing point under the eye.
-    void lay(const Vector3d& eye_mm, std::size_t last, Place& landing, Deviation& worst) const {
-        const double before_mm = payout(landing, last).laid_mm;
-        const FibreFrame at = advance(eye_mm, last, landing);
-        const double laid_mm = payout(landing, last).laid_mm - before_mm;
+    void lay(const Vector3d& eye_mm, std::size_t last, Landing& landing, Deviation& worst) const {
+        const double before_mm = payout(landing.place, last).laid_mm;
+        advance(eye_mm, last, landing);
+        const FibreFrame& at = landing.at;
+        const double laid_mm = payout(landing.place, last).laid_mm - before_mm;
         const Vector3d free = eye_mm - at.landing_mm;
         const double pull = at.binormal.dot(free);
         const double length = at.tangent.dot(free);
@@ -207,7 +214,7 @@ private:
             worst.turn_per_mm = std::max(worst.turn_per_mm, turn);
             if (!task_.turn_room_per_mm.empty()) {
                 worst.turn_share =
-                    std::max(worst.turn_share, turn / task_.turn_room_per_mm[landing.step]);
+                    std::max(worst.turn_share, turn / task_.turn_room_per_mm[landing.place.step]);
             }
             worst.offset_mm = pull + (worst.offset_mm - pull) * std::exp(-laid_mm / length);
         } else if (height(at, eye_mm) > 0.0 && std::abs(pull) > std::abs(worst.offset_mm)) {

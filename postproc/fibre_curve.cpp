@@ -17,22 +17,22 @@ FibreFrame fibre_between(const EyePoint& from, const EyePoint& to, double share)
     const double length = chord.norm();
     const double rest = 1.0 - share;
     FibreFrame frame;
+    Eigen::Vector3d along;
     if (length < kSamePlace_mm) {
         frame.landing_mm = from.landing_mm + share * chord;
-        frame.tangent = (rest * from.tangent + share * to.tangent).normalized();
+        along = rest * from.tangent + share * to.tangent;
     } else {
         // Hermite's cubic: the chord, and what the tangents at both ends turn away from it.
         const Eigen::Vector3d start = length * from.tangent - chord;
         const Eigen::Vector3d end = length * to.tangent - chord;
         frame.landing_mm =
             from.landing_mm + share * chord + share * rest * (rest * start - share * end);
-        frame.tangent =
-            (chord + rest * (rest - 2.0 * share) * start + share * (share - 2.0 * rest) * end)
-                .normalized();
+        along = chord + rest * (rest - 2.0 * share) * start + share * (share - 2.0 * rest) * end;
     }
     const Eigen::Vector3d normal =
         rest * from.tangent.cross(from.binormal) + share * to.tangent.cross(to.binormal);
-    frame.binormal = normal.cross(frame.tangent).normalized();
+    frame.tangent = along.normalized();
+    frame.binormal = normal.cross(along).normalized();
     frame.normal = frame.tangent.cross(frame.binormal);
     frame.free_length_mm = rest * from.free_length_mm + share * to.free_length_mm;
     return frame;
