@@ -235,6 +235,23 @@ std::string percent(double share) {
     return fixed(100.0 * share, 2) + " %";
 }
 
+// Where the motion of least time is asked for and could not be had.
+void print_first_motions(std::ostream& out, const WindResult& result) {
+    const std::vector<FibreProgram>& programs = result.programs;
+    if (!wants_least_time(result.setup)) {
+        return;
+    }
+    for (std::size_t fibre = 0; fibre < programs.size(); ++fibre) {
+        if (!programs[fibre].made.optimal) {
+            const std::string which =
+                programs.size() > 1 ? " of fibre " + std::to_string(fibre + 1) : "";
+            out << "  motion" << which
+                << ": by the central angle; none of least time was found that keeps clear and lays "
+                   "the fibre as planned\n";
+        }
+    }
+}
+
 // Bare wall by reason, the largest first, and what looser rules would reach.
 void print_bare_wall(std::ostream& out, const WindResult& result) {
     std::map<std::string, double> area_mm2;
@@ -309,8 +326,9 @@ void print_summary(std::ostream& out, const WindResult& result,
         out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
             << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
             << " m of fibre, " << blocks << " blocks, " << fixed(duration_s / 60.0, 1) << " min ("
-            << fixed(least_s / 60.0, 1) << " at the fibre's full speed)\n"
-            << "covered " << percent(plan.coverage.fraction) << " of the wall"
+            << fixed(least_s / 60.0, 1) << " at the fibre's full speed)\n";
+        print_first_motions(out, result);
+        out << "covered " << percent(plan.coverage.fraction) << " of the wall"
             << (result.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")")
             << ", " << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
             << plan.coverage.max_layers << '\n';

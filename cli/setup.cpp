@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/text_number.h"
 #include "core/units.h"
+#include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
 #include "mesh/extension.h"
 #include "mesh/import.h"
@@ -150,6 +151,11 @@ Setup read_setup(const SetupRequest& request) {
     setup.wall = std::make_unique<LaydownWall>(
         extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
     return setup;
+}
+
+bool wants_least_time(const Setup& setup) {
+    return setup.job.redundancy == RedundancyRule::Optimal &&
+           machine_class(setup.machine).free_turn;
 }
 
 Verification verify_program(const Setup& setup, const BlockList& program,

@@ -36,6 +36,10 @@ struct Setup {
 /// \throws InputError, IoError for input that cannot be used; machine and job are read first
 [[nodiscard]] Setup read_setup(const SetupRequest& request);
 
+/// Whether the motion of least time is to be found: the job asks for it, and the machine leaves the
+/// turn of the mandrel free.
+[[nodiscard]] bool wants_least_time(const Setup& setup);
+
 /// Added to the clearance where free lengths are chosen: between the ends of a block the axes cut
 /// the corner of the eye's curve by up to this much, and the clearance must hold there as well.
 inline constexpr double kBetweenBlocks_mm = 0.5;

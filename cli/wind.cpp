@@ -218,8 +218,7 @@ private:
     void wind_fibre(std::span<const Piece> pieces, bool in_spite, FibreProgram& program) {
         PieceProgramOptions options;
         options.in_spite = in_spite;
-        options.optimal = setup_.job.redundancy == RedundancyRule::Optimal &&
-                          machine_class(setup_.machine).free_turn;
+        options.optimal = wants_least_time(setup_);
         options.through_text = [&](const PieceProgram& made) {
             return setup_.dialect->read(text_of(made), program.file, setup_.machine);
         };

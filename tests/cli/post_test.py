@@ -233,6 +233,7 @@ class Post(program.ProgramTest):
         self.assertIn("check failed: limits", result.stderr)
         result = self.post(points, mandrel, job={"eye": {"rule": "cylinder", "radius": 40}}, code=1)
         self.assertIn("not within the cylinder of 40.00 mm", result.stderr)
+        self.assertIn("\n  motion: by the central angle; none of least time", result.stdout)
         self.assertFalse((self.folder / "out" / "program.ngc").exists())
 
     def test_every_redundancy(self):
