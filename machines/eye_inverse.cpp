@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include <Eigen/SVD>
@@ -13,6 +12,7 @@
 #include "core/units.h"
 #include "machines/arm_inverse.h"
 #include "machines/damped_least_squares.h"
+#include "machines/drawn_starts.h"
 
 namespace meshwind {
 namespace {
@@ -26,10 +26,8 @@ constexpr double kGoal_rad = 1e-11;
 constexpr double kReached_mm = 1e-9;
 constexpr double kReached_rad = 1e-9;
 constexpr int kMostIterations = 200;
-// Further starts, drawn with a fixed seed, where the previous joints lead to no solution.
+// Further starts where the previous joints lead to no solution.
 constexpr int kStarts = 12;
-constexpr unsigned kStartSeed = 1;
-constexpr double kDrawn_rad = kPi;
 constexpr double kDrawn_mm = 1000.0;
 constexpr double kStep_rad = 0.5;
 constexpr double kStep_mm = 500.0;
@@ -289,25 +287,12 @@ WristState NumericEyeInverse::solve(const EyeTarget& target, double turn_rad,
                                     std::span<double> joints) const {
     const std::vector<double> before(previous.begin(), previous.end());
     const Task task{target, turn_rad, before};
-    std::mt19937 engine(kStartSeed);
-    const auto drawn = [&] {
-        std::vector<double> start = before;
-        for (std::size_t j = first_free_; j < start.size(); ++j) {
-            const Axis& axis = machine_.axis(j);
-            const double range = axis.type == AxisType::Rotary ? kDrawn_rad : kDrawn_mm;
-            const double low = std::isfinite(axis.min) ? axis.min : start[j] - range;
-            const double high = std::isfinite(axis.max) ? axis.max : start[j] + range;
-            const double share =
-                static_cast<double>(engine()) / static_cast<double>(std::mt19937::max());
-            start[j] = low + share * (high - low);
-        }
-        return start;
-    };
+    DrawnStarts starts(machine_, {.first = first_free_, .endless_mm = kDrawn_mm});
     const std::size_t free = machine_.axis_count() - first_free_;
     constexpr std::size_t kNeeded = 5;
     Found best = search(task, before, true, true);
     for (int k = 1; k < kStarts && free >= kNeeded && !best.reached(); ++k) {
-        Found other = search(task, drawn(), true, true);
+        Found other = search(task, starts.next(before), true, true);
         if (other.better_than(best)) {
             best = std::move(other);
         }

@@ -4,12 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include <Eigen/SVD>
 
 #include "core/units.h"
 #include "machines/damped_least_squares.h"
+#include "machines/drawn_starts.h"
 #include "machines/kinematics.h"
 
 namespace meshwind {
@@ -21,14 +21,12 @@ using Eigen::Vector3d;
 // Iterations end a hundred times nearer than what counts as reached.
 constexpr double kGoalShare = 0.01;
 constexpr int kMostIterations = 200;
-// Further starts when the previous joints lead nowhere; chosen by a fixed seed.
+// Further starts when the previous joints lead nowhere.
 constexpr int kStarts = 40;
-constexpr unsigned kStartSeed = 1;
 // Largest step of one iteration, so that a search from the previous joints stays on its side.
 constexpr double kStep_rad = 0.5;
 constexpr double kStep_mm = 500.0;
-// Where an axis has no end, further starts are drawn from this.
-constexpr double kDrawn_rad = kPi;
+// Where a linear axis has no end, further starts are drawn from this.
 constexpr double kDrawn_mm = 2000.0;
 // Rotations count at least like this far from their centre, so that a chain of linear axes alone
 // has a length.
@@ -199,33 +197,20 @@ PoseInverse::Choice PoseInverse::solve_arm(const Isometry3d& pose,
 PoseInverse::Choice PoseInverse::solve_numerically(const Isometry3d& pose,
                                                    std::span<const double> previous) const {
     const std::size_t axes = machine_.mandrel_chain.size();
-    std::mt19937 engine(kStartSeed);
-    const auto start_of = [&](int k) {
-        std::vector<double> start(previous.begin(),
-                                  previous.begin() + static_cast<std::ptrdiff_t>(axes));
-        for (std::size_t j = 0; j < axes && k > 0; ++j) {
-            const Axis& axis = machine_.mandrel_chain[j];
-            const double drawn = axis.type == AxisType::Rotary ? kDrawn_rad : kDrawn_mm;
-            const double low = std::isfinite(axis.min) ? axis.min : previous[j] - drawn;
-            const double high = std::isfinite(axis.max) ? axis.max : previous[j] + drawn;
-            const double share =
-                static_cast<double>(engine()) / static_cast<double>(std::mt19937::max());
-            start[j] = low + share * (high - low);
-        }
-        return start;
-    };
-    Choice best = refined(pose, previous, start_of(0), true);
+    const std::vector<double> at_hand(previous.begin(),
+                                      previous.begin() + static_cast<std::ptrdiff_t>(axes));
+    DrawnStarts starts(machine_, {.endless_mm = kDrawn_mm});
+    Choice best = refined(pose, previous, at_hand, true);
     for (int k = 1; k < kStarts && !best.good(); ++k) {
-        Choice choice = refined(pose, previous, start_of(k), true);
+        Choice choice = refined(pose, previous, starts.next(at_hand), true);
         if (choice.better_than(best, length_mm_)) {
             best = std::move(choice);
         }
     }
     if (!best.good()) {
-        Choice beyond = refined(pose, previous, best.joints.empty() ? start_of(0) : [&] {
-            return std::vector<double>(best.joints.begin(),
-                                       best.joints.begin() + static_cast<std::ptrdiff_t>(axes));
-        }(), false);
+        Choice beyond = refined(
+            pose, previous,
+            {best.joints.begin(), best.joints.begin() + static_cast<std::ptrdiff_t>(axes)}, false);
         if (beyond.reached()) {
             best = std::move(beyond);
         }
