@@ -58,6 +58,11 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         }
         return next;
     };
+    // Over a feature edge the fibre swings on the spot: any direction may be found there.
+    const auto swings = [&](std::size_t first, std::size_t end, const Vector3d& at) {
+        return end - first > 1 &&
+               (planned[first].position_mm - at).norm() <= tolerance.deviation_mm;
+    };
     for (std::size_t i = 0; i < laid.path.size(); ++i) {
         const PathPoint& station = laid.path[i];
         std::size_t next = next_of(j);
@@ -76,8 +81,11 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         const Matched match = between(planned[next - 1], planned[next], station.position_mm);
         const Vector3d across = match.normal.cross(match.tangent);
         const double sideways = std::abs((station.position_mm - match.position_mm).dot(across));
-        const double angle =
-            std::abs(std::atan2(station.tangent.dot(across), station.tangent.dot(match.tangent)));
+        const bool on_the_spot = swings(j, next, station.position_mm) ||
+                                 swings(next, next_of(next), station.position_mm);
+        const double angle = on_the_spot ? 0.0
+                                         : std::abs(std::atan2(station.tangent.dot(across),
+                                                               station.tangent.dot(match.tangent)));
         if (sideways > deviation.max_mm) {
             deviation.max_mm = sideways;
             deviation.max_at = i;

@@ -200,11 +200,31 @@ TEST(Compare, TakesTheKinkOfAJointAsPlanned) {
     };
     const Deviation off = compare(laid(kinked(1.25, 32)), planned(kinked(4.0, 10)), kTolerance);
     EXPECT_LT(off.max_mm, kCubic_mm);
-    // At the joint itself the laid fibre has both directions and the plan one.
-    EXPECT_LE(off.wrong.size(), 1U);
+    EXPECT_TRUE(off.wrong.empty());
     const LaidPath turned = laid(kinked(1.25, 32));
     const Deviation without = compare(turned, planned(straight(kHeading_rad, 4.0, 21)), kTolerance);
     EXPECT_GE(without.wrong.size(), 30U);
+}
+
+// Over an edge the direction swings on the spot, and nowhere else.
+TEST(Compare, AnyDirectionOnTheSpotOfAKinkAlone) {
+    std::vector<Flat> plan = straight(kHeading_rad, 4.0, 11);
+    const Flat edge = plan.back();
+    for (Flat flat : straight(kHeading_rad + 0.5, 4.0, 11)) {
+        flat.x_mm += edge.x_mm;
+        flat.y_mm += edge.y_mm;
+        plan.push_back(flat);
+    }
+    const auto wrong = [&](double before_mm) {
+        const std::vector<Flat> line = {
+            plan.front(),
+            {edge.x_mm - before_mm * std::cos(kHeading_rad),
+             edge.y_mm - before_mm * std::sin(kHeading_rad), kHeading_rad + 0.25},
+            plan.back()};
+        return compare(laid(line), planned(plan), kTolerance).wrong;
+    };
+    EXPECT_TRUE(wrong(0.9 * kTolerance.deviation_mm).empty());
+    EXPECT_EQ(wrong(1.1 * kTolerance.deviation_mm), (std::vector<std::size_t>{1}));
 }
 
 // Both ways are 10 mm apart: each laid station belongs to its own.
