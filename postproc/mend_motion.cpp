@@ -10,6 +10,9 @@ namespace {
 
 // Clearance that is added each time, so far to either side.
 constexpr double kMoreClearance_mm = 1.0;
+// And from the start: what is clear is looked up at points a few mm apart. Less makes more places
+// to mend, more a longer way round; on tees both cost time.
+constexpr double kFirstClearance_mm = 2.0;
 constexpr double kNear_mm = 20.0;
 
 // Fibre to either side whose motion may change: in it the axes come from their speed to rest and
@@ -38,7 +41,7 @@ MotionImprover::MotionImprover(const Machine& machine, const RayQuery& obstacles
       safe_(std::move(safe)),
       path_(safe_),
       ahead_mm_(std::move(ahead_mm)),
-      more_mm_(safe_.size(), 0.0),
+      more_mm_(safe_.size(), kFirstClearance_mm),
       tries_(safe_.size(), 0),
       given_up_(safe_.size(), 0) {}
 
@@ -71,20 +74,37 @@ void MotionImprover::mark(std::size_t station, double reach_mm, std::vector<char
     }
 }
 
+bool MotionImprover::mark_back(std::size_t station, double reach_mm,
+                               std::vector<char>& marks) const {
+    const double path_mm = path_.back().s_mm - path_.front().s_mm;
+    for (double reach = reach_mm; reach < 2.0 * path_mm; reach *= 2.0) {
+        std::vector<char> more(path_.size(), 0);
+        mark(station, reach, more);
+        bool any = false;
+        for (std::size_t i = 0; i < path_.size(); ++i) {
+            any = any || (more[i] != 0 && given_up_[i] == 0);
+            marks[i] = static_cast<char>(marks[i] | more[i]);
+        }
+        if (any) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool MotionImprover::mend(std::span<const std::size_t> stations) {
     std::vector<char> near(path_.size(), 0);
     std::vector<char> free(path_.size(), 0);
     std::vector<char> back(path_.size(), 0);
     bool any_back = false;
     for (const std::size_t station : stations) {
-        if (given_up_[station] != 0) {
-            return false;
-        }
         mark(station, kNear_mm, near);
         mark(station, kMendReach_mm, free);
-        if (tries_[station] >= kMendings) {
-            mark(station, kNear_mm, back);
+        if (given_up_[station] != 0 || tries_[station] >= kMendings) {
             any_back = true;
+            if (!mark_back(station, kNear_mm, back)) {
+                return false;
+            }
         }
     }
     for (std::size_t i = 0; i < path_.size(); ++i) {
@@ -106,10 +126,9 @@ bool MotionImprover::mend(std::span<const std::size_t> stations) {
 bool MotionImprover::give_up(std::span<const std::size_t> stations) {
     std::vector<char> back(path_.size(), 0);
     for (const std::size_t station : stations) {
-        if (given_up_[station] != 0) {
+        if (!mark_back(station, kPulledReach_mm, back)) {
             return false;
         }
-        mark(station, kPulledReach_mm, back);
     }
     std::vector<char> changed(path_.size(), 0);
     put_back(back, changed);

@@ -24,12 +24,14 @@ public:
     void choose();
 
     /// Chooses anew about stations at which a check failed, with more clearance; where that has
-    /// been tried kMendings times already, the motion that it began with is put back.
-    /// \param stations in any order \return false where that has been put back already
+    /// been tried kMendings times already, the motion that it began with is put back, over twice as
+    /// much fibre where that did not help.
+    /// \param stations in any order \return false where all of it has been put back already
     bool mend(std::span<const std::size_t> stations);
 
     /// Puts the motion that it began with back about stations at which fibre is not laid as it
-    /// should be: more clearance is no cure. \return false where that has been done already
+    /// should be: more clearance is no cure. \return false where all of it has been put back
+    /// already
     bool give_up(std::span<const std::size_t> stations);
 
     [[nodiscard]] const EyePath& path() const { return path_; }
@@ -41,6 +43,8 @@ public:
 
 private:
     void optimise(std::span<const char> free, bool mending);
+    /// Marks what is put back about a station. False where all of the path was already.
+    bool mark_back(std::size_t station, double reach_mm, std::vector<char>& marks) const;
     void mark(std::size_t station, double reach_mm, std::vector<char>& marks) const;
     void put_back(const std::vector<char>& marks, std::vector<char>& changed);
     void note_changes(const std::vector<char>& changed);
