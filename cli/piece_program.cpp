@@ -53,6 +53,9 @@ constexpr int kMotionRounds = 12;
 // And so many times after a program has been wound again.
 constexpr int kMendedPrograms = 3;
 
+// A motion of least time uses the axes to the full, so its blocks follow it at least that closely.
+constexpr double kMostBlock_mm = 2.0 * kKnot_mm;
+
 // From steps to the blocks that end where they do: a controller may need two for one.
 void renumber(std::vector<BindingLimit>& binding, const BlockList& steps, const BlockList& blocks) {
     std::vector<std::size_t> block_of;
@@ -113,6 +116,7 @@ public:
                 return std::move(found_);
             }
             share_.assign(path_.size(), 1.0);
+            most_mm_ = improver ? kMostBlock_mm : std::numeric_limits<double>::infinity();
             make_blocks();
             done("post");
             wrong = wind_again(options, improver ? 0 : kRoundsInVain);
@@ -166,6 +170,7 @@ private:
         tolerance.sideways_mm = kChoiceShare * setup_.job.tolerance.laydown_mm;
         tolerance.angle_rad = kChoiceShare * rad_from_deg(setup_.job.tolerance.laydown_angle_deg);
         tolerance.eye_mm = kMostBetweenBlocks_mm;
+        tolerance.most_mm = most_mm_;
         return tolerance;
     }
 
@@ -438,6 +443,7 @@ private:
     JointPath joints_;             // along that path
     std::vector<double> room_mm_;  // per point: how far the eye may be off
     std::vector<double> share_;    // per point: of the tolerance, for blocks
+    double most_mm_ = std::numeric_limits<double>::infinity();  // fibre of a block
 };
 
 }  // namespace

@@ -348,6 +348,21 @@ std::vector<std::size_t> fixed_ends(const BlockTask& task) {
     return ends;
 }
 
+// The furthest point at which a block from `first` may end on the way to `end`.
+std::size_t furthest(const EyePath& path, std::size_t first, std::size_t end, double most_mm) {
+    const double left_mm = path[end].s_mm - path[first].s_mm;
+    if (left_mm <= most_mm) {
+        return end;
+    }
+    const double even_mm = left_mm / std::ceil(left_mm / most_mm);
+    const auto beyond = std::partition_point(
+        path.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+        path.begin() + static_cast<std::ptrdiff_t>(end), [&](const EyePoint& point) {
+            return point.s_mm - path[first].s_mm <= even_mm + kLengthRounding_mm;
+        });
+    return std::max(static_cast<std::size_t>(beyond - path.begin()) - 1, first + 1);
+}
+
 void add_block(BlockChoice& choice, const FoundBlock& block, bool within) {
     choice.ends.push_back(block.last);
     choice.fibre_mm.push_back(block.worst.fibre_mm);
@@ -417,7 +432,8 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
     for (std::size_t i = 1; i < fixed.size(); ++i) {
         while (choice.ends.back() < fixed[i]) {
             const std::size_t first = choice.ends.back();
-            const FoundBlock block = longest_block(check, first, fixed[i], length, offset_mm);
+            const std::size_t limit = furthest(task.path, first, fixed[i], tolerance.most_mm);
+            const FoundBlock block = longest_block(check, first, limit, length, offset_mm);
             add_block(choice, block, check.within(block.worst, offset_mm));
             offset_mm = block.worst.offset_mm;
             length = block.last - first;

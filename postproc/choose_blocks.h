@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct BlockTolerance {
     double angle_rad = 0.0042;   ///< > 0; laid fibre against the plan
     double eye_mm = 2.0;         ///< > 0; eye off the curve of the planned eye
     double twist_rad = 0.01745;  ///< > 0; roller off the binormal, beyond that of the dense points
+    /// > 0; fibre that it may lay. Pieces longer than this are cut evenly where nothing else asks
+    /// for an end, so that none is left too short for its ramps.
+    double most_mm = std::numeric_limits<double>::infinity();
 };
 
 /// A dense path with what the choice has to heed.

@@ -128,6 +128,18 @@ TEST(ChooseBlocks, HelixOnACylinderIsOneBlock) {
     EXPECT_EQ(result.choice.beyond, 0U);
 }
 
+TEST(ChooseBlocks, LongestBlockCutsEvenly) {
+    const Machine machine = six_axis();
+    BlockTolerance tolerance = kLoose;
+    tolerance.most_mm = 300.0;  // of 9,998 mm, in steps of 2
+    const Chosen result =
+        chosen(machine, test::helix(70.0, rad_from_deg(45.0), 200.0, 2.0, 5000), tolerance);
+    EXPECT_EQ(blocks(result), 34U);
+    for (std::size_t k = 1; k < result.choice.ends.size(); ++k) {
+        EXPECT_NEAR(result.choice.fibre_mm[k], 9998.0 / 34.0, 2.0);
+    }
+}
+
 TEST(ChooseBlocks, EveryStrokeIsOneBlock) {
     const Machine machine = six_axis();
     const Chosen result = chosen(machine, test::strokes(70.0, 200.0, 2.0, 400.0, 4), {});
