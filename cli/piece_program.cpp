@@ -53,6 +53,10 @@ constexpr int kMotionRounds = 12;
 // And so many times after a program has been wound again.
 constexpr int kMendedPrograms = 3;
 
+// The first motion is kept where it takes hardly longer: its blocks are fewer, and repeat where the
+// fibre does.
+constexpr double kWorthwhile = 0.99;
+
 // A motion of least time uses the axes to the full, so its blocks follow it at least that closely.
 constexpr double kMostBlock_mm = 2.0 * kKnot_mm;
 
@@ -100,7 +104,13 @@ public:
         // Where a strict rule has no eye, no motion makes it one.
         const bool broken_rule =
             setup_.job.eye.rule != EyeRule::Adaptive && !found_.eyes.blocked.empty();
+        double first_s = std::numeric_limits<double>::infinity();
         if (options.optimal && !broken_rule) {
+            if (found_.refused.empty()) {
+                share_.assign(path_.size(), 1.0);
+                make_blocks();
+                first_s = found_.duration_s;
+            }
             improver.emplace(improver_of(found_.eyes));
             improver->choose();
             if (!make_clear(*improver, rule)) {
@@ -108,6 +118,7 @@ public:
             }
         }
         std::map<std::size_t, Rejection> wrong;
+        std::optional<PieceProgram> hardly_faster;
         for (int mendings = 0;; ++mendings) {
             if (options.optimal && !improver) {
                 leave_room(keep_clear(rule, options.in_spite));
@@ -121,6 +132,11 @@ public:
             done("post");
             wrong = wind_again(options, improver ? 0 : kRoundsInVain);
             done("verify");
+            if (wrong.empty() && improver && found_.duration_s > kWorthwhile * first_s) {
+                hardly_faster = found_;
+                improver.reset();
+                continue;
+            }
             if (wrong.empty() || !improver) {
                 break;
             }
@@ -130,8 +146,12 @@ public:
                 improver.reset();
             }
         }
+        if (hardly_faster && !wrong.empty()) {
+            found_ = std::move(*hardly_faster);
+            wrong.clear();
+        }
         found_.refused.merge(wrong);
-        found_.optimal = improver.has_value();
+        found_.optimal = improver || hardly_faster;
         return std::move(found_);
     }
 

@@ -25,7 +25,7 @@ struct PieceProgram {
     BlockChoice choice;
     BlockList blocks;      ///< what the program runs, one by one
     ProgramLayout layout;  ///< how they are written
-    bool optimal = false;  ///< free lengths and turns are those of the least time
+    bool optimal = false;  ///< no other free lengths and turns that are known save 1 % of the time
     double duration_s = 0.0;
     double least_s = 0.0;  ///< were the fibre at its full speed all along
     std::vector<BindingLimit> binding;
