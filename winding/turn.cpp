@@ -35,11 +35,6 @@ double common_run_mm(const Rim& rim, const RimCrossing& a, const RimCrossing& b,
     return std::min(easy, usable_run_mm(rule));
 }
 
-// Angle wound while turning from beta to hoop: (1 / slip) ln cot(beta / 2).
-double turn_angle_rad(double angle_rad, double slip) {
-    return -std::log(std::tan(0.5 * angle_rad)) / slip;
-}
-
 double slip_for(const Rim& rim, double angle_rad, double run_mm) {
     return rim.radius_mm * (1.0 / std::sin(angle_rad) - 1.0) / run_mm;
 }
@@ -143,6 +138,10 @@ RimCrossing crossing_at(const Rim& rim, const Vector3d& position_mm, const Vecto
 
 double turn_run_mm(double radius_mm, double angle_rad, double slip) {
     return radius_mm / slip * (1.0 / std::sin(angle_rad) - 1.0);
+}
+
+double turn_angle_rad(double angle_rad, double slip) {
+    return -std::log(std::tan(0.5 * angle_rad)) / slip;
 }
 
 bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule) {

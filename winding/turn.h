@@ -36,6 +36,10 @@ struct TurnRule {
 /// docs/winding.md.
 [[nodiscard]] double turn_run_mm(double radius_mm, double angle_rad, double slip);
 
+/// Angle around the axis that it winds meanwhile: (1 / slip) ln cot(beta / 2).
+/// Source: andrianov_2022_machine_path, eq. (4). \pre 0 < angle_rad < pi, slip > 0
+[[nodiscard]] double turn_angle_rad(double angle_rad, double slip);
+
 /// True when the fibre can be turned by friction within the extension.
 [[nodiscard]] bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule);
 
