@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "along_path.h"
 #include "mesh/make_kinds.h"
 #include "reference.h"
 
@@ -16,45 +17,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Json = nlohmann::json;
+using test::between;
+using test::Here;
+using test::turn_between;
+using test::zero_between;
 
 Json reference(const std::string& name) {
     std::ifstream in(std::string(MESHWIND_SOURCE_DIR) + "/data/reference/" + name);
     return Json::parse(in);
-}
-
-// A path between its stations: the cubic through both positions with both tangents, whose error is
-// of fourth order in their distance.
-struct Here {
-    Vector3d position_mm, tangent;
-};
-
-Here between(const PathPoint& a, const PathPoint& b, double share) {
-    const double s = share;
-    const double r = 1.0 - s;
-    const double way = b.s_mm - a.s_mm;
-    const Vector3d chord = b.position_mm - a.position_mm;
-    const Vector3d p = a.position_mm + (3.0 - 2.0 * s) * s * s * chord +
-                       way * s * r * (r * a.tangent - s * b.tangent);
-    const Vector3d t = 6.0 * s * r / way * chord + r * (1.0 - 3.0 * s) * a.tangent -
-                       s * (2.0 - 3.0 * s) * b.tangent;
-    return {p, t.normalized()};
-}
-
-// Share of the way between two places at which `value` is zero, by halving.
-template <class Value>
-double zero_between(const PathPoint& a, const PathPoint& b, const Value& value) {
-    double low = 0.0;
-    double high = 1.0;
-    for (int i = 0; i < 50; ++i) {
-        const double middle = 0.5 * (low + high);
-        ((value(between(a, b, middle)) < 0.0) == (value(between(a, b, 0.0)) < 0.0) ? low : high) =
-            middle;
-    }
-    return 0.5 * (low + high);
-}
-
-double turn_between(const Vector2d& a, const Vector2d& b) {
-    return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
 }
 
 // The elbow around z, from theta = -60 to 60 deg; the mesh begins at theta = -60 deg.
