@@ -141,7 +141,57 @@ private:
         }
         const bool start = first == 0 || gap > kMuchLonger * length(first - 1, first);
         const bool end = last + 1 == places_.size() || gap > kMuchLonger * length(last, last + 1);
-        return start && end;
+        return (start && end) || (bulges_too_much(first) && !goes_on_bending(first));
+    }
+
+    // How the bands of facets before and behind a place turn, > 0 where convex.
+    [[nodiscard]] double turn_rad(std::size_t place) const {
+        const Vector2d before = places_[place].at_mm - places_[place - 1].at_mm;
+        const Vector2d behind = places_[place + 1].at_mm - places_[place].at_mm;
+        return std::atan2(before.x() * behind.y() - before.y() * behind.x(), before.dot(behind));
+    }
+
+    [[nodiscard]] double bend_per_mm(std::size_t place) const {
+        return 2.0 * turn_rad(place) / length(place - 1, place + 1);
+    }
+
+    [[nodiscard]] bool is_inside(std::size_t place) const {
+        return place > 0 && place + 1 < places_.size();
+    }
+
+    // Whether a curve through the rings would stand off the band behind `first` by much more than
+    // the wall stands off its facets about the axis: no export is so much coarser one way.
+    [[nodiscard]] bool bulges_too_much(std::size_t first) const {
+        constexpr double kMuchMore = 5.0;
+        double round = 0.0;
+        for (const ProfilePlace& place : places_) {
+            if (place.at_mm.x() > place.spacing_mm) {
+                round = std::max(round, place.spacing_mm * place.spacing_mm / place.at_mm.x() / 8);
+            }
+        }
+        double turn = 0.0;
+        for (const std::size_t place : {first, first + 1}) {
+            turn = is_inside(place) ? std::max(turn, std::abs(turn_rad(place))) : turn;
+        }
+        return turn * length(first, first + 1) / 8.0 > kMuchMore * round;
+    }
+
+    // Whether the profile bends alike at both ends of the band behind `first`, or at the one that
+    // is inside and the next: a curve does so.
+    [[nodiscard]] bool goes_on_bending(std::size_t first) const {
+        constexpr double kAlike = 4.0;
+        std::size_t a = first;
+        std::size_t b = first + 1;
+        if (!is_inside(a)) {
+            a = first + 2;
+        } else if (!is_inside(b)) {
+            b = first - 1;
+        }
+        if (!is_inside(a) || !is_inside(b)) {
+            return false;
+        }
+        const double share = bend_per_mm(a) / bend_per_mm(b);
+        return share > 1.0 / kAlike && share < kAlike;
     }
 
     // Whether the curve beyond the stretch leaves the line so clearly that the stretch, bent like

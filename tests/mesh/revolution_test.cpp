@@ -206,6 +206,42 @@ TEST(FindRevolution, SteppedPipeWithoutInnerVertices) {
     EXPECT_LT(body.residual_mm, 1e-9);
 }
 
+// The same with angles of 5 to 27 degrees, which are no feature edges.
+TEST(FindRevolution, ShallowConesWithoutInnerVertices) {
+    const std::vector<Eigen::Vector2d> profile = {{30.0, 0.0},   {30.0, 60.0},  {36.0, 130.0},
+                                                  {36.0, 200.0}, {26.0, 220.0}, {26.0, 300.0}};
+    const auto finding = found(test::revolve(profile, 90));
+    ASSERT_TRUE(finding.body) << finding.why_not;
+    const BodyOfRevolution& body = *finding.body;
+    ASSERT_EQ(kinds_of(body), (std::vector<Kind>{Kind::Cylinder, Kind::Cone, Kind::Cylinder,
+                                                 Kind::Cone, Kind::Cylinder}));
+    double length = 0.0;
+    for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
+        length += (profile[i + 1] - profile[i]).norm();
+    }
+    EXPECT_NEAR(body.meridian.length_mm(), length, 1e-9);
+    EXPECT_NEAR(body.meridian.at(30.0).radius_mm, 30.0, 1e-9);
+}
+
+// A dome of eight rings is a curve all the same.
+TEST(FindRevolution, CoarseDomeIsCurved) {
+    std::vector<Eigen::Vector2d> profile;
+    constexpr int kRings = 8;
+    for (int i = 0; i <= kRings; ++i) {
+        const double angle = 1.2 * i / kRings;
+        profile.emplace_back(60.0 * std::cos(angle), 60.0 * std::sin(angle));
+    }
+    const auto finding = found(test::revolve(profile, 180));
+    ASSERT_TRUE(finding.body) << finding.why_not;
+    ASSERT_EQ(kinds_of(*finding.body), std::vector<Kind>{Kind::Dome});
+    // Free ends, h = 9 mm: ten times 60 h^4 / 384 in radii.
+    for (const double arc : {5.0, 30.0, 60.0}) {
+        const MeridianPlace place = finding.body->meridian.at(arc);
+        EXPECT_NEAR(std::hypot(place.radius_mm, place.z_mm - finding.body->meridian.at(0.0).z_mm),
+                    60.0, 1e-3);
+    }
+}
+
 // Domes with rings and a cylinder between without any: long facets are straight.
 TEST(FindRevolution, CylinderWithoutInnerRingsBetweenDomes) {
     std::vector<Eigen::Vector2d> profile;
