@@ -98,9 +98,37 @@ void print_accuracy(std::ostream& out, const PathAccuracy& accuracy) {
         << " geodesics of up to " << fixed(accuracy.length_mm, 0) << " mm\n";
 }
 
+std::string words_of(const MeridianPart& part, const Meridian& meridian) {
+    std::string words(name_of(part.kind));
+    words += " " + fixed(part.to_mm - part.from_mm, 2) + " mm R ";
+    if (part.kind == MeridianPartKind::Cylinder) {
+        return words + fixed(part.radius_mm, 2);
+    }
+    return words + fixed(meridian.at(part.from_mm).radius_mm, 2) + " to " +
+           fixed(meridian.at(part.to_mm).radius_mm, 2);
+}
+
+void print_revolution(std::ostream& out, const RevolutionFinding& finding) {
+    if (!finding.body) {
+        out << "revolution    no body of revolution: " << finding.why_not << "\n";
+        return;
+    }
+    constexpr std::size_t kPartsShown = 12;
+    const std::vector<MeridianPart>& parts = finding.body->parts;
+    out << "revolution    body of revolution: ";
+    for (std::size_t i = 0; i < std::min(kPartsShown, parts.size()); ++i) {
+        out << words_of(parts[i], finding.body->meridian) << ", ";
+    }
+    if (parts.size() > kPartsShown) {
+        out << "and " << parts.size() - kPartsShown << " more parts, ";
+    }
+    out << "residual " << fixed(finding.body->residual_mm, 4) << " mm\n";
+}
+
 }  // namespace
 
-void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy) {
+void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy,
+                   const RevolutionFinding& revolution) {
     print_size(out, mandrel);
     print_repairs(out, mandrel.repairs);
     print_regions(out, mandrel);
@@ -115,6 +143,7 @@ void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy
         << fixed(mandrel.surface.mean_edge_mm, 3) << " mm; smooth fit at " << fit.quartic
         << " corners quartic, " << fit.cubic << " cubic, " << fit.quadratic << " quadratic, "
         << fit.reduced << " reduced, " << fit.averaged << " averaged\n";
+    print_revolution(out, revolution);
     print_accuracy(out, accuracy);
     for (const std::string& remark : mandrel.remarks) {
         out << "remark        " << remark << "\n";

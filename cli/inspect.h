@@ -5,11 +5,14 @@
 
 #include "geodesic/path_accuracy.h"
 #include "mesh/mandrel.h"
+#include "mesh/revolution.h"
 
 namespace meshwind {
 
-/// Units, repairs, regions, rims, spindle axis, smooth fit, accuracy of paths and remarks; lengths
+/// Units, repairs, regions, rims, spindle axis, smooth fit, whether it is a body of revolution,
+/// accuracy of paths and remarks; lengths
 /// in mm, positions in the mandrel frame. For JSON see mandrel_report.
-void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy);
+void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy,
+                   const RevolutionFinding& revolution);
 
 }  // namespace meshwind

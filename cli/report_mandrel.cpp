@@ -1,5 +1,7 @@
 #include "cli/report_mandrel.h"
 
+#include "core/units.h"
+
 namespace meshwind {
 namespace {
 
@@ -72,6 +74,33 @@ json mandrel_report(const Mandrel& mandrel) {
               {"reduced", fit.reduced},
               {"averaged", fit.averaged}}},
             {"remarks", mandrel.remarks}};
+}
+
+json revolution_report(const RevolutionFinding& finding) {
+    if (!finding.body) {
+        return {{"why_not", finding.why_not}};
+    }
+    json ends = json::array();
+    for (const MeridianEnd& end : finding.body->end) {
+        ends.push_back({{"kind", end.kind == MeridianEnd::Kind::Rim ? "rim" : "pole"}});
+        if (end.kind == MeridianEnd::Kind::Rim) {
+            ends.back()["rim"] = end.rim;
+        }
+    }
+    json parts = json::array();
+    for (const MeridianPart& part : finding.body->parts) {
+        parts.push_back({{"kind", name_of(part.kind)},
+                         {"from_mm", part.from_mm},
+                         {"to_mm", part.to_mm},
+                         {"mean_radius_mm", part.radius_mm}});
+        if (part.kind == MeridianPartKind::Cone) {
+            parts.back()["slope_deg"] = deg_from_rad(part.slope_rad);
+        }
+    }
+    return {{"residual_mm", finding.body->residual_mm},
+            {"length_mm", finding.body->meridian.length_mm()},
+            {"ends", ends},
+            {"parts", parts}};
 }
 
 json accuracy_report(const PathAccuracy& accuracy) {

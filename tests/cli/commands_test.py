@@ -50,6 +50,30 @@ class Commands(program.ProgramTest):
         self.assertEqual(sorted(round(r["radius"], 3) for r in part["rims"]), [40.0, 50.0, 50.0])
         self.assertIn("tee.stl", self.done("inspect", mandrel).stdout)
 
+    def test_inspect_names_the_parts_of_a_body_of_revolution(self):
+        mandrel = self.make("vessel", "--edge", "5", "--cylinder-length", "120")
+        part = json.loads(self.done("inspect", mandrel, "--json").stdout)["mandrel"]["revolution"]
+        self.assertEqual(set(part), {"residual_mm", "length_mm", "ends", "parts"})
+        self.assertEqual([p["kind"] for p in part["parts"]], ["dome", "cylinder", "dome"])
+        self.assertEqual([end["kind"] for end in part["ends"]], ["rim", "rim"])
+        middle = part["parts"][1]
+        # The file has single precision: 4e-6 mm at 75 mm.
+        self.assertAlmostEqual(middle["mean_radius_mm"], 75.0, 4)
+        self.assertAlmostEqual(middle["to_mm"] - middle["from_mm"], 120.0, 3)
+        self.assertEqual(part["parts"][2]["to_mm"], part["length_mm"])
+        self.assertLess(part["residual_mm"], 1e-4)
+        self.assertRegex(self.done("inspect", mandrel).stdout,
+                         r"(?m)^revolution +body of revolution: dome 84\.11 mm R 15\.00 to 75\.00, "
+                         r"cylinder 120\.00 mm R 75\.00, dome .*, residual 0\.000\d mm$")
+        cone = self.make("cone", "--edge", "8")
+        part = json.loads(self.done("inspect", cone, "--json").stdout)["mandrel"]["revolution"]
+        self.assertAlmostEqual(part["parts"][0]["slope_deg"],
+                               -math.degrees(math.atan2(30, 200)), 4)
+        tee = self.make("tee", "--edge", "12")
+        part = json.loads(self.done("inspect", tee, "--json").stdout)["mandrel"]["revolution"]
+        self.assertEqual(set(part), {"why_not"})
+        self.assertIn("3 rims", part["why_not"])
+
     def test_inspect_estimates_accuracy(self):
         """Half the edges: a quarter of the drift by walk, a sixteenth by patches; half of that fall
         is asked for. Not a word of it changes with the number of threads."""
