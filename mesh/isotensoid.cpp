@@ -83,15 +83,17 @@ void IsotensoidDesign::validate() const {
     require(stiffness_ratio < 1.0, "make.stiffness_ratio", "ke", stiffness_ratio, "less than", 1.0);
     const double g = design_radius_mm / equator_radius_mm;
     const double r = axial_share;
-    require(std::isfinite(r) && r >= -g * g, "make.axial_share", "axial-share", r,
-            "at least, for an opening of the design radius that is not capped,", -g * g);
+    require_not_negative("axial-share", r);
     // dG/du < 0 at the equator: the meridian bends towards the axis. k_e = 0, r = 0: g^2 < 2 / 3.
     const double k = stiffness_ratio;
     const double square = ((1.0 + r) * (k + 1.0) / (3.0 + r) - 1.0) / (k - 1.0);
-    require(g < std::min(1.0, std::sqrt(std::max(square, 0.0))), "make.design_radius",
-            "design-radius", design_radius_mm,
+    // At the limit u_min meets the equator, and the digits of 1 - u_min go; nearer than this the
+    // dome would close by less than a hundredth of its radius anyway.
+    constexpr double kNear = 1e-4;
+    const double limit = (1.0 - kNear) * std::sqrt(std::clamp(square, 0.0, 1.0));
+    require(g < limit, "make.design_radius", "design-radius", design_radius_mm,
             "less than, as a steeper fibre would bend the dome outward at the equator,",
-            equator_radius_mm * std::min(1.0, std::sqrt(std::max(square, 0.0))));
+            equator_radius_mm * limit);
 }
 
 IsotensoidDome::IsotensoidDome(const IsotensoidDesign& design) : design_(design) {
@@ -102,44 +104,26 @@ IsotensoidDome::IsotensoidDome(const IsotensoidDesign& design) : design_(design)
     add_panels(0.0, 0.5 * kPi, 0);
 }
 
-// Between the zeros of its logarithm's derivative, a quadratic, G changes sign at most once; from
-// the equator inward the first stretch at whose end it is no longer positive has u_min.
+// The logarithm's derivative, of the forces' ratio by u, is a quadratic over positive factors with
+// one positive zero: from there inward G falls, from above zero to - u (u + r)^2 where q + u is
+// none.
 void IsotensoidDome::find_least() {
     const double r = design_.axial_share;
     const double k = design_.stiffness_ratio;
-    const auto excess = [&](double u) {
-        return std::pow(std::max(q_ + u, 0.0) / (q_ + 1.0), k + 1.0) * (1.0 + r) * (1.0 + r) -
-               cubic(u, r);
-    };
     const double lowest = -q_;
-    std::vector<double> ends{lowest, -r};
+    // By v = q + u, which is far smaller than u where design radius or k_e are small.
+    const auto excess = [&](double v) {
+        return std::pow(v / (q_ + 1.0), k + 1.0) * (1.0 + r) * (1.0 + r) - cubic(lowest + v, r);
+    };
     const double a = k - 2.0;
     const double b = k * r - 3.0 * q_;
-    const double root = b * b + 4.0 * a * q_ * r;
-    if (root >= 0.0) {
-        ends.push_back((-b + std::sqrt(root)) / (2.0 * a));
-        ends.push_back((-b - std::sqrt(root)) / (2.0 * a));
-    }
-    std::sort(ends.rbegin(), ends.rend());
-    double high = 1.0;
-    for (const double low : ends) {
-        if (low >= high || low < lowest) {
-            continue;
-        }
-        const double here = excess(low);
-        if (here <= 0.0 && high < 1.0) {
-            std::uintmax_t iterations = 200;
-            const auto [x, y] = boost::math::tools::toms748_solve(
-                excess, low, high, here, excess(high),
-                boost::math::tools::eps_tolerance<double>(53), iterations);
-            least_square_ = 0.5 * (x + y);
-            break;
-        }
-        high = low;
-    }
-    // An opening without a cap that meets the law's own pole: no dome of this kind.
-    require(least_square_ + q_ > 0.0 && least_square_ + r != 0.0, "make.axial_share", "axial-share",
-            r, "a little more or less than", r);
+    const double high = (-b - std::sqrt(b * b + 4.0 * a * q_ * r)) / (2.0 * a) - lowest;
+    std::uintmax_t iterations = 300;
+    const auto [x, y] = boost::math::tools::toms748_solve(
+        excess, 0.0, high, excess(0.0), excess(high), boost::math::tools::eps_tolerance<double>(53),
+        iterations);
+    least_above_ = 0.5 * (x + y);
+    least_square_ = lowest + least_above_;
 }
 
 double IsotensoidDome::square(double t) const {
@@ -162,7 +146,7 @@ double IsotensoidDome::height_rate(double t) const {
         h = (cubic_rate(1.0, r, -below) - force) / above;
     } else {
         const double u0 = least_square_;
-        const double force = cubic(u0, r) / (q_ + u0) * power_rate(above / (q_ + u0), p);
+        const double force = cubic(u0, r) / least_above_ * power_rate(above / least_above_, p);
         h = (force - cubic_rate(u0, r, above)) / below;
     }
     return design_.equator_radius_mm * (least_square_ + above + r) / std::sqrt(h);
@@ -229,11 +213,12 @@ IsotensoidDome::Curvatures IsotensoidDome::curvatures(double t) const {
     const double r = design_.axial_share;
     const double p = design_.stiffness_ratio + 1.0;
     const double u = square(t);
-    const double force = (1.0 + r) * std::pow((q_ + u) / (q_ + 1.0), 0.5 * p);
+    const double above_q = least_above_ + (u - least_square_);
+    const double force = (1.0 + r) * std::pow(above_q / (q_ + 1.0), 0.5 * p);
     const double size = design_.equator_radius_mm;
     const double over_y = (u + r) / (force * size);
     // dS/dY = 2 u (S / Y) d(ln S)/du
-    const double steepness = 1.0 + 2.0 * u / (u + r) - p * u / (q_ + u);
+    const double steepness = 1.0 + 2.0 * u / (u + r) - p * u / above_q;
     return {over_y * steepness, over_y};
 }
 

@@ -15,11 +15,11 @@ struct IsotensoidDesign {
     /// k_e = E2 (1 + nu12) / (E1 (1 + nu21)), 0 to below 1; 0: the fibres carry all (netting).
     double stiffness_ratio = 0.0;
     /// Axial force on the end besides the pressure on the whole cross section, as a share of that.
-    /// 0: the opening is capped; - (opening / equator)^2: its cap is held from outside.
+    /// 0: the opening is capped and nothing pulls at it.
     double axial_share = 0.0;
 
     /// \throws InputError make.not_positive, make.negative, make.stiffness_ratio,
-    /// make.design_radius, make.axial_share
+    /// make.design_radius
     void validate() const;
 };
 
@@ -72,6 +72,7 @@ private:
     IsotensoidDesign design_;
     double q_ = 0.0;
     double least_square_ = 0.0;  // u_min
+    double least_above_ = 0.0;   // u_min + q
     std::vector<Panel> panels_;
 };
 
