@@ -16,6 +16,7 @@
 #include "cli/refine_command.h"
 #include "cli/report.h"
 #include "cli/report_carry.h"
+#include "cli/report_design.h"
 #include "cli/report_mandrel.h"
 #include "cli/report_study.h"
 #include "cli/report_verify.h"
@@ -244,6 +245,16 @@ int run_carry_command(CarryOptionsText& text, const Common& common) {
         print_carry(std::cout, outcome);
     }
     return exit_code(text.axis, outcome.checks);
+}
+
+int run_design_command(const DesignRequest& request, const Common& common) {
+    const DesignOutcome outcome = run_design(request);
+    if (common.json) {
+        std::cout << design_json(outcome);
+    } else if (!common.quiet) {
+        print_design(std::cout, outcome);
+    }
+    return kDone;
 }
 
 // A machine file names its schema; everything else is read as a job.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/carry_command.h"
+#include "cli/design_command.h"
 #include "cli/post_command.h"
 #include "cli/study_command.h"
 #include "cli/trace_command.h"
@@ -68,6 +69,7 @@ struct CarryOptionsText {
 [[nodiscard]] int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& common);
 [[nodiscard]] int run_mesh_size(StudyRequest& request, const Common& common);
 [[nodiscard]] int run_carry_command(CarryOptionsText& text, const Common& common);
+[[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);
 [[nodiscard]] int run_validate(const std::string& name, const Common& common);
 
 }  // namespace meshwind

@@ -53,6 +53,14 @@ constexpr const char* kVerifyHelp =
     "  meshwind verify meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json "
     "--plan meshwind-out";
 
+constexpr const char* kDesignHelp =
+    "A cylinder with isotensoid domes: dome, and for each winding angle turn and length of its\n"
+    "geodesics, circuits and layers for the wanted wall or pressure (without either one layer of\n"
+    "each hand), fibre, mass and the thickest place of the dome. Angles that no geodesic can keep\n"
+    "are named with the slip that they would need. meshwind make isotensoid makes the mesh.\n"
+    "  meshwind design vessel --radius 40 --opening 15 --length 80 --e1 132 --e2 10.3 --nu12 0.25\n"
+    "  meshwind design vessel --radius 150 --opening 40 --length 600 --pressure 70 --strength 1200";
+
 constexpr const char* kCarryHelp =
     "The head stands still; the robot moves a slender frame through its two rings, which turn "
     "about\n"
@@ -263,6 +271,50 @@ void add_carry(CLI::App& app, CarryOptionsText& text) {
     app.add_option("-o,--out", text.out, "output folder")->capture_default_str();
 }
 
+// The moduli are one ply, all three of them.
+void add_design_vessel(CLI::App& app, DesignRequest& request) {
+    VesselDesign& design = request.design;
+    const auto number = [&](const char* name, double& value, const char* help) {
+        app.add_option(name, value, help)->capture_default_str();
+    };
+    app.add_option("--radius", design.radius_mm, "radius of the cylinder, mm")->required();
+    app.add_option("--opening", design.opening_radius_mm, "radius of the polar openings, mm")
+        ->required();
+    app.add_option("--length", design.cylinder_length_mm, "length of the cylinder, mm")->required();
+    auto* ke = app.add_option("--ke", request.ke,
+                              "E2 (1 + nu12) / (E1 (1 + nu21)) of the ply; 0: fibres alone [0.1]");
+    const auto modulus = [&](const char* name, double PlyStiffness::*member, const char* help) {
+        return app
+            .add_option_function<double>(
+                name,
+                [&request, member](const double& value) {
+                    request.ply = request.ply.value_or(PlyStiffness{});
+                    (*request.ply).*member = value;
+                },
+                help)
+            ->excludes(ke);
+    };
+    auto* e1 = modulus("--e1", &PlyStiffness::e1_gpa, "stiffness along the fibres, GPa");
+    auto* e2 = modulus("--e2", &PlyStiffness::e2_gpa, "stiffness across them, GPa");
+    auto* nu12 = modulus("--nu12", &PlyStiffness::nu12, "Poisson's ratio for a pull along them");
+    e1->needs(e2)->needs(nu12);
+    e2->needs(e1);
+    nu12->needs(e1);
+    number("--design-radius", design.design_radius_mm,
+           "Clairaut radius of the geodesics the domes are made for, mm; 0: the opening's");
+    request.angles_deg = {10, 15, 20, 25, 30, 35, 40, 45, 50, 55};
+    app.add_option("--angles", request.angles_deg, "winding angles on the cylinder, degrees")
+        ->delimiter(',')
+        ->capture_default_str();
+    number("--band", design.band_mm, "width of the band, mm");
+    number("--thickness", design.ply_mm, "thickness of the band, mm");
+    number("--density", design.density_kg_m3, "of the band, kg/m3");
+    app.add_option("--wall", design.wall_mm, "wanted thickness on the cylinder, mm");
+    app.add_option("--pressure", design.pressure_mpa, "wanted pressure, MPa; needs --strength");
+    app.add_option("--strength", design.strength_mpa,
+                   "of the band along its fibres, MPa, safety taken off");
+}
+
 int run(int argc, char** argv) {
     CLI::App app(
         "Filament winding on triangulated mandrels: mesh and machine in, checked NC code out.\n"
@@ -318,14 +370,21 @@ int run(int argc, char** argv) {
     CLI::App* carry = app.add_subcommand(
         "carry", "a program for a robot that carries a frame through a fixed ring head");
     add_carry(*carry, carry_text);
+    DesignRequest design_request;
+    CLI::App* design = app.add_subcommand("design", "numbers of a part before it has a mesh");
+    design->require_subcommand(1);
+    CLI::App* design_vessel = design->add_subcommand(
+        "vessel", "a cylinder with isotensoid domes: what each winding angle gives");
+    add_design_vessel(*design_vessel, design_request);
     StudyRequest study_request;
     CLI::App* study = app.add_subcommand("study", "studies of accuracy");
     study->require_subcommand(1);
     CLI::App* mesh_size =
         study->add_subcommand("mesh-size", "accuracy of paths and motion against mesh size");
     add_mesh_size(*mesh_size, study_request);
-    for (CLI::App* command : {wind_command, post_command, verify_command, inspect, make,
-                              trace_command, validate, carry, study, mesh_size}) {
+    for (CLI::App* command :
+         {wind_command, post_command, verify_command, inspect, make, trace_command, validate, carry,
+          design, design_vessel, study, mesh_size}) {
         command->fallthrough();
         command->footer(kCommon);
     }
@@ -333,6 +392,7 @@ int run(int argc, char** argv) {
     for (const auto& [command, more] : {std::pair(post_command, kPostHelp),
                                         {verify_command, kVerifyHelp},
                                         {carry, kCarryHelp},
+                                        {design_vessel, kDesignHelp},
                                         {mesh_size, kMeshSizeHelp}}) {
         command->footer(std::string(more) + "\n" + kCommon);
     }
@@ -382,6 +442,9 @@ int run(int argc, char** argv) {
     }
     if (carry->parsed()) {
         return run_carry_command(carry_text, common);
+    }
+    if (design_vessel->parsed()) {
+        return run_design_command(design_request, common);
     }
     if (mesh_size->parsed()) {
         return run_mesh_size(study_request, common);

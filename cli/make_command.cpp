@@ -36,12 +36,20 @@ double value_of_shown(const MakeParameter& parameter, double shown) {
 }
 
 std::string shown_unit(const MakeParameter& parameter) {
-    return parameter.unit == MakeUnit::Angle ? "deg" : "mm";
+    switch (parameter.unit) {
+        case MakeUnit::Angle:
+            return "deg";
+        case MakeUnit::Ratio:
+            return "";
+        default:
+            return "mm";
+    }
 }
 
 std::string help_of(const MakeParameter& parameter) {
     std::string text(parameter.meaning);
-    text += ", " + shown_unit(parameter) + " [";
+    const std::string unit = shown_unit(parameter);
+    text += (unit.empty() ? "" : ", ") + unit + " [";
     append_shortest(text, shown_value(parameter, parameter.value_default));
     return text + "]";
 }

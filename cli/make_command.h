@@ -12,7 +12,7 @@ namespace meshwind {
 [[nodiscard]] double shown_value(const MakeParameter& parameter, double value);
 [[nodiscard]] double value_of_shown(const MakeParameter& parameter, double shown);
 
-/// "mm" or "deg".
+/// "mm", "deg" or "".
 [[nodiscard]] std::string shown_unit(const MakeParameter& parameter);
 
 /// Line for the option's help: meaning, unit and default.

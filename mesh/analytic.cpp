@@ -173,6 +173,10 @@ ShapeFoot vessel_foot(const VesselShape& shape, const Vector3d& point_mm) {
     return profile_foot(profile_of(shape), point_mm);
 }
 
+ShapeFoot isotensoid_foot(const IsotensoidShape& shape, const Vector3d& point_mm) {
+    return profile_foot(profile_of(shape), point_mm);
+}
+
 ShapeFoot combination_foot(const CombinationShape& shape, const Vector3d& point_mm) {
     return profile_foot(profile_of(shape), point_mm);
 }

@@ -54,6 +54,8 @@ struct BlendArc {
 [[nodiscard]] ShapeFoot cylinder_foot(const CylinderShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot cone_foot(const ConeShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot vessel_foot(const VesselShape& shape, const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot isotensoid_foot(const IsotensoidShape& shape,
+                                        const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot combination_foot(const CombinationShape& shape,
                                          const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot ellipsoid_foot(const EllipsoidShape& shape,

@@ -33,6 +33,11 @@ double least_size(const VesselShape& shape) {
                                    shape.radius_mm - shape.opening_radius_mm}));
 }
 
+double least_size(const IsotensoidShape& shape) {
+    return std::min({shape.radius_mm, shape.cylinder_length_mm, shape.opening_radius_mm,
+                     shape.radius_mm - shape.opening_radius_mm});
+}
+
 double least_size(const CombinationShape& shape) {
     return opening_limit(shape.opening_radius_mm,
                          std::min({shape.radius1_mm, shape.length1_mm, shape.cone_length_mm,
@@ -75,6 +80,11 @@ double rough_area(const ConeShape& shape) {
 double rough_area(const VesselShape& shape) {
     return 2.0 * kPi * shape.radius_mm *
            (shape.cylinder_length_mm + shape.radius_mm + 2.0 * shape.dome_height_mm);
+}
+
+// The domes are less high than half a sphere.
+double rough_area(const IsotensoidShape& shape) {
+    return 2.0 * kPi * shape.radius_mm * (shape.cylinder_length_mm + 2.0 * shape.radius_mm);
 }
 
 double rough_area(const CombinationShape& shape) {
@@ -133,6 +143,11 @@ ConeShape inside(ConeShape shape, double wall) {
 VesselShape inside(VesselShape shape, double wall) {
     shape.radius_mm -= wall;
     shape.dome_height_mm -= wall;
+    return shape;
+}
+
+IsotensoidShape inside(IsotensoidShape shape, double wall) {
+    shape.radius_mm -= wall;
     return shape;
 }
 
@@ -237,6 +252,10 @@ TriangleSoup make_cone(const ConeShape& shape, const MakeOptions& options) {
 }
 
 TriangleSoup make_vessel(const VesselShape& shape, const MakeOptions& options) {
+    return make(shape, options);
+}
+
+TriangleSoup make_isotensoid(const IsotensoidShape& shape, const MakeOptions& options) {
     return make(shape, options);
 }
 

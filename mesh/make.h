@@ -24,13 +24,15 @@ struct MakeOptions {
 /// curves.
 ///
 /// Solids: the inner wall lies wall_mm inside, for domes and ellipsoids as an ellipsoid with
-/// semi-axes shorter by wall_mm, polar openings go straight through. A closed shape becomes two
-/// closed walls. \throws InputError what the shape's validate throws; make.not_positive,
-/// make.edge_too_large, make.wall_too_thick
+/// semi-axes shorter by wall_mm, for isotensoid domes as those of the smaller radius; polar
+/// openings go straight through. A closed shape becomes two closed walls. \throws InputError what
+/// the shape's validate throws; make.not_positive, make.edge_too_large, make.wall_too_thick
 [[nodiscard]] TriangleSoup make_cylinder(const CylinderShape& shape,
                                          const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_cone(const ConeShape& shape, const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_vessel(const VesselShape& shape, const MakeOptions& options = {});
+[[nodiscard]] TriangleSoup make_isotensoid(const IsotensoidShape& shape,
+                                           const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_elbow(const ElbowShape& shape, const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_tee(const TeeShape& shape, const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_combination(const CombinationShape& shape,

@@ -13,6 +13,7 @@ namespace {
 constexpr CylinderShape kCylinder;
 constexpr ConeShape kCone;
 constexpr VesselShape kVessel;
+constexpr IsotensoidShape kIsotensoid;
 constexpr ElbowShape kElbow;
 // The frame is an elbow with long legs, as bicycle and window frames have.
 constexpr ElbowShape kFrame{20.0, 60.0, 0.5 * kPi, 300.0, 300.0};
@@ -23,6 +24,7 @@ constexpr EllipsoidShape kEllipsoid;
 
 constexpr MakeUnit kLength = MakeUnit::Length;
 constexpr MakeUnit kAngle = MakeUnit::Angle;
+constexpr MakeUnit kRatio = MakeUnit::Ratio;
 
 constexpr std::array kCylinderTable{
     MakeParameter{"radius", kLength, kCylinder.radius_mm, "radius"},
@@ -40,6 +42,17 @@ constexpr std::array kVesselTable{
                   "height of the half ellipsoid at each end"},
     MakeParameter{"opening-radius", kLength, kVessel.opening_radius_mm,
                   "radius of the polar openings, 0 for none"},
+};
+constexpr std::array kIsotensoidTable{
+    MakeParameter{"radius", kLength, kIsotensoid.radius_mm, "radius of the cylinder"},
+    MakeParameter{"cylinder-length", kLength, kIsotensoid.cylinder_length_mm,
+                  "length without domes"},
+    MakeParameter{"opening-radius", kLength, kIsotensoid.opening_radius_mm,
+                  "radius of the polar openings"},
+    MakeParameter{"ke", kRatio, kIsotensoid.stiffness_ratio,
+                  "E2 (1 + nu12) / (E1 (1 + nu21)) of the ply, 0 for fibres alone"},
+    MakeParameter{"design-radius", kLength, kIsotensoid.design_radius_mm,
+                  "Clairaut radius of the geodesics the domes are made for, 0 for the opening's"},
 };
 constexpr std::array<MakeParameter, 5> pipe_table(const ElbowShape& shape) {
     return {MakeParameter{"pipe-radius", kLength, shape.pipe_radius_mm, "radius of the pipe"},
@@ -89,6 +102,7 @@ constexpr std::array kKinds{
     MakeKind{"cylinder", "straight pipe", kCylinderTable},
     MakeKind{"cone", "frustum of a cone", kConeTable},
     MakeKind{"vessel", "cylinder with ellipsoidal domes", kVesselTable},
+    MakeKind{"isotensoid", "cylinder with isotensoid domes", kIsotensoidTable},
     MakeKind{"elbow", "pipe bend with straight legs", kElbowTable},
     MakeKind{"tee", "pipe with a branch, square or leaning, and a rolling-ball blend", kTeeTable},
     MakeKind{"combination", "cylinder, cone, cylinder and dome in a row", kCombinationTable},
@@ -146,6 +160,9 @@ auto with_shape(std::string_view name, const MakeValues& values, const Use& use)
     if (kind.name == "vessel") {
         return use(VesselShape{v[0], v[1], v[2], v[3]});
     }
+    if (kind.name == "isotensoid") {
+        return use(IsotensoidShape{v[0], v[1], v[2], v[3], v[4]});
+    }
     if (kind.name == "tee") {
         return use(TeeShape{v[0], v[1], v[2], v[3], v[4], v[5]});
     }
@@ -167,6 +184,7 @@ struct Make {
     TriangleSoup operator()(const CylinderShape& s) const { return make_cylinder(s, options); }
     TriangleSoup operator()(const ConeShape& s) const { return make_cone(s, options); }
     TriangleSoup operator()(const VesselShape& s) const { return make_vessel(s, options); }
+    TriangleSoup operator()(const IsotensoidShape& s) const { return make_isotensoid(s, options); }
     TriangleSoup operator()(const ElbowShape& s) const { return make_elbow(s, options); }
     TriangleSoup operator()(const TeeShape& s) const { return make_tee(s, options); }
     TriangleSoup operator()(const CombinationShape& s) const {
@@ -182,6 +200,7 @@ struct Foot {
     ShapeFoot of(const CylinderShape& s) const { return cylinder_foot(s, p); }
     ShapeFoot of(const ConeShape& s) const { return cone_foot(s, p); }
     ShapeFoot of(const VesselShape& s) const { return vessel_foot(s, p); }
+    ShapeFoot of(const IsotensoidShape& s) const { return isotensoid_foot(s, p); }
     ShapeFoot of(const ElbowShape& s) const { return elbow_foot(s, p); }
     ShapeFoot of(const TeeShape& s) const { return tee_foot(s, p); }
     ShapeFoot of(const CombinationShape& s) const { return combination_foot(s, p); }

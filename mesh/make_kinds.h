@@ -12,13 +12,13 @@
 
 namespace meshwind {
 
-/// Lengths are mm and angles rad here; a command line shows angles in degrees.
-enum class MakeUnit { Length, Angle };
+/// Lengths are mm and angles rad here; a command line shows angles in degrees. Ratios have no unit.
+enum class MakeUnit { Length, Angle, Ratio };
 
 struct MakeParameter {
     std::string_view name;  ///< as on the command line, without dashes: "run-radius"
     MakeUnit unit = MakeUnit::Length;
-    double value_default = 0.0;  ///< mm or rad
+    double value_default = 0.0;  ///< mm, rad or no unit
     std::string_view meaning;    ///< one line without a full stop
 };
 
@@ -28,10 +28,10 @@ struct MakeKind {
     std::span<const MakeParameter> parameters;
 };
 
-/// Values by parameter name, mm or rad; what is missing takes its default.
+/// Values by parameter name, mm, rad or without unit; what is missing takes its default.
 using MakeValues = std::map<std::string, double, std::less<>>;
 
-/// cylinder, cone, vessel, elbow, tee, combination, frame, torus, ellipsoid.
+/// cylinder, cone, vessel, isotensoid, elbow, tee, combination, frame, torus, ellipsoid.
 [[nodiscard]] std::span<const MakeKind> make_kinds();
 
 /// \throws InputError make.unknown_kind, make.unknown_parameter; what the kind's make function

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/units.h"
 #include "mesh/nearest_parameter.h"
@@ -13,14 +14,21 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Vector2d ellipse_point(const ProfilePiece& piece, double angle) {
+Vector2d arc_point(const ProfilePiece& piece, double angle) {
+    if (piece.isotensoid) {
+        return {piece.isotensoid->radius_mm(angle),
+                piece.centre_z_mm + piece.isotensoid->height_mm(angle)};
+    }
     // cos(pi/2) is not quite zero; a pole must lie on the axis.
     const double radial = std::abs(angle) >= 0.5 * kPi ? 0.0 : std::cos(angle);
     return {piece.semi_axes_mm.x() * radial,
             piece.centre_z_mm + piece.semi_axes_mm.y() * std::sin(angle)};
 }
 
-Vector2d ellipse_derivative(const ProfilePiece& piece, double angle) {
+Vector2d arc_derivative(const ProfilePiece& piece, double angle) {
+    if (piece.isotensoid) {
+        return piece.isotensoid->rate_mm(angle);
+    }
     return {-piece.semi_axes_mm.x() * std::sin(angle), piece.semi_axes_mm.y() * std::cos(angle)};
 }
 
@@ -31,9 +39,7 @@ double part_length(const ProfilePiece& piece, double low, double high) {
     constexpr double kNode = 0.7745966692414834;  // sqrt(3 / 5)
     const double half = 0.5 * (high - low);
     const double middle = 0.5 * (high + low);
-    const auto speed = [&](double x) {
-        return ellipse_derivative(piece, middle + half * x).norm();
-    };
+    const auto speed = [&](double x) { return arc_derivative(piece, middle + half * x).norm(); };
     return half * (5.0 * speed(-kNode) + 8.0 * speed(0.0) + 5.0 * speed(kNode)) / 9.0;
 }
 
@@ -85,24 +91,23 @@ PlaneFoot line_foot(const ProfilePiece& piece, const Vector2d& p, bool free_low,
     return {piece.from_mm + share * way, Vector2d(way.y(), -way.x()).normalized()};
 }
 
-PlaneFoot ellipse_foot(const ProfilePiece& piece, const Vector2d& p, bool free_low,
-                       bool free_high) {
+PlaneFoot arc_foot(const ProfilePiece& piece, const Vector2d& p, bool free_low, bool free_high) {
     const double low = free_low ? -0.5 * kPi : piece.from_rad;
     const double high = free_high ? 0.5 * kPi : piece.to_rad;
-    // The quarter the point is in holds the nearest point of the ellipse.
+    // The quarter the point is in holds the nearest point of the arc.
     const bool upper = p.y() >= piece.centre_z_mm;
     const ParameterRange range{upper ? std::max(low, 0.0) : low,
                                upper ? high : std::min(high, 0.0)};
     if (range.low >= range.high) {
         const double angle = upper ? high : low;
-        const Vector2d way = ellipse_derivative(piece, angle);
-        return {ellipse_point(piece, angle), Vector2d(way.y(), -way.x()).normalized()};
+        const Vector2d way = arc_derivative(piece, angle);
+        return {arc_point(piece, angle), Vector2d(way.y(), -way.x()).normalized()};
     }
     const double angle = nearest_parameter(
-        range, [&](double t) { return (ellipse_point(piece, t) - p).squaredNorm(); },
-        [&](double t) { return (ellipse_point(piece, t) - p).dot(ellipse_derivative(piece, t)); });
-    const Vector2d way = ellipse_derivative(piece, angle);
-    return {ellipse_point(piece, angle), Vector2d(way.y(), -way.x()).normalized()};
+        range, [&](double t) { return (arc_point(piece, t) - p).squaredNorm(); },
+        [&](double t) { return (arc_point(piece, t) - p).dot(arc_derivative(piece, t)); });
+    const Vector2d way = arc_derivative(piece, angle);
+    return {arc_point(piece, angle), Vector2d(way.y(), -way.x()).normalized()};
 }
 
 }  // namespace
@@ -116,8 +121,8 @@ Vector2d ProfilePiece::point_mm(double share) const {
     const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
     const double inside = std::clamp((wanted - *(above - 1)) / (*above - *(above - 1)), 0.0, 1.0);
     const double steps = static_cast<double>(above - 1 - length.begin()) + inside;
-    return ellipse_point(*this,
-                         share >= 1.0 ? to_rad : from_rad + (to_rad - from_rad) * steps / kParts);
+    return arc_point(*this,
+                     share >= 1.0 ? to_rad : from_rad + (to_rad - from_rad) * steps / kParts);
 }
 
 double ProfilePiece::length_mm() const {
@@ -141,6 +146,21 @@ Profile profile_of(const VesselShape& shape) {
     return {dome(-half, axes, -open, 0.0),
             line(ShapePart::Cylinder, {shape.radius_mm, -half}, {shape.radius_mm, half}),
             dome(half, axes, 0.0, open)};
+}
+
+Profile profile_of(const IsotensoidShape& shape) {
+    const double half = 0.5 * shape.cylinder_length_mm;
+    const IsotensoidDome curve(shape.dome());
+    const double open = curve.parameter_at(shape.opening_radius_mm);
+    ProfilePiece upper = dome(half, Vector2d(shape.radius_mm, curve.height_mm(open)), 0.0, open);
+    upper.isotensoid = curve;
+    ProfilePiece lower = upper;
+    lower.centre_z_mm = -half;
+    lower.from_rad = -open;
+    lower.to_rad = 0.0;
+    return {std::move(lower),
+            line(ShapePart::Cylinder, {shape.radius_mm, -half}, {shape.radius_mm, half}),
+            std::move(upper)};
 }
 
 Profile profile_of(const CombinationShape& shape) {
@@ -169,7 +189,7 @@ ShapeFoot profile_foot(const Profile& profile, const Vector3d& point_mm) {
         const bool first = i == 0;
         const bool last = i + 1 == profile.size();
         const PlaneFoot foot = profile[i].is_line() ? line_foot(profile[i], p, first, last)
-                                                    : ellipse_foot(profile[i], p, first, last);
+                                                    : arc_foot(profile[i], p, first, last);
         const double distance =
             std::copysign((p - foot.point).norm(), (p - foot.point).dot(foot.normal));
         if (i == 0 || std::abs(distance) < std::abs(best.distance_mm)) {

@@ -93,6 +93,24 @@ void VesselShape::validate() const {
             opening_radius_mm, "less than the radius", radius_mm);
 }
 
+IsotensoidDesign IsotensoidShape::dome() const {
+    return {radius_mm, design_radius_mm > 0.0 ? design_radius_mm : opening_radius_mm,
+            stiffness_ratio};
+}
+
+void IsotensoidShape::validate() const {
+    require_positive("radius", radius_mm);
+    require_positive("cylinder-length", cylinder_length_mm);
+    require_positive("opening-radius", opening_radius_mm);
+    require_not_negative("design-radius", design_radius_mm);
+    require(opening_radius_mm < radius_mm, "make.opening_too_large", "opening-radius",
+            opening_radius_mm, "less than the radius", radius_mm);
+    const double least = IsotensoidDome(dome()).least_radius_mm();
+    require(opening_radius_mm >= least, "make.opening_too_small", "opening-radius",
+            opening_radius_mm, "at least, for this design-radius, where the dome turns back,",
+            least);
+}
+
 void ElbowShape::validate() const {
     require_positive("pipe-radius", pipe_radius_mm);
     require_positive("bend-radius", bend_radius_mm);

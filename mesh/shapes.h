@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/units.h"
+#include "mesh/isotensoid.h"
 
 namespace meshwind {
 
@@ -33,6 +34,22 @@ struct VesselShape {
     double opening_radius_mm = 15.0;  ///< of both polar openings; 0: closed
 
     /// \throws InputError make.not_positive, make.opening_too_large
+    void validate() const;
+};
+
+/// Cylinder around z with an isotensoid dome at each end (mesh/isotensoid.h), centred; smooth in
+/// its tangent plane. Two rims, of the openings.
+struct IsotensoidShape {
+    double radius_mm = 75.0;
+    double cylinder_length_mm = 200.0;
+    double opening_radius_mm = 25.0;  ///< of both polar openings
+    double stiffness_ratio = 0.1;     ///< k_e of the domes; 0: netting
+    double design_radius_mm = 0.0;    ///< Clairaut radius they are made for; 0: that of the opening
+
+    [[nodiscard]] IsotensoidDesign dome() const;
+
+    /// \throws InputError make.not_positive, make.negative, make.stiffness_ratio,
+    /// make.design_radius, make.opening_too_large, make.opening_too_small
     void validate() const;
 };
 

@@ -241,6 +241,29 @@ class BadInput(program.ProgramTest):
                 self.refused(*arguments, word=word)
         self.assertEqual([f.name for f in self.folder.iterdir()], ["cylinder.stl"])
 
+    def test_design(self):
+        vessel = ["design", "vessel", "--radius", "40", "--length", "80", "--opening"]
+        for arguments, word in (([], "--opening"),
+                                (["40"], "less than the radius"),
+                                (["-1"], "opening"),
+                                (["15", "--ke", "0"], "turns back"),
+                                (["15", "--ke", "1"], "ke"),
+                                (["15", "--ke", "nan"], "ke"),
+                                (["15", "--ke", "0.1", "--e1", "1"], "--ke"),
+                                (["15", "--e1", "132", "--e2", "10"], "--nu12"),
+                                (["15", "--e1", "10", "--e2", "132", "--nu12", "0.3"], "e1"),
+                                (["15", "--design-radius", "39"], "design-radius"),
+                                (["15", "--angles", "0"], "angles"),
+                                (["15", "--angles", "30,90"], "angles"),
+                                (["15", "--angles", "30,x"], "angles"),
+                                (["15", "--band", "0"], "band"),
+                                (["15", "--wall", "1", "--pressure", "1"], "wall"),
+                                (["15", "--wall", "1e300"], "million"),
+                                (["15", "--pressure", "1"], "strength")):
+            with self.subTest(" ".join(arguments)):
+                self.refused(*(vessel + arguments if arguments else vessel[:-1]), word=word)
+        self.refused("design")
+
     def test_trace(self):
         mandrel = self.make("cylinder", "--edge", "15")
         start = ["trace", mandrel, "-o", self.folder / "path.csv", "--start"]

@@ -7,8 +7,8 @@ import xml.etree.ElementTree
 
 import program
 
-KINDS = ("cylinder", "cone", "vessel", "elbow", "tee", "combination", "frame", "torus",
-         "ellipsoid")
+KINDS = ("cylinder", "cone", "vessel", "isotensoid", "elbow", "tee", "combination", "frame",
+         "torus", "ellipsoid")
 PATH_HEADER = ("point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,bridge_mm"
                .split(","))
 
@@ -19,7 +19,7 @@ class Commands(program.ProgramTest):
         for arguments in (["--help"], ["wind", "--help"], ["inspect", "--help"],
                           ["make", "--help"], ["make", "tee", "--help"], ["trace", "--help"],
                           ["study", "--help"], ["study", "mesh-size", "--help"], ["verify", "--help"],
-                          ["post", "--help"], ["carry", "--help"], ["validate", "--help"]):
+                          ["post", "--help"], ["design", "--help"], ["design", "vessel", "--help"], ["carry", "--help"], ["validate", "--help"]):
             result = self.done(*arguments)
             self.assertIn("--help", result.stdout)
             self.assertEqual(result.stderr, "")
@@ -32,6 +32,42 @@ class Commands(program.ProgramTest):
                     self.assertIn(file.name, self.done("make", kind, "--edge", "8", "-o",
                                                        file).stdout)
                     self.assertGreater(file.stat().st_size, 1000)
+
+    VESSEL = ("design", "vessel", "--radius", "40", "--opening", "15", "--length", "80")
+
+    def test_design_of_the_published_vessel(self):
+        """data/reference/seed000.json: c = 1.5 cm, k_e as printed and as reciprocity has it."""
+        with open(program.SOURCE / "data/reference/seed000.json") as file:
+            ref = json.load(file)["vessel"]
+        report = json.loads(self.done(*self.VESSEL, "--ke", ref["k_e"]["as_printed"], "--band", "5",
+                                      "--angles", "20,25,30,35,40", "--json").stdout)
+        dome = next(d for d in ref["domes"] if d["id"] == "c1.5")
+        self.assertAlmostEqual(report["dome"]["height_mm"], 10 * dome["height"], 7)
+        self.assertAlmostEqual(report["dome"]["meridian_mm"], 10 * dome["meridian"], 7)
+        self.assertEqual([row["geodesic"] for row in report["angles"]], [False] + 4 * [True])
+        self.assertGreater(report["angles"][0]["slip_to_turn"], 0)
+        wanted = [g for g in ref["geodesics"] if g["dome"] == "c1.5"]
+        for row, geodesic in zip(report["angles"][1:], wanted):
+            self.assertAlmostEqual(row["angle_deg"], geodesic["angle_deg"], 8)
+            self.assertAlmostEqual(math.radians(row["dome_turn_deg"]),
+                                   geodesic["dome_turn_rad"], 8)
+            self.assertAlmostEqual(row["dome_pass_mm"], 10 * geodesic["pass_length"], 7)
+            self.assertAlmostEqual(row["circuit_length_mm"], 10 * geodesic["circuit_length"], 6)
+            self.assertAlmostEqual(row["circuits"] * row["circuit_length_mm"],
+                                   row["fibre_length_mm"], 3)
+            thickest = max(p["thickness_mm"] for p in row["thickness"])
+            self.assertLessEqual(thickest, row["thickest_mm"])
+        ply = json.loads(self.done(*self.VESSEL, "--e1", ref["E1"], "--e2", ref["E2"], "--nu12",
+                                   ref["nu12"], "--json").stdout)
+        self.assertAlmostEqual(ply["vessel"]["ke"], ref["k_e"]["value"], 8)
+
+    def test_design_prints_a_row_for_each_angle(self):
+        lines = self.done(*self.VESSEL, "--angles", "20,30,54.7", "--pressure", "60", "--strength",
+                          "1200").stdout.splitlines()
+        self.assertIn("hoops", lines[2])
+        self.assertEqual([line.split()[0] for line in lines[4:7]], ["20.00", "30.00", "54.70"])
+        self.assertIn("slip ratio", lines[7])
+        self.assertEqual(len(lines), 8)
 
     def test_inspect_has_the_keys_of_the_contract(self):
         mandrel = self.make("tee", "--edge", "12")

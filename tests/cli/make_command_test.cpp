@@ -44,7 +44,7 @@ TEST(RunMake, RefusesWhatItDoesNotKnow) {
 TEST(HelpOf, ShowsMeaningUnitAndDefault) {
     const auto kinds = make_kinds();
     EXPECT_EQ(help_of(kinds[0].parameters[0]), "radius, mm [50]");
-    EXPECT_EQ(help_of(kinds[3].parameters[2]), "angle of the bend, deg [90]");
+    EXPECT_EQ(help_of(kinds[4].parameters[2]), "angle of the bend, deg [90]");
 }
 
 }  // namespace

@@ -19,11 +19,16 @@ TEST(MandrelFoot, FindsTheFootOfPointsOffTheSurface) {
         if (kind.name == "combination") {
             continue;  // its sharp rings have no single normal
         }
-        const TriangleSoup soup = make_mandrel(kind.name, {}, {.edge_mm = 10.0, .irregular = true});
+        MakeValues values;
+        if (kind.name == "isotensoid") {
+            values = {{"design-radius", 20.0}};  // else concave by under 4 mm beside the opening
+        }
+        const TriangleSoup soup =
+            make_mandrel(kind.name, values, {.edge_mm = 10.0, .irregular = true});
         for (const Vector3d& point : soup.points_mm) {
-            const Vector3d normal = mandrel_foot(kind.name, {}, point).normal;
+            const Vector3d normal = mandrel_foot(kind.name, values, point).normal;
             for (const double off : {-4.0, 0.5, 4.0}) {
-                const ShapeFoot foot = mandrel_foot(kind.name, {}, point + off * normal);
+                const ShapeFoot foot = mandrel_foot(kind.name, values, point + off * normal);
                 ASSERT_NEAR(foot.distance_mm, off, 1e-9) << kind.name << ' ' << point.transpose();
                 ASSERT_LT((foot.point_mm - point).norm(), 1e-6) << kind.name;
                 ASSERT_LT((foot.normal - normal).norm(), 1e-6) << kind.name;
@@ -60,6 +65,8 @@ TEST(MandrelFoot, NamesThePiece) {
     EXPECT_EQ(vessel_foot({}, {75, 0, 0}).part, ShapePart::Cylinder);
     EXPECT_EQ(vessel_foot({}, {40, 0, 140}).part, ShapePart::Dome);
     EXPECT_EQ(vessel_foot({}, {40, 0, -140}).part, ShapePart::Dome);
+    EXPECT_EQ(isotensoid_foot({}, {75, 0, 99}).part, ShapePart::Cylinder);
+    EXPECT_EQ(isotensoid_foot({}, {40, 0, -140}).part, ShapePart::Dome);
     EXPECT_EQ(combination_foot({}, {0, 50, 150}).part, ShapePart::Cone);
     EXPECT_EQ(elbow_foot({}, {40, 0, 10}).part, ShapePart::Leg);
     EXPECT_EQ(elbow_foot({}, {150, 0, 215}).part, ShapePart::Leg);

@@ -136,6 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
                     MakeCase{"widening_cone", "cone", {{"radius2", 90.0}}, 0, 2},
                     MakeCase{"vessel", "vessel", {}, 0, 2},
                     MakeCase{"closed_vessel", "vessel", {{"opening-radius", 0.0}}, 2, 0},
+                    MakeCase{"isotensoid", "isotensoid", {}, 0, 2},
+                    MakeCase{"netting", "isotensoid", {{"ke", 0.0}, {"design-radius", 24.0}}, 0, 2},
                     MakeCase{"elbow", "elbow", {}, 0, 2},
                     MakeCase{"u_bend", "elbow", {{"angle", kPi}, {"leg1", 0.0}}, 0, 2},
                     MakeCase{"tee", "tee", {}, -1, 3},
@@ -220,8 +222,9 @@ TEST(MakeMandrel, RefusesEveryNonPositiveParameter) {
     for (const MakeKind& kind : make_kinds()) {
         for (const MakeParameter& parameter : kind.parameters) {
             const std::string name(parameter.name);
-            const bool may_be_zero =
-                name == "opening-radius" || name == "leg1" || name == "leg2" || name == "lean";
+            const bool may_be_zero = (name == "opening-radius" && kind.name != "isotensoid") ||
+                                     name == "ke" || name == "design-radius" || name == "leg1" ||
+                                     name == "leg2" || name == "lean";
             const std::string code = may_be_zero ? "make.negative" : "make.not_positive";
             for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
                 EXPECT_EQ(code_of(std::string(kind.name), {{name, bad}}), code) << name << bad;
@@ -236,6 +239,10 @@ TEST(MakeMandrel, RefusesEveryNonPositiveParameter) {
 
 TEST(MakeMandrel, RefusesWhatDoesNotFit) {
     EXPECT_EQ(code_of("vessel", {{"opening-radius", 75.0}}), "make.opening_too_large");
+    EXPECT_EQ(code_of("isotensoid", {{"opening-radius", 75.0}}), "make.opening_too_large");
+    EXPECT_EQ(code_of("isotensoid", {{"ke", 0.0}}), "make.opening_too_small");
+    EXPECT_EQ(code_of("isotensoid", {{"ke", 1.0}}), "make.stiffness_ratio");
+    EXPECT_EQ(code_of("isotensoid", {{"design-radius", 70.0}}), "make.design_radius");
     EXPECT_EQ(code_of("combination", {{"opening-radius", 41.0}}), "make.opening_too_large");
     EXPECT_EQ(code_of("elbow", {{"bend-radius", 40.0}}), "make.bend_too_tight");
     EXPECT_EQ(code_of("elbow", {{"angle", 3.2}}), "make.angle_too_large");
