@@ -307,6 +307,7 @@ Vector2d FieldWalker::towards(const Vector3d& point_mm) const {
 }
 
 bool FieldWalker::move_under(const Vector3d& point_mm) {
+    entry_ = kNoEdge;  // where it came from says nothing of where this point is
     for (int i = 0; i < kMaxNearing; ++i) {
         const Vector2d step = towards(point_mm);
         double share = 1.0;

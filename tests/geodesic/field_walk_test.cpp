@@ -333,6 +333,24 @@ TEST(MoveUnder, DoesNotReachBeyondARim) {
     EXPECT_TRUE(other.move_under({55.0, 0.0, 149.0}));
 }
 
+// What one point is beyond says nothing of the next: here it lies over the edge that led to a
+// vertex.
+TEST(MoveUnder, FollowsAPathThatStartsAtAVertex) {
+    for (double azimuth_deg = 0.0; azimuth_deg < 360.0; azimuth_deg += 90.0) {
+        const auto place = [&](double way_mm) {
+            const double turn = rad_from_deg(azimuth_deg) + way_mm / std::sqrt(2.0) / 50.0;
+            return Vector3d(50.0 * std::cos(turn), 50.0 * std::sin(turn),
+                            150.0 - way_mm / std::sqrt(2.0));
+        };
+        FieldWalker walker(cylinder(), test::patch_point(cylinder(), place(2.0)));
+        for (double way_mm = 0.0; way_mm < 100.0; way_mm += 4.0) {
+            (void)walker.move_under(place(way_mm));
+            EXPECT_LT((walker.position_mm() - place(way_mm)).norm(), 0.1)
+                << azimuth_deg << " deg, " << way_mm << " mm";
+        }
+    }
+}
+
 TEST(FieldWalker, StandsWhereItIsMoved) {
     const Surface flat = plate();
     FieldWalker walker(flat, {0});
