@@ -12,10 +12,7 @@
 #include "geodesic/field_walk.h"
 #include "geodesic/measure.h"
 #include "postproc/landing_path.h"
-#include "winding/coverage.h"
-#include "winding/footprint.h"
-#include "winding/random.h"
-#include "winding/samples.h"
+#include "winding/measure_plan.h"
 
 namespace meshwind {
 namespace {
@@ -28,10 +25,6 @@ constexpr double kMeets_rad = 0.05;
 
 // Share of the friction that a join may use: the rest is for what the blocks add.
 constexpr double kPlannedFriction = 0.96;
-
-// Samples per band width, and most of them: as planned coverage is measured on.
-constexpr double kSamplesPerBand = 4.0;
-constexpr double kMaxSamples = 6e5;
 
 Eigen::Affine3d mandrel_from_table(const Mandrel& mandrel, const ImportRequest& request,
                                    bool in_mm) {
@@ -70,7 +63,8 @@ public:
         }
         plan_.pieces.front().starts_fibre = true;
         plan_.fibres = 1;
-        cover();
+        const Surface& wound = setup_.mandrel.surface;
+        measure_plan(wound, setup_.job.tow.width_mm, seed_, {}, plan_);
         tell_fit(paths.moves());
         return std::move(plan_);
     }
@@ -155,33 +149,6 @@ private:
         FieldWalker walker(wall_, station.at);
         (void)walker.move_under(station.position_mm);
         return walker.station(station.tangent);
-    }
-
-    void cover() {
-        const Surface& surface = setup_.mandrel.surface;
-        const double area = area_mm2({surface.position_mm, surface.face});
-        const double spacing_mm =
-            std::max(setup_.job.tow.width_mm / kSamplesPerBand, std::sqrt(area / kMaxSamples));
-        const CoverageSamples samples =
-            sample_surface(surface, spacing_mm, seed_of(Stream::Sampling, seed_));
-        const FootprintFinder footprints(wall_, samples, setup_.job.tow.width_mm);
-        FootprintFinder::Scratch scratch = footprints.make_scratch();
-        std::vector<std::int32_t> layers(samples.size(), 0);
-        std::vector<const SurfacePath*> courses;
-        for (const Piece& piece : plan_.pieces) {
-            if (piece.kind == PieceKind::Course) {
-                courses.push_back(&piece.path);
-                for (const std::int32_t sample : footprints.footprint(piece.path, scratch)) {
-                    ++layers[static_cast<std::size_t>(sample)];
-                }
-            }
-        }
-        plan_.coverage = measure_coverage(layers);
-        plan_.face_layers = layers_per_face(surface, samples, layers);
-        plan_.face_angle_rad = angle_per_face(wall_, plan_.pieces);
-        plan_.face_angle_rad.resize(surface.face.size());
-        plan_.angle = wound_angles(wall_, courses, std::nullopt);
-        plan_.family.assign(courses.size(), -1);
     }
 
     const Setup& setup_;

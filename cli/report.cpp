@@ -83,6 +83,21 @@ json angles_report(const Plan& plan) {
     return angles;
 }
 
+json pattern_report(const LaidPattern& laid) {
+    const Pattern& pattern = laid.pattern;
+    return {{"angle_deg", report_number(deg_from_rad(laid.angle_rad))},
+            {"slip_ratio", report_number(laid.slip_ratio)},
+            {"circuits", pattern.circuits},
+            {"turns", pattern.turns},
+            {"starts", pattern.starts},
+            {"skip", pattern.skip},
+            {"order", pattern.order == BandOrder::Leading ? "leading" : "lagging"},
+            {"circuit_turn_deg", report_number(deg_from_rad(pattern.turn_rad))},
+            {"dwell_deg", report_number(deg_from_rad(pattern.dwell_rad))},
+            {"overlap", report_number(pattern.overlap)},
+            {"closure_deg", report_number(deg_from_rad(laid.closure_rad))}};
+}
+
 json plan_report(const Plan& plan) {
     json uncovered = json::array();
     for (const Uncovered& u : plan.uncovered) {
@@ -128,6 +143,12 @@ json plan_report(const Plan& plan) {
           {"outcomes", refusals},
           {"rejected_courses", plan.effort.rejected_courses},
           {"rejections", rejections}}}};
+    if (plan.coverage.regular_cv) {
+        report["coverage"]["regular_cv"] = report_number(*plan.coverage.regular_cv);
+    }
+    if (plan.pattern) {
+        report["pattern"] = pattern_report(*plan.pattern);
+    }
     if (!plan.failure.empty()) {
         report["failure"] = plan.failure;
     }
@@ -332,6 +353,13 @@ void print_summary(std::ostream& out, const WindResult& result,
             << (result.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")")
             << ", " << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
             << plan.coverage.max_layers << '\n';
+        if (plan.pattern) {
+            const Pattern& pattern = plan.pattern->pattern;
+            out << "pattern: " << pattern.circuits << " circuits at "
+                << fixed(deg_from_rad(plan.pattern->angle_rad), 2) << " deg, " << pattern.starts
+                << " starts, dwell " << fixed(deg_from_rad(pattern.dwell_rad), 2)
+                << " deg a circuit, bands overlap by " << percent(pattern.overlap) << '\n';
+        }
         if (result.import) {
             const ImportFit& fit = *result.import;
             out << fit.points << " landing points of " << fit.file << ", off the mandrel by "

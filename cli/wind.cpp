@@ -24,6 +24,7 @@
 #include "postproc/path_csv.h"
 #include "version.h"
 #include "winding/cover.h"
+#include "winding/pattern_plan.h"
 
 namespace meshwind {
 namespace {
@@ -35,6 +36,11 @@ constexpr double kPlannedFriction = 0.96;
 
 // Share of the reachable wall that a plan must cover to count as one.
 constexpr double kCoveredShare = 0.9;
+
+// Winding angles at the widest place that a helical layer without one is tried with.
+constexpr double kFirstAngle_deg = 45.0;
+constexpr double kLastAngle_deg = 80.0;
+constexpr double kAngleStep_deg = 5.0;
 
 class Stopwatch {
 public:
@@ -73,10 +79,6 @@ void refuse_layers_not_offered(const Job& job, const fs::path& file) {
         not_offered(file, "/layers", "more than one layer", "give one layer");
     }
     const LayerKind kind = job.layers.front().kind;
-    if (kind != LayerKind::Auto && kind != LayerKind::Cover && kind != LayerKind::Imported) {
-        not_offered(file, "/layers/0/kind", "this kind of layer",
-                    "use \"cover\", \"auto\" or \"imported\"");
-    }
     if (kind != LayerKind::Imported && !job.eye.lengths.empty()) {
         not_offered(file, "/eye/lengths",
                     "a free length by stretches of fibre that is yet to be planned",
@@ -155,14 +157,89 @@ private:
             watch_.stage("plan");
             return;
         }
-        plan_courses();
+        const LayerKind kind = setup_.job.layers.front().kind;
+        if (kind == LayerKind::Cover) {
+            plan_courses();
+        } else if (kind != LayerKind::Auto) {
+            plan_pattern_of(pattern_of(kind));
+        } else if (!plan_pattern_that_holds()) {
+            plan_courses();
+        }
+        watch_.stage("plan");
+    }
+
+    [[nodiscard]] static PatternKind pattern_of(LayerKind kind) {
+        switch (kind) {
+            case LayerKind::Polar:
+                return PatternKind::Polar;
+            case LayerKind::Hoop:
+                return PatternKind::Hoop;
+            default:
+                return PatternKind::Helical;
+        }
+    }
+
+    // A body of revolution gets a pattern that covers it: polar where both ends are narrow, else
+    // helical, by the angle asked for or the smallest that holds. False where there is none.
+    bool plan_pattern_that_holds() {
+        const RevolutionFinding found = find_revolution(setup_.mandrel);
+        if (!found.body) {
+            return false;
+        }
+        const auto covers = [&](PatternKind kind, double angle_rad) {
+            plan_pattern_on(*found.body, kind, angle_rad);
+            const Plan& plan = result_.plan;
+            return plan.failure.empty() && plan.coverage.fraction >= kCoveredShare;
+        };
+        bool covered = false;
+        if (const auto angle_deg = setup_.job.layers.front().angle_deg) {
+            covered = covers(PatternKind::Helical, rad_from_deg(*angle_deg));
+        } else {
+            covered = covers(PatternKind::Polar, 0.0);
+            for (double next_deg = kFirstAngle_deg; !covered && next_deg <= kLastAngle_deg;
+                 next_deg += kAngleStep_deg) {
+                covered = covers(PatternKind::Helical, rad_from_deg(next_deg));
+            }
+        }
+        return covered && wind_whole(result_.plan.pieces, false).empty();
+    }
+
+    void plan_pattern_of(PatternKind kind) {
+        const RevolutionFinding found = find_revolution(setup_.mandrel);
+        if (!found.body) {
+            result_.plan.planner = "pattern";
+            result_.plan.failure =
+                "patterns are wound on bodies of revolution, and this is none: " + found.why_not +
+                "; use \"cover\"";
+            return;
+        }
+        plan_pattern_on(
+            *found.body, kind,
+            rad_from_deg(setup_.job.layers.front().angle_deg.value_or(kFirstAngle_deg)));
+    }
+
+    void plan_pattern_on(const BodyOfRevolution& body, PatternKind kind, double angle_rad) {
+        tell("plan", 0.0);
+        PatternOptions options;
+        options.kind = kind;
+        options.angle_rad = angle_rad;
+        options.layers = setup_.job.layers.front().target_layers;
+        options.tow = planned_tow();
+        options.turn.extension_mm = setup_.job.mandrel.extension_mm;
+        options.seed = request_.seed;
+        result_.plan = plan_pattern(setup_.mandrel, body, options);
+    }
+
+    [[nodiscard]] Tow planned_tow() const {
+        const Job::TowJob& tow = setup_.job.tow;
+        return {tow.width_mm, tow.thickness_mm, kPlannedFriction * tow.friction,
+                tow.bridging_tolerance_mm};
     }
 
     void plan_courses() {
         const Job& job = setup_.job;
         CoverOptions options;
-        options.tow = {job.tow.width_mm, job.tow.thickness_mm, kPlannedFriction * job.tow.friction,
-                       job.tow.bridging_tolerance_mm};
+        options.tow = planned_tow();
         options.turn.extension_mm = job.mandrel.extension_mm;
         options.free_fibre = setup_.rule.free_fibre;
         options.select.target_layers =
@@ -184,7 +261,6 @@ private:
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         result_.plan = plan_cover(setup_.mandrel, *setup_.obstacles, options);
-        watch_.stage("plan");
     }
 
     [[nodiscard]] static Rejection first_of(const std::map<std::size_t, Rejection>& refused) {

@@ -18,28 +18,13 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-Piece piece_of(Turn&& turn, std::int32_t rim) {
-    Piece piece;
-    piece.kind = PieceKind::Transition;
-    piece.string.gap_mm.assign(turn.path.size(), 0.0);
-    piece.string.slope.assign(turn.path.size(), 0.0);
-    for (const PathPoint& point : turn.path) {
-        piece.slip.push_back(std::abs(point.kg_per_mm) / point.kn_per_mm);
-    }
-    piece.worst_slip = turn.slip;
-    piece.path = std::move(turn.path);
-    piece.start_rim = rim;
-    piece.end_rim = rim;
-    return piece;
-}
-
 Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
                    TurnsAtRim& turns) {
     Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, kStation_mm);
     ++turns.turns;
     turns.dwell_rad += turn.dwell_rad;
     turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);
-    return piece_of(std::move(turn), from.rim);
+    return piece_of_turn(std::move(turn), from.rim);
 }
 
 void add_piece(Piece piece, Plan& plan) {
@@ -55,6 +40,21 @@ void add_piece(Piece piece, Plan& plan) {
 }
 
 }  // namespace
+
+Piece piece_of_turn(Turn&& turn, std::int32_t rim) {
+    Piece piece;
+    piece.kind = PieceKind::Transition;
+    piece.string.gap_mm.assign(turn.path.size(), 0.0);
+    piece.string.slope.assign(turn.path.size(), 0.0);
+    for (const PathPoint& point : turn.path) {
+        piece.slip.push_back(std::abs(point.kg_per_mm) / point.kn_per_mm);
+    }
+    piece.worst_slip = turn.slip;
+    piece.path = std::move(turn.path);
+    piece.start_rim = rim;
+    piece.end_rim = rim;
+    return piece;
+}
 
 Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
     Piece piece;
@@ -92,8 +92,8 @@ void add_half_turns(const CourseRules& rules, const Member& member, bool backwar
     const RimCrossing& end = end_of(member, backward);
     Turn before = half(start);
     before.path = reversed(before.path);
-    pieces.insert(pieces.begin(), piece_of(std::move(before), start.rim));
-    pieces.push_back(piece_of(half(end), end.rim));
+    pieces.insert(pieces.begin(), piece_of_turn(std::move(before), start.rim));
+    pieces.push_back(piece_of_turn(half(end), end.rim));
 }
 
 void lay_out(const CourseRules& rules, std::span<const Member> members,

@@ -14,6 +14,9 @@ namespace meshwind {
 /// The same of a proven member, followed again.
 [[nodiscard]] Piece piece_of(const CourseRules& rules, const Member& member, bool backward);
 
+/// A turn at a rim as a piece.
+[[nodiscard]] Piece piece_of_turn(Turn&& turn, std::int32_t rim);
+
 /// Lays out courses and the turns between them: the plan's pieces, fibres, turns and worst figures.
 /// \param members proven ones \param order of some of them
 void lay_out(const CourseRules& rules, std::span<const Member> members,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "geodesic/measure.h"
 #include "winding/arrange.h"
 #include "winding/library.h"
+#include "winding/pattern.h"
 #include "winding/wound_angle.h"
 
 namespace meshwind {
@@ -59,6 +61,8 @@ struct Coverage {
     double mean_layers = 0.0;
     int max_layers = 0;
     double cv = 0.0;  ///< standard deviation of the layers over their mean
+    /// The same where a pattern is regular, of the layers averaged over a tow width.
+    std::optional<double> regular_cv{};
 };
 
 /// Bare wall with the rule that keeps it bare.
@@ -83,6 +87,14 @@ struct TurnsAtRim {
     double dwell_rad = 0.0;     ///< wound along hoops, in all
 };
 
+/// A pattern as it is laid.
+struct LaidPattern {
+    Pattern pattern;
+    double angle_rad = 0.0;    ///< winding angle at the widest place
+    double slip_ratio = 0.0;   ///< with which the courses are steered
+    double closure_rad = 0.0;  ///< how far off its start the fibre ends, about the spindle
+};
+
 /// What planning took; for reports.
 struct PlanEffort {
     std::uint64_t seed = 0;
@@ -97,7 +109,7 @@ struct PlanEffort {
 };
 
 struct Plan {
-    std::string planner;  ///< "cover"
+    std::string planner;  ///< "cover", "pattern", "imported"
     std::vector<Piece> pieces;
     int courses = 0;
     int fibres = 0;  ///< continuous fibres, one after the other
@@ -117,6 +129,7 @@ struct Plan {
     std::vector<std::int32_t> family;    ///< per course in winding order (families.h)
     WoundAngles angle;                   ///< of the courses
     Places places;                       ///< of junctions and hoops in the winding order
+    std::optional<LaidPattern> pattern;  ///< of the pattern planner's circuits
     PlanEffort effort;
     std::string failure;  ///< empty, or in words why nothing can be wound
 };

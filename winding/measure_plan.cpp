@@ -1,0 +1,147 @@
+#include "winding/measure_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/parallel.h"
+#include "mesh/nearest.h"
+#include "mesh/triangle_soup.h"
+#include "winding/arrange.h"
+#include "winding/coverage.h"
+#include "winding/families.h"
+#include "winding/random.h"
+#include "winding/samples.h"
+
+namespace meshwind {
+namespace {
+
+// Samples per tow width, and most of them: as planned coverage is measured on.
+constexpr double kSamplesPerTow = 4.0;
+constexpr double kMaxSamples = 6e5;
+
+constexpr std::size_t kChunk = 256;
+
+Coverage coverage_where(const PlanZones::Zone& counts, const CoverageSamples& samples,
+                        std::span<const std::int32_t> layers) {
+    if (!counts) {
+        return measure_coverage(layers);
+    }
+    std::vector<std::int32_t> asked_for;
+    std::size_t covered = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (counts(samples.position_mm[i])) {
+            asked_for.push_back(layers[i]);
+        }
+        covered += layers[i] > 0 ? 1 : 0;
+    }
+    const auto share = [&](std::size_t n) {
+        return static_cast<double>(n) / static_cast<double>(samples.size());
+    };
+    Coverage coverage = asked_for.empty() ? Coverage{} : measure_coverage(asked_for);
+    coverage.fraction *= share(asked_for.size());
+    coverage.reachable = share(asked_for.size());
+    return coverage;
+}
+
+// Coefficient of variation of the layers, each taken over a tow width about it: narrower overlaps
+// and gaps flow out.
+double smooth_cv(const PlanZones::Zone& zone, const CoverageSamples& samples,
+                 std::span<const std::int32_t> layers, double tow_width_mm) {
+    const NearestPoints points(samples.position_mm);
+    std::vector<double> mean(samples.size(), -1.0);
+    parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!zone(samples.position_mm[i])) {
+                continue;
+            }
+            const std::vector<std::int32_t> near =
+                points.within(samples.position_mm[i], tow_width_mm);
+            double sum = 0.0;
+            for (const std::int32_t k : near) {
+                sum += layers[static_cast<std::size_t>(k)];
+            }
+            mean[i] = sum / static_cast<double>(near.size());
+        }
+    });
+    double n = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double layer : mean) {
+        if (layer >= 0.0) {
+            n += 1.0;
+            sum += layer;
+            squares += layer * layer;
+        }
+    }
+    return sum > 0.0 ? std::sqrt(std::max(0.0, squares * n - sum * sum)) / sum : 0.0;
+}
+
+// A course with as much of the turns before and after it as its band still covers wall from.
+SurfacePath with_ends(std::span<const Piece> pieces, std::size_t i, double tow_width_mm) {
+    SurfacePath path = pieces[i].path;
+    const auto over_rim = [&](std::size_t k) {
+        return k < pieces.size() && pieces[k].kind == PieceKind::Transition &&
+               pieces[k].path.front().at.face == kNoFace;
+    };
+    if (over_rim(i + 1) && !pieces[i + 1].starts_fibre) {
+        const double end_mm = path.back().s_mm;
+        const SurfacePoint end = path.back().at;
+        for (PathPoint point : pieces[i + 1].path) {
+            if (point.s_mm > 0.0 && point.s_mm <= tow_width_mm) {
+                point.at = end;
+                point.s_mm += end_mm;
+                path.push_back(point);
+            }
+        }
+    }
+    if (i > 0 && over_rim(i - 1) && !pieces[i].starts_fibre) {
+        const SurfacePath& turn = pieces[i - 1].path;
+        const double start_mm = turn.back().s_mm;
+        SurfacePath before;
+        for (PathPoint point : turn) {
+            if (point.s_mm < start_mm && point.s_mm >= start_mm - tow_width_mm) {
+                point.at = path.front().at;
+                point.s_mm -= start_mm;
+                before.push_back(point);
+            }
+        }
+        path.insert(path.begin(), before.begin(), before.end());
+    }
+    return path;
+}
+
+}  // namespace
+
+void measure_plan(const Surface& surface, double tow_width_mm, std::uint64_t seed,
+                  const PlanZones& zones, Plan& plan) {
+    const double area = area_mm2({surface.position_mm, surface.face});
+    const double spacing_mm =
+        std::max(tow_width_mm / kSamplesPerTow, std::sqrt(area / kMaxSamples));
+    const CoverageSamples samples =
+        sample_surface(surface, spacing_mm, seed_of(Stream::Sampling, seed));
+    const FootprintFinder footprints(surface, samples, tow_width_mm);
+    FootprintFinder::Scratch scratch = footprints.make_scratch();
+    std::vector<std::int32_t> layers(samples.size(), 0);
+    std::vector<const SurfacePath*> courses;
+    for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
+        if (plan.pieces[i].kind == PieceKind::Course) {
+            courses.push_back(&plan.pieces[i].path);
+            const SurfacePath path = with_ends(plan.pieces, i, tow_width_mm);
+            for (const std::int32_t sample : footprints.footprint(path, scratch)) {
+                ++layers[static_cast<std::size_t>(sample)];
+            }
+        }
+    }
+    plan.coverage = coverage_where(zones.asked_for, samples, layers);
+    if (zones.regular) {
+        plan.coverage.regular_cv = smooth_cv(zones.regular, samples, layers, tow_width_mm);
+    }
+    plan.face_layers = layers_per_face(surface, samples, layers);
+    plan.face_angle_rad = angle_per_face(surface, plan.pieces);
+    plan.angle = wound_angles(surface, courses, std::nullopt);
+    plan.places = places_of(surface, courses);
+    plan.family = families_of(courses, tow_width_mm);
+}
+
+}  // namespace meshwind

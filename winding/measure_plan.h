@@ -1,0 +1,28 @@
+/// What a plan that was not made from coverage samples covers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "winding/library.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+/// Parts of a surface by position; an empty one is all of it.
+struct PlanZones {
+    using Zone = std::function<bool(const Eigen::Vector3d& position_mm)>;
+
+    /// What is to be covered. Wall elsewhere is left out of mean, maximum and scatter, and
+    /// Coverage::reachable is the share of this zone; without one it is left at 0.
+    Zone asked_for{};
+    /// Where the winding is regular: Coverage::regular_cv is measured there; none without one.
+    Zone regular{};
+};
+
+/// Fills in coverage, layers and angles per face, winding angles and places of a plan's courses.
+/// \param surface what is wound; pieces may reach beyond it \param seed of the samples
+void measure_plan(const Surface& surface, double tow_width_mm, std::uint64_t seed,
+                  const PlanZones& zones, Plan& plan);
+
+}  // namespace meshwind

@@ -1,0 +1,502 @@
+#include "winding/pattern_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/text_number.h"
+#include "core/units.h"
+#include "geodesic/field_walk.h"
+#include "geodesic/measure.h"
+#include "mesh/nearest.h"
+#include "winding/hoop_path.h"
+#include "winding/lay_out.h"
+#include "winding/measure_plan.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Distance of the stations of a plan, as the other planners have it.
+constexpr double kStation_mm = 4.0;
+
+// A pass that meets no end within this circles for ever.
+constexpr double kLongest_mm = 1e5;
+
+// A closed pattern may change the winding angle by so much.
+constexpr double kMostAngle_rad = rad_from_deg(3.0);
+
+constexpr double kSlope_rad = 1e-4;
+
+// Bands of a closed pattern overlap by no more than this share of them.
+constexpr double kMostOverlap = 0.25;
+
+// Closure in rad: far below what any axis resolves.
+constexpr double kClosed_rad = 1e-12;
+constexpr int kSecants = 60;
+constexpr int kHalvings = 100;
+
+// A turn's dwell is found as an angle of up to 2 pi; this much keeps rounding from making none a
+// whole turn.
+constexpr double kLeastDwell_rad = 1e-9;
+
+// Share of the friction with which hoops turn into a helix and back: it is over in a few mm.
+constexpr double kHoopSteering = 0.5;
+
+// Openings that differ by less are turned at without steering.
+constexpr double kSameTurn_mm = 1e-6;
+
+double positive_angle(double angle_rad) {
+    const double rest = std::fmod(angle_rad, 2.0 * kPi);
+    return rest < 0.0 ? rest + 2.0 * kPi : rest;
+}
+
+std::string degrees(double angle_rad) {
+    return fixed(deg_from_rad(angle_rad), 2) + " deg";
+}
+
+// The faces under a path. Its stations stay on the body that the meridian sweeps, from which the
+// mesh is off by BodyOfRevolution::residual_mm.
+class Wall {
+public:
+    explicit Wall(const Surface& surface) : surface_(surface) {
+        std::vector<Vector3d> centres;
+        for (const auto& [a, b, c] : surface.face) {
+            centres.push_back((point(a) + point(b) + point(c)) / 3.0);
+        }
+        nearest_.emplace(centres);
+    }
+
+    [[nodiscard]] SurfacePath path(const std::vector<MeridianStation>& stations,
+                                   double turn_rad) const {
+        SurfacePath path;
+        std::optional<FieldWalker> walker;
+        for (const MeridianStation& station : stations) {
+            PathPoint point = swept(station, turn_rad);
+            if (!walker || !walker->move_under(point.position_mm)) {
+                // On a rim the place may lie just beyond.
+                walker.emplace(surface_, SurfacePoint{nearest_->nearest(point.position_mm)});
+                (void)walker->move_under(point.position_mm);
+            }
+            point.at = walker->station(point.tangent).at;
+            path.push_back(point);
+        }
+        return path;
+    }
+
+private:
+    [[nodiscard]] const Vector3d& point(std::int32_t i) const {
+        return surface_.position_mm[static_cast<std::size_t>(i)];
+    }
+
+    const Surface& surface_;
+    std::optional<NearestPoints> nearest_;
+};
+
+class PatternPlanner {
+public:
+    PatternPlanner(const Mandrel& mandrel, const BodyOfRevolution& body,
+                   const PatternOptions& options)
+        : mandrel_(mandrel), body_(body), meridian_(body.meridian), options_(options) {
+        rule_ = options.turn;
+        rule_.friction = options.tow.friction;
+        rule_.band_mm = options.tow.width_mm;
+        plan_.planner = "pattern";
+        widest_mm_ = meridian_.widest_mm();
+        widest_radius_mm_ = meridian_.at(widest_mm_).radius_mm;
+        angle_rad_ = options.angle_rad;
+    }
+
+    Plan run() {
+        if (options_.kind == PatternKind::Hoop) {
+            lay_hoops();
+            return std::move(plan_);
+        }
+        if (options_.kind == PatternKind::Polar && !aim_at_openings()) {
+            return std::move(plan_);
+        }
+        pass_ = pass(angle_rad_);
+        if (!ends_hold() || !choose_pattern()) {
+            return std::move(plan_);
+        }
+        lay();
+        // At a turn of its own the band is whole as far as its middle.
+        measure(pass_.stations.front().arc_mm, pass_.stations.back().arc_mm);
+        return std::move(plan_);
+    }
+
+private:
+    bool fail(const std::string& words) {
+        plan_.failure = words;
+        return false;
+    }
+
+    [[nodiscard]] MeridianPass pass(double angle_rad) const {
+        return pass_through(meridian_, widest_mm_, angle_rad, slip_ratio_, kStation_mm,
+                            kLongest_mm);
+    }
+
+    [[nodiscard]] const Rim* rim_of(std::size_t end) const {
+        const std::int32_t rim = body_.end[end].rim;
+        return rim >= 0 ? &mandrel_.rims[static_cast<std::size_t>(rim)] : nullptr;
+    }
+
+    // r sin(angle) where a pass stops: the radius at which it turns, or would.
+    static double turning_mm(const MeridianStation& stop) {
+        return stop.place.radius_mm * std::sin(stop.angle_rad);
+    }
+
+    // Winding angle at which the lower end is turned at a radius.
+    [[nodiscard]] double angle_for_lower(double radius_mm) const {
+        double low = 0.0;
+        double high = 0.5 * kPi;
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = 0.5 * (low + high);
+            (turning_mm(pass(middle).stations.front()) < radius_mm ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
+    }
+
+    // Polar: winding angle and steering with which the band touches the openings of both ends.
+    bool aim_at_openings() {
+        std::array<double, 2> turn_mm{};
+        for (std::size_t end = 0; end < 2; ++end) {
+            const Rim* const rim = rim_of(end);
+            turn_mm[end] = (rim != nullptr ? rim->radius_mm : 0.0) + 0.5 * options_.tow.width_mm;
+            if (turn_mm[end] >= widest_radius_mm_) {
+                return fail("a polar winding turns round the openings, and the " +
+                            std::string(end == 0 ? "lower" : "upper") +
+                            " end has none that is smaller than the body: radius " +
+                            fixed(turn_mm[end], 1) + " of " + fixed(widest_radius_mm_, 1) +
+                            " mm; use \"helical\"");
+            }
+        }
+        const auto upper_for = [&](double slip_ratio) {
+            slip_ratio_ = slip_ratio;
+            angle_rad_ = angle_for_lower(turn_mm[0]);
+            return turning_mm(pass(angle_rad_).stations.back());
+        };
+        const double straight_mm = upper_for(0.0);
+        if (std::abs(straight_mm - turn_mm[1]) < kSameTurn_mm) {
+            return true;
+        }
+        const double rising = upper_for(options_.tow.friction) - straight_mm;
+        double low = 0.0;
+        double high = (turn_mm[1] - straight_mm) * rising > 0.0 ? options_.tow.friction
+                                                                : -options_.tow.friction;
+        const double reached_mm = upper_for(high);
+        if ((reached_mm - straight_mm) * (turn_mm[1] - straight_mm) <
+            (turn_mm[1] - straight_mm) * (turn_mm[1] - straight_mm)) {
+            return fail("the openings are too different: with the friction of " +
+                        fixed(options_.tow.friction, 3) +
+                        " a band that touches the lower one turns at radius " +
+                        fixed(reached_mm, 1) + " mm at the upper end, where " +
+                        fixed(turn_mm[1], 1) + " mm would touch it");
+        }
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = 0.5 * (low + high);
+            const bool beyond = (upper_for(middle) - turn_mm[1]) * (turn_mm[1] - straight_mm) > 0.0;
+            (beyond ? high : low) = middle;
+        }
+        return true;
+    }
+
+    // Whether both ends of the pass can be turned at.
+    bool ends_hold() {
+        for (std::size_t end = 0; end < 2; ++end) {
+            const MeridianStop stop = end == 0 ? pass_.lower : pass_.upper;
+            const std::string name = end == 0 ? "lower" : "upper";
+            if (stop == MeridianStop::Length) {
+                return fail("a fibre at " + degrees(angle_rad_) + " never reaches the body's " +
+                            name + " end");
+            }
+            if (stop == MeridianStop::Hoop) {
+                continue;
+            }
+            const Rim* const rim = rim_of(end);
+            if (rim == nullptr) {
+                return fail("a fibre at " + degrees(angle_rad_) + " runs over the " + name +
+                            " pole; a larger angle turns before it");
+            }
+            const RimCrossing crossing = crossing_of(end, 0.0);
+            if (!can_turn(*rim, crossing, rule_)) {
+                const double run_mm =
+                    turn_run_mm(rim->radius_mm, crossing.angle_rad, options_.tow.friction) +
+                    options_.tow.width_mm;
+                return fail("over the " + name + " rim the fibre runs at " +
+                            degrees(crossing.angle_rad) +
+                            " to the axis, and to turn it by a friction of " +
+                            fixed(options_.tow.friction, 3) + " takes " + fixed(run_mm, 1) +
+                            " mm of extension where there are " + fixed(rule_.extension_mm, 1) +
+                            "; a larger angle, more friction or a longer extension would do");
+            }
+        }
+        return true;
+    }
+
+    // How the pass crosses the rim of an end on its way out, or begins there (seen backwards).
+    [[nodiscard]] RimCrossing crossing_of(std::size_t end, double turn_rad) const {
+        const MeridianStation& at = end == 0 ? pass_.stations.front() : pass_.stations.back();
+        const PathPoint point = swept(at, turn_rad);
+        return crossing_at(*rim_of(end), point.position_mm,
+                           end == 0 ? Vector3d(-point.tangent) : point.tangent);
+    }
+
+    // About +Z, of a turn over a rim without dwell.
+    [[nodiscard]] double steered_rad(std::size_t end) const {
+        const RimCrossing crossing = crossing_of(end, 0.0);
+        RimCrossing back = crossing;
+        back.sense = -crossing.sense;
+        return positive_angle(-dwell_rad(*rim_of(end), crossing, back, rule_));
+    }
+
+    [[nodiscard]] bool dwells(std::size_t end) const {
+        return (end == 0 ? pass_.lower : pass_.upper) == MeridianStop::End;
+    }
+
+    // Turn of the mandrel in a circuit without dwell.
+    [[nodiscard]] double circuit_rad() const {
+        double turn = 2.0 * pass_.turn_rad();
+        for (std::size_t end = 0; end < 2; ++end) {
+            turn += dwells(end) ? steered_rad(end) : 0.0;
+        }
+        return turn;
+    }
+
+    bool choose_pattern() {
+        const bool dwell = dwells(0) || dwells(1);
+        PatternRequest request;
+        request.circuit_rad = circuit_rad();
+        request.band_rad = options_.tow.width_mm / (widest_radius_mm_ * std::cos(angle_rad_));
+        request.most_dwell_rad = dwell ? 2.0 * kPi : 0.0;
+        request.most_change_rad = dwell ? 0.0 : most_change_rad();
+        request.most_overlap = kMostOverlap;
+        request.layers = std::max(1, static_cast<int>(std::lround(options_.layers)));
+        const std::vector<Pattern> patterns = find_patterns(request);
+        if (patterns.empty()) {
+            return fail("no pattern of overlaps up to " + fixed(100.0 * kMostOverlap, 0) +
+                        " % closes for circuits of " + degrees(request.circuit_rad) +
+                        ", which the winding angle changes by no more than " +
+                        degrees(request.most_change_rad) + "; another angle or tow width would");
+        }
+        pattern_ = patterns.front();
+        return dwell || close_by_angle(pattern_.turn_rad);
+    }
+
+    // How much the turn of a circuit changes within kMostAngle_rad, by its slope.
+    [[nodiscard]] double most_change_rad() const {
+        const double more = pass(angle_rad_ + kSlope_rad).turn_rad();
+        const double less = pass(angle_rad_ - kSlope_rad).turn_rad();
+        return std::min(kPi, 2.0 * std::abs(more - less) / (2.0 * kSlope_rad) * kMostAngle_rad);
+    }
+
+    // The winding angle whose circuits turn the mandrel by just so much.
+    bool close_by_angle(double turn_rad) {
+        const auto excess = [&](double angle) {
+            pass_ = pass(angle);
+            return 2.0 * pass_.turn_rad() - turn_rad;
+        };
+        const double wanted = angle_rad_;
+        double a = wanted;
+        double fa = excess(a);
+        double b = wanted + (fa > 0.0 ? -1e-4 : 1e-4);
+        double fb = excess(b);
+        for (int i = 0; i < kSecants && std::abs(fb) > kClosed_rad && fb != fa; ++i) {
+            const double c = std::clamp(b - fb * (b - a) / (fb - fa), wanted - kMostAngle_rad,
+                                        wanted + kMostAngle_rad);
+            a = b;
+            fa = fb;
+            b = c;
+            fb = excess(b);
+        }
+        if (std::abs(fb) > 1e3 * kClosed_rad || pass_.lower != MeridianStop::Hoop ||
+            pass_.upper != MeridianStop::Hoop) {
+            return fail("no winding angle within " + degrees(kMostAngle_rad) + " of " +
+                        degrees(wanted) + " closes a pattern of " +
+                        std::to_string(pattern_.circuits) +
+                        " circuits; another angle or tow width would");
+        }
+        angle_rad_ = b;
+        return true;
+    }
+
+    void lay() {
+        const Wall wall(mandrel_.surface);
+        const std::vector<MeridianStation> back = way_back(pass_);
+        const std::array<double, 2> turn = turns_at_ends();
+        const double start_rad = pass_.stations.front().azimuth_rad;
+        std::vector<Piece> passes(2 * static_cast<std::size_t>(pattern_.circuits));
+        std::vector<double> begins(passes.size());
+        for (std::size_t i = 0; i < passes.size(); i += 2) {
+            const auto place =
+                static_cast<std::int64_t>(i / 2) * pattern_.turns % pattern_.circuits;
+            begins[i] = static_cast<double>(place) * pattern_.step_rad;
+            begins[i + 1] = begins[i] + pass_.turn_rad() + turn[1];
+        }
+        parallel_for(passes.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const bool up = i % 2 == 0;
+                passes[i] = piece_of(up ? wall.path(pass_.stations, begins[i] - start_rad)
+                                        : wall.path(back, begins[i]));
+                passes[i].start_rim = rim_at(up ? 0 : 1);
+                passes[i].end_rim = rim_at(up ? 1 : 0);
+            }
+        });
+        plan_.turns.assign(mandrel_.rims.size(), {});
+        for (std::size_t i = 0; i < passes.size(); ++i) {
+            const std::size_t end = i % 2 == 0 ? 1 : 0;
+            const bool turns = dwells(end) && i + 1 < passes.size();
+            const SurfacePath& from = passes[i].path;
+            std::optional<Piece> between;
+            if (turns) {
+                between = turn_piece(end, from.back(), passes[i + 1].path.front());
+            }
+            add(std::move(passes[i]));
+            if (between) {
+                add(std::move(*between));
+            }
+        }
+        plan_.pieces.front().starts_fibre = true;
+        plan_.courses = static_cast<int>(passes.size());
+        plan_.fibres = 1;
+        plan_.pattern = {pattern_, angle_rad_, slip_ratio_, closure_rad(turn[0])};
+    }
+
+    // From where the fibre ends, turned on over its last rim, to where it began.
+    [[nodiscard]] double closure_rad(double last_turn_rad) const {
+        const auto azimuth = [](const PathPoint& point) {
+            return std::atan2(point.position_mm.y(), point.position_mm.x());
+        };
+        const double end = azimuth(plan_.pieces.back().path.back()) + last_turn_rad;
+        return std::abs(
+            std::remainder(end - azimuth(plan_.pieces.front().path.front()), 2.0 * kPi));
+    }
+
+    [[nodiscard]] std::int32_t rim_at(std::size_t end) const {
+        return dwells(end) ? body_.end[end].rim : -1;
+    }
+
+    // Of the mandrel, over each end; dwell is shared by the rims.
+    [[nodiscard]] std::array<double, 2> turns_at_ends() const {
+        const double share = dwells(0) && dwells(1) ? 0.5 : 1.0;
+        std::array<double, 2> turn{};
+        for (std::size_t end = 0; end < 2; ++end) {
+            if (dwells(end)) {
+                turn[end] =
+                    steered_rad(end) + std::max(kLeastDwell_rad, share * pattern_.dwell_rad);
+            }
+        }
+        return turn;
+    }
+
+    [[nodiscard]] Piece piece_of(SurfacePath path) const {
+        Piece piece;
+        piece.kind = PieceKind::Course;
+        piece.string = taut_string(path);
+        const SlipMeasure slip =
+            measure_slip(mandrel_.surface, path, piece.string,
+                         {.friction = options_.tow.friction, .method = TraceMethod::Patches});
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            path[i].kg_per_mm = slip.kg_per_mm[i];
+        }
+        piece.slip = slip.slip;
+        piece.worst_slip = slip.worst;
+        piece.path = std::move(path);
+        return piece;
+    }
+
+    Piece turn_piece(std::size_t end, const PathPoint& from, const PathPoint& to) {
+        const Rim& rim = *rim_of(end);
+        Turn turn = make_turn(rim, crossing_at(rim, from.position_mm, from.tangent),
+                              crossing_at(rim, to.position_mm, -to.tangent), rule_, kStation_mm);
+        TurnsAtRim& turns = plan_.turns[static_cast<std::size_t>(rim.id)];
+        ++turns.turns;
+        turns.dwell_rad += turn.dwell_rad;
+        turns.extension_mm =
+            std::max(turns.extension_mm, turn.run_mm + 0.5 * options_.tow.width_mm);
+        return piece_of_turn(std::move(turn), rim.id);
+    }
+
+    void add(Piece piece) {
+        if (!plan_.pieces.empty()) {
+            const Vector3d gap =
+                piece.path.front().position_mm - plan_.pieces.back().path.back().position_mm;
+            plan_.worst_joint_mm = std::max(plan_.worst_joint_mm, gap.norm());
+        }
+        plan_.fibre_length_mm += piece.path.back().s_mm;
+        plan_.worst_slip = std::max(plan_.worst_slip, piece.worst_slip);
+        plan_.worst_bridge_mm = std::max(plan_.worst_bridge_mm, piece.string.worst_gap_mm);
+        plan_.pieces.push_back(std::move(piece));
+    }
+
+    void lay_hoops() {
+        const CylinderPart part = cylinder_at(meridian_, widest_mm_);
+        if (part.to_mm == part.from_mm) {
+            fail("hoops hold on a cylinder, and at its widest place, z " +
+                 fixed(meridian_.at(widest_mm_).z_mm, 1) + " mm, the body is none");
+            return;
+        }
+        const Wall wall(mandrel_.surface);
+        const double band_mm = options_.tow.width_mm;
+        std::vector<MeridianStation> ply =
+            hoop_ply(meridian_, part, band_mm, kHoopSteering * options_.tow.friction, kStation_mm);
+        const int plies = std::max(1, static_cast<int>(std::lround(options_.layers)));
+        double begin_rad = 0.0;
+        for (int i = 0; i < plies; ++i) {
+            add(piece_of(wall.path(ply, begin_rad)));
+            begin_rad += ply.back().azimuth_rad;
+            ply = mirrored_ply(meridian_, std::move(ply));
+        }
+        plan_.pieces.front().starts_fibre = true;
+        plan_.courses = plies;
+        plan_.fibres = 1;
+        plan_.turns.assign(mandrel_.rims.size(), {});
+        measure(part.from_mm, part.to_mm);
+    }
+
+    // \param low_mm, high_mm arc lengths between which there shall be fibre
+    void measure(double low_mm, double high_mm) {
+        const auto between = [this](double from_mm, double to_mm) -> PlanZones::Zone {
+            return [=, this](const Vector3d& position) {
+                const double at =
+                    meridian_.foot(std::hypot(position.x(), position.y()), position.z()).arc_mm;
+                return at >= from_mm && at <= to_mm;
+            };
+        };
+        PlanZones zones{between(low_mm, high_mm), {}};
+        // A cylinder, but for where the band turns or ends.
+        const CylinderPart part = cylinder_at(meridian_, widest_mm_);
+        const double from_mm = std::max(part.from_mm, low_mm) + 2.0 * options_.tow.width_mm;
+        const double to_mm = std::min(part.to_mm, high_mm) - 2.0 * options_.tow.width_mm;
+        if (from_mm < to_mm) {
+            zones.regular = between(from_mm, to_mm);
+        }
+        measure_plan(mandrel_.surface, options_.tow.width_mm, options_.seed, zones, plan_);
+    }
+
+    const Mandrel& mandrel_;
+    const BodyOfRevolution& body_;
+    const Meridian& meridian_;
+    const PatternOptions& options_;
+    TurnRule rule_;
+    double widest_mm_ = 0.0;
+    double widest_radius_mm_ = 0.0;
+    double angle_rad_ = 0.0;   // at the widest place
+    double slip_ratio_ = 0.0;  // of the passes
+    MeridianPass pass_;
+    Pattern pattern_;
+    Plan plan_;
+};
+
+}  // namespace
+
+Plan plan_pattern(const Mandrel& mandrel, const BodyOfRevolution& body,
+                  const PatternOptions& options) {
+    return PatternPlanner(mandrel, body, options).run();
+}
+
+}  // namespace meshwind

@@ -1,0 +1,42 @@
+/// The pattern planner: regular windings of a body of revolution, closed exactly.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/units.h"
+#include "mesh/mandrel.h"
+#include "mesh/revolution.h"
+#include "winding/library.h"
+#include "winding/meridian_path.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+enum class PatternKind { Helical, Polar, Hoop };
+
+struct PatternOptions {
+    PatternKind kind = PatternKind::Helical;
+    double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
+    double layers = 1.0;  ///< covers; each lays a ply of either hand, of hoops one
+    Tow tow{};
+    TurnRule turn{};  ///< friction and band are taken from `tow`
+    std::uint64_t seed = 1;  ///< of the samples that coverage is measured on
+};
+
+/// Circuits that lead from the lower turn to the upper one and back. Each is the one before, turned
+/// on by the same angle, so that after all of them the fibre is back where it began and the bands
+/// lie side by side.
+///  - Where the body narrows to r = c the path turns by itself (Clairaut); such ends have no dwell,
+///    and the winding angle gives way by the little that closes the pattern.
+///  - Where it runs over a rim it turns by friction on the extension (turn.h), and dwells there for
+///    as long as closing takes.
+///  - Polar: the band touches the opening, or the pole, of either end; where these are of different
+///    sizes it is steered with a constant slip ratio from one to the other.
+///  - Hoop: the cylinder at the widest place, wound side by side, a ply for each cover, up and down
+///    in turn (hoop_path.h).
+/// \return a plan; where nothing can be wound `failure` says why, with numbers
+[[nodiscard]] Plan plan_pattern(const Mandrel& mandrel, const BodyOfRevolution& body,
+                                const PatternOptions& options);
+
+}  // namespace meshwind
