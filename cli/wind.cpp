@@ -158,11 +158,9 @@ private:
             return;
         }
         const LayerKind kind = setup_.job.layers.front().kind;
-        if (kind == LayerKind::Cover) {
-            plan_courses();
-        } else if (kind != LayerKind::Auto) {
+        if (kind != LayerKind::Auto && kind != LayerKind::Cover) {
             plan_pattern_of(pattern_of(kind));
-        } else if (!plan_pattern_that_holds()) {
+        } else if (kind == LayerKind::Cover || !plan_pattern_that_holds()) {
             plan_courses();
         }
         watch_.stage("plan");
