@@ -20,7 +20,7 @@ struct PatternOptions {
     double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
     double layers = 1.0;  ///< covers; each lays a ply of either hand, of hoops one
     Tow tow{};
-    TurnRule turn{};  ///< friction and band are taken from `tow`
+    TurnRule turn{};         ///< friction and band are taken from `tow`
     std::uint64_t seed = 1;  ///< of the samples that coverage is measured on
 };
 

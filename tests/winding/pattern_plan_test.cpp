@@ -99,8 +99,8 @@ TEST(PatternPlan, HelicesOnACylinderCloseByDwell) {
         EXPECT_GE(p.plan.pattern->pattern.circuits, bands);
         EXPECT_LE(p.plan.pattern->pattern.circuits, 1.1 * bands + 1.0);
         EXPECT_GT(p.plan.coverage.fraction, 0.999) << angle_deg;
-        EXPECT_NEAR(p.plan.coverage.mean_layers, 2.0 * static_cast<double>(p.plan.pattern->pattern.circuits) / bands,
-                    0.05);
+        EXPECT_NEAR(p.plan.coverage.mean_layers,
+                    2.0 * static_cast<double>(p.plan.pattern->pattern.circuits) / bands, 0.05);
         for (const Piece& piece : p.plan.pieces) {
             EXPECT_LE(piece.worst_slip, kTow.friction) << angle_deg;
             if (piece.kind == PieceKind::Course) {
