@@ -28,12 +28,10 @@ Coverage coverage_where(const PlanZones::Zone& counts, const CoverageSamples& sa
         return measure_coverage(layers);
     }
     std::vector<std::int32_t> asked_for;
-    std::size_t covered = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (counts(samples.position_mm[i])) {
             asked_for.push_back(layers[i]);
         }
-        covered += layers[i] > 0 ? 1 : 0;
     }
     const auto share = [&](std::size_t n) {
         return static_cast<double>(n) / static_cast<double>(samples.size());
