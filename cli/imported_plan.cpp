@@ -63,8 +63,7 @@ public:
         }
         plan_.pieces.front().starts_fibre = true;
         plan_.fibres = 1;
-        const Surface& wound = setup_.mandrel.surface;
-        measure_plan(wound, setup_.job.tow.width_mm, seed_, {}, plan_);
+        measure_plan(setup_.mandrel.surface, wall_, setup_.job.tow.width_mm, seed_, {}, plan_);
         tell_fit(paths.moves());
         return std::move(plan_);
     }

@@ -10,8 +10,8 @@
 namespace meshwind {
 
 /// Units, repairs, regions, rims, spindle axis, smooth fit, whether it is a body of revolution,
-/// accuracy of paths and remarks; lengths
-/// in mm, positions in the mandrel frame. For JSON see mandrel_report.
+/// accuracy of paths and remarks; lengths in mm, positions in the mandrel frame. For JSON see
+/// mandrel_report.
 void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy,
                    const RevolutionFinding& revolution);
 

@@ -91,8 +91,4 @@ RevolutionFinding find_revolution(const Mandrel& mandrel) {
     return {BodyOfRevolution{std::move(*meridian), residual, profile.end, std::move(parts)}, {}};
 }
 
-std::optional<BodyOfRevolution> recognise_revolution(const Mandrel& mandrel) {
-    return find_revolution(mandrel).body;
-}
-
 }  // namespace meshwind

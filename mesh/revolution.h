@@ -54,7 +54,4 @@ struct RevolutionFinding {
 /// Accuracy: see fit_meridian; tests/mesh/revolution_test.cpp.
 [[nodiscard]] RevolutionFinding find_revolution(const Mandrel& mandrel);
 
-/// The same without the reason.
-[[nodiscard]] std::optional<BodyOfRevolution> recognise_revolution(const Mandrel& mandrel);
-
 }  // namespace meshwind

@@ -111,24 +111,32 @@ SurfacePath with_ends(std::span<const Piece> pieces, std::size_t i, double tow_w
 
 }  // namespace
 
-void measure_plan(const Surface& surface, double tow_width_mm, std::uint64_t seed,
-                  const PlanZones& zones, Plan& plan) {
+void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
+                  std::uint64_t seed, const PlanZones& zones, Plan& plan) {
     const double area = area_mm2({surface.position_mm, surface.face});
     const double spacing_mm =
         std::max(tow_width_mm / kSamplesPerTow, std::sqrt(area / kMaxSamples));
     const CoverageSamples samples =
         sample_surface(surface, spacing_mm, seed_of(Stream::Sampling, seed));
-    const FootprintFinder footprints(surface, samples, tow_width_mm);
-    FootprintFinder::Scratch scratch = footprints.make_scratch();
+    const FootprintFinder footprints(wall, samples, tow_width_mm);
+    std::vector<std::vector<std::int32_t>> footprint(plan.pieces.size());
+    parallel_for(plan.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        FootprintFinder::Scratch scratch = footprints.make_scratch();
+        for (std::size_t i = begin; i < end; ++i) {
+            if (plan.pieces[i].kind == PieceKind::Course) {
+                footprint[i] =
+                    footprints.footprint(with_ends(plan.pieces, i, tow_width_mm), scratch);
+            }
+        }
+    });
     std::vector<std::int32_t> layers(samples.size(), 0);
     std::vector<const SurfacePath*> courses;
     for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
         if (plan.pieces[i].kind == PieceKind::Course) {
             courses.push_back(&plan.pieces[i].path);
-            const SurfacePath path = with_ends(plan.pieces, i, tow_width_mm);
-            for (const std::int32_t sample : footprints.footprint(path, scratch)) {
-                ++layers[static_cast<std::size_t>(sample)];
-            }
+        }
+        for (const std::int32_t sample : footprint[i]) {
+            ++layers[static_cast<std::size_t>(sample)];
         }
     }
     plan.coverage = coverage_where(zones.asked_for, samples, layers);
@@ -136,9 +144,10 @@ void measure_plan(const Surface& surface, double tow_width_mm, std::uint64_t see
         plan.coverage.regular_cv = smooth_cv(zones.regular, samples, layers, tow_width_mm);
     }
     plan.face_layers = layers_per_face(surface, samples, layers);
-    plan.face_angle_rad = angle_per_face(surface, plan.pieces);
-    plan.angle = wound_angles(surface, courses, std::nullopt);
-    plan.places = places_of(surface, courses);
+    plan.face_angle_rad = angle_per_face(wall, plan.pieces);
+    plan.face_angle_rad.resize(surface.face.size());
+    plan.angle = wound_angles(wall, courses, std::nullopt);
+    plan.places = places_of(wall, courses);
     plan.family = families_of(courses, tow_width_mm);
 }
 

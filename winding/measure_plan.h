@@ -21,8 +21,9 @@ struct PlanZones {
 };
 
 /// Fills in coverage, layers and angles per face, winding angles and places of a plan's courses.
-/// \param surface what is wound; pieces may reach beyond it \param seed of the samples
-void measure_plan(const Surface& surface, double tow_width_mm, std::uint64_t seed,
-                  const PlanZones& zones, Plan& plan);
+/// \param surface what is to be covered \param wall what the stations' faces are of: the surface,
+/// or the surface with more faces after its own \param seed of the samples
+void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
+                  std::uint64_t seed, const PlanZones& zones, Plan& plan);
 
 }  // namespace meshwind

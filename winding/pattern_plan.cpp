@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/text_number.h"
 #include "core/units.h"
@@ -38,7 +39,10 @@ constexpr double kMostOverlap = 0.25;
 // Closure in rad: far below what any axis resolves.
 constexpr double kClosed_rad = 1e-12;
 constexpr int kSecants = 60;
-constexpr int kHalvings = 100;
+
+// Turning radii are found by halving the winding angle, to 1e-9 of the radius: each takes a pass,
+// and two unequal ones the square of it.
+constexpr int kHalvings = 32;
 
 // A turn's dwell is found as an angle of up to 2 pi; this much keeps rounding from making none a
 // whole turn.
@@ -276,7 +280,12 @@ private:
         request.most_change_rad = dwell ? 0.0 : most_change_rad();
         request.most_overlap = kMostOverlap;
         request.layers = std::max(1, static_cast<int>(std::lround(options_.layers)));
-        const std::vector<Pattern> patterns = find_patterns(request);
+        std::vector<Pattern> patterns;
+        try {
+            patterns = find_patterns(request);
+        } catch (const InputError& error) {
+            return fail(std::string("no pattern can be looked for: ") + error.what());
+        }
         if (patterns.empty()) {
             return fail("no pattern of overlaps up to " + fixed(100.0 * kMostOverlap, 0) +
                         " % closes for circuits of " + degrees(request.circuit_rad) +
@@ -475,7 +484,8 @@ private:
         if (from_mm < to_mm) {
             zones.regular = between(from_mm, to_mm);
         }
-        measure_plan(mandrel_.surface, options_.tow.width_mm, options_.seed, zones, plan_);
+        measure_plan(mandrel_.surface, mandrel_.surface, options_.tow.width_mm, options_.seed,
+                     zones, plan_);
     }
 
     const Mandrel& mandrel_;

@@ -15,6 +15,8 @@ class Pattern(program.ProgramTest):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return json.loads((self.folder / "out" / "report.json").read_text())
 
+    # Hoops of 5.88 mm on this cylinder; on one of 80 mm those of 5.69 overlap by 5 %, and layers
+    # scatter by 0.023.
     def vessel(self):
         return self.make("vessel", "--radius", "50", "--cylinder-length", "100", "--dome-height",
                          "35", "--opening-radius", "12", "--edge", "5")

@@ -260,6 +260,17 @@ class Post(program.ProgramTest):
                                        play, delta=0.1)
         self.assertLessEqual(duration_s["optimal"], duration_s["central-angle"])
 
+    def test_points_on_an_extension_cover_no_wall(self):
+        """Half of the helix lies beyond the rim: it is wound, and only the other half counts."""
+        cylinder = self.cylinder()
+        fraction = []
+        for start, count in ((120.0, 29), (120.0, 57)):
+            points = self.write("points.csv", table(helix(start, 0.0, 45.0, count)))
+            self.post(points, cylinder)
+            fraction.append(self.report()["plan"]["coverage"]["fraction"])
+        self.assertGreater(fraction[0], 0.0)
+        self.assertAlmostEqual(fraction[0], fraction[1], delta=2e-3)
+
     def test_branch_is_wound_with_the_mandrel_standing_still(self):
         """fu_2009_post_processing, sec. 2.1: dC = 0 while the eye goes round the branch."""
         tee = program.SOURCE / "data" / "tee.stl"

@@ -280,8 +280,8 @@ TEST(FindRevolution, FileInAnotherPlaceAndUnitIsTheSameBody) {
 }
 
 TEST(FindRevolution, ExportedCapsuleIsOne) {
-    const auto body =
-        recognise_revolution(load_mandrel(mesh_file("vessel_capsule_seam_degenerate.obj")));
+    const std::optional<BodyOfRevolution> body =
+        find_revolution(load_mandrel(mesh_file("vessel_capsule_seam_degenerate.obj"))).body;
     ASSERT_TRUE(body);
     EXPECT_EQ(kinds_of(*body), (std::vector<Kind>{Kind::Dome, Kind::Cylinder, Kind::Dome}));
     // The file has millionths of its radius, 1 m.
