@@ -12,6 +12,7 @@
 #include "cli/fibre_files.h"
 #include "cli/layup_vtu.h"
 #include "cli/output_files.h"
+#include "cli/plan_layer.h"
 #include "cli/report.h"
 #include "core/error.h"
 #include "core/text_file.h"
@@ -23,24 +24,11 @@
 #include "postproc/motion_csv.h"
 #include "postproc/path_csv.h"
 #include "version.h"
-#include "winding/cover.h"
-#include "winding/pattern_plan.h"
 
 namespace meshwind {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Share of the friction that is planned with: the rest is for what the blocks add.
-constexpr double kPlannedFriction = 0.96;
-
-// Share of the reachable wall that a plan must cover to count as one.
-constexpr double kCoveredShare = 0.9;
-
-// Winding angles at the widest place that a helical layer without one is tried with.
-constexpr double kFirstAngle_deg = 45.0;
-constexpr double kLastAngle_deg = 80.0;
-constexpr double kAngleStep_deg = 5.0;
 
 class Stopwatch {
 public:
@@ -157,112 +145,15 @@ private:
             watch_.stage("plan");
             return;
         }
-        const LayerKind kind = setup_.job.layers.front().kind;
-        if (kind != LayerKind::Auto && kind != LayerKind::Cover) {
-            plan_pattern_of(pattern_of(kind));
-        } else if (kind == LayerKind::Cover || !plan_pattern_that_holds()) {
-            plan_courses();
-        }
-        watch_.stage("plan");
-    }
-
-    [[nodiscard]] static PatternKind pattern_of(LayerKind kind) {
-        switch (kind) {
-            case LayerKind::Polar:
-                return PatternKind::Polar;
-            case LayerKind::Hoop:
-                return PatternKind::Hoop;
-            default:
-                return PatternKind::Helical;
-        }
-    }
-
-    // A body of revolution gets a pattern that covers it: polar where both ends are narrow, else
-    // helical, by the angle asked for or the smallest that holds. False where there is none.
-    bool plan_pattern_that_holds() {
-        const RevolutionFinding found = find_revolution(setup_.mandrel);
-        if (!found.body) {
-            return false;
-        }
-        const auto covers = [&](PatternKind kind, double angle_rad) {
-            plan_pattern_on(*found.body, kind, angle_rad);
-            const Plan& plan = result_.plan;
-            return plan.failure.empty() && plan.coverage.fraction >= kCoveredShare;
-        };
-        bool covered = false;
-        if (const auto angle_deg = setup_.job.layers.front().angle_deg) {
-            covered = covers(PatternKind::Helical, rad_from_deg(*angle_deg));
-        } else {
-            covered = covers(PatternKind::Polar, 0.0);
-            for (double next_deg = kFirstAngle_deg; !covered && next_deg <= kLastAngle_deg;
-                 next_deg += kAngleStep_deg) {
-                covered = covers(PatternKind::Helical, rad_from_deg(next_deg));
-            }
-        }
-        return covered && wind_whole(result_.plan.pieces, false).empty();
-    }
-
-    void plan_pattern_of(PatternKind kind) {
-        const RevolutionFinding found = find_revolution(setup_.mandrel);
-        if (!found.body) {
-            result_.plan.planner = "pattern";
-            result_.plan.failure =
-                "patterns are wound on bodies of revolution, and this is none: " + found.why_not +
-                "; use \"cover\"";
-            return;
-        }
-        plan_pattern_on(
-            *found.body, kind,
-            rad_from_deg(setup_.job.layers.front().angle_deg.value_or(kFirstAngle_deg)));
-    }
-
-    void plan_pattern_on(const BodyOfRevolution& body, PatternKind kind, double angle_rad) {
-        tell("plan", 0.0);
-        PatternOptions options;
-        options.kind = kind;
-        options.angle_rad = angle_rad;
-        options.layers = setup_.job.layers.front().target_layers;
-        options.tow = planned_tow();
-        options.turn.extension_mm = setup_.job.mandrel.extension_mm;
-        options.seed = request_.seed;
-        result_.plan = plan_pattern(setup_.mandrel, body, options);
-    }
-
-    [[nodiscard]] Tow planned_tow() const {
-        const Job::TowJob& tow = setup_.job.tow;
-        return {tow.width_mm, tow.thickness_mm, kPlannedFriction * tow.friction,
-                tow.bridging_tolerance_mm};
-    }
-
-    void plan_courses() {
-        const Job& job = setup_.job;
-        CoverOptions options;
-        options.tow = planned_tow();
-        options.turn.extension_mm = job.mandrel.extension_mm;
-        options.free_fibre = setup_.rule.free_fibre;
-        options.select.target_layers =
-            static_cast<int>(std::ceil(job.layers.front().target_layers));
-        if (const auto angle_deg = job.layers.front().angle_deg) {
-            options.angle_rad = rad_from_deg(*angle_deg);
-        }
-        options.fibres = job.fibres;
+        LayerPlanOptions options;
         options.seed = request_.seed;
         options.effort = request_.effort;
-        options.accept = [this](std::span<const Piece> pieces) {
-            return first_of(refused_by_machine(setup_, pieces));
-        };
-        options.wind = [this](std::span<const Piece> pieces) {
-            return first_of(program_of(setup_, pieces).refused);
-        };
         options.refused = [this](std::span<const Piece> pieces) {
             return wind_whole(pieces, false);
         };
-        options.progress = [this](const char* step, double share) { tell(step, share); };
-        result_.plan = plan_cover(setup_.mandrel, *setup_.obstacles, options);
-    }
-
-    [[nodiscard]] static Rejection first_of(const std::map<std::size_t, Rejection>& refused) {
-        return refused.empty() ? Rejection::None : refused.begin()->second;
+        options.progress = [this](const std::string& step, double share) { tell(step, share); };
+        result_.plan = plan_layer(setup_, setup_.job.layers.front(), options);
+        watch_.stage("plan");
     }
 
     // The way from a plan to its programs, and back: each is read from its text and wound again.

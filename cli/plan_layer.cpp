@@ -1,0 +1,158 @@
+#include "cli/plan_layer.h"
+
+#include <cmath>
+#include <map>
+
+#include "cli/piece_program.h"
+#include "core/units.h"
+#include "winding/cover.h"
+#include "winding/pattern_plan.h"
+
+namespace meshwind {
+namespace {
+
+// Share of the friction that is planned with: the rest is for what the blocks add.
+constexpr double kPlannedFriction = 0.96;
+
+// Winding angles at the widest place that a helical layer without one is tried with.
+constexpr double kFirstAngle_deg = 45.0;
+constexpr double kLastAngle_deg = 80.0;
+constexpr double kAngleStep_deg = 5.0;
+
+PatternKind pattern_of(LayerKind kind) {
+    switch (kind) {
+        case LayerKind::Polar:
+            return PatternKind::Polar;
+        case LayerKind::Hoop:
+            return PatternKind::Hoop;
+        default:
+            return PatternKind::Helical;
+    }
+}
+
+Rejection first_of(const std::map<std::size_t, Rejection>& refused) {
+    return refused.empty() ? Rejection::None : refused.begin()->second;
+}
+
+class LayerPlanner {
+public:
+    LayerPlanner(const Setup& setup, const LayerJob& layer, const LayerPlanOptions& options)
+        : setup_(setup), layer_(layer), options_(options) {}
+
+    [[nodiscard]] Plan plan() const {
+        if (layer_.kind == LayerKind::Cover) {
+            return plan_courses();
+        }
+        if (layer_.kind != LayerKind::Auto) {
+            return plan_pattern_asked_for();
+        }
+        Plan pattern = plan_pattern_that_covers();
+        if (pattern.failure.empty() && options_.refused(pattern.pieces).empty()) {
+            return pattern;
+        }
+        return plan_courses();
+    }
+
+private:
+    [[nodiscard]] Plan plan_pattern_asked_for() const {
+        const RevolutionFinding found = find_revolution(setup_.mandrel);
+        if (!found.body) {
+            return no_pattern(found);
+        }
+        return plan_pattern_on(*found.body, pattern_of(layer_.kind),
+                               rad_from_deg(layer_.angle_deg.value_or(kFirstAngle_deg)));
+    }
+
+    static Plan no_pattern(const RevolutionFinding& found) {
+        Plan plan;
+        plan.planner = "pattern";
+        plan.failure =
+            "patterns are wound on bodies of revolution, and this is none: " + found.why_not +
+            "; use \"cover\"";
+        return plan;
+    }
+
+    // Polar where both ends are narrow, else helical, by the angle asked for or the smallest that
+    // holds. Fails where there is none.
+    [[nodiscard]] Plan plan_pattern_that_covers() const {
+        const RevolutionFinding found = find_revolution(setup_.mandrel);
+        if (!found.body) {
+            return no_pattern(found);
+        }
+        if (layer_.angle_deg) {
+            return covering(*found.body, PatternKind::Helical, rad_from_deg(*layer_.angle_deg));
+        }
+        Plan plan = covering(*found.body, PatternKind::Polar, 0.0);
+        for (double next_deg = kFirstAngle_deg; !plan.failure.empty() && next_deg <= kLastAngle_deg;
+             next_deg += kAngleStep_deg) {
+            plan = covering(*found.body, PatternKind::Helical, rad_from_deg(next_deg));
+        }
+        return plan;
+    }
+
+    [[nodiscard]] Plan covering(const BodyOfRevolution& body, PatternKind kind,
+                                double angle_rad) const {
+        Plan plan = plan_pattern_on(body, kind, angle_rad);
+        if (plan.failure.empty() && plan.coverage.fraction < kCoveredShare) {
+            plan.failure = "the pattern covers too little";
+        }
+        return plan;
+    }
+
+    [[nodiscard]] Plan plan_pattern_on(const BodyOfRevolution& body, PatternKind kind,
+                                       double angle_rad) const {
+        PatternOptions pattern;
+        pattern.kind = kind;
+        pattern.angle_rad = angle_rad;
+        pattern.layers = layer_.target_layers;
+        pattern.tow = planned_tow();
+        pattern.turn.extension_mm = setup_.job.mandrel.extension_mm;
+        pattern.seed = options_.seed;
+        return plan_pattern(setup_.mandrel, body, pattern);
+    }
+
+    [[nodiscard]] Tow planned_tow() const {
+        const Job::TowJob& tow = setup_.job.tow;
+        return {tow.width_mm, tow.thickness_mm, kPlannedFriction * tow.friction,
+                tow.bridging_tolerance_mm};
+    }
+
+    [[nodiscard]] Plan plan_courses() const {
+        const Job& job = setup_.job;
+        CoverOptions cover;
+        cover.tow = planned_tow();
+        cover.turn.extension_mm = job.mandrel.extension_mm;
+        cover.free_fibre = setup_.rule.free_fibre;
+        cover.select.target_layers = static_cast<int>(std::ceil(layer_.target_layers));
+        if (layer_.angle_deg) {
+            cover.angle_rad = rad_from_deg(*layer_.angle_deg);
+        }
+        cover.fibres = job.fibres;
+        cover.seed = options_.seed;
+        cover.effort = options_.effort;
+        cover.accept = [this](std::span<const Piece> pieces) {
+            return first_of(refused_by_machine(setup_, pieces));
+        };
+        cover.wind = [this](std::span<const Piece> pieces) {
+            return first_of(program_of(setup_, pieces).refused);
+        };
+        cover.refused = options_.refused;
+        cover.progress = [this](const char* step, double share) { options_.progress(step, share); };
+        return plan_cover(setup_.mandrel, *setup_.obstacles, cover);
+    }
+
+    const Setup& setup_;
+    const LayerJob& layer_;
+    const LayerPlanOptions& options_;
+};
+
+}  // namespace
+
+Plan plan_layer(const Setup& setup, const LayerJob& layer, const LayerPlanOptions& options) {
+    if (options.progress) {
+        options.progress("plan", 0.0);
+    }
+    return LayerPlanner(setup, layer, options).plan();
+}
+
+}  // namespace meshwind

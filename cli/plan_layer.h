@@ -1,0 +1,33 @@
+/// From a layer of the job to its plan: which planner, with what options.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/job.h"
+#include "cli/setup.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+/// Share of the reachable wall that a plan must cover to count as one.
+inline constexpr double kCoveredShare = 0.9;
+
+struct LayerPlanOptions {
+    std::uint64_t seed = 1;
+    int effort = 1;  ///< how long the plan is improved, as a multiple
+    /// Winds pieces and winds their program again; returns those that it does not lay as planned.
+    std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;
+    std::function<void(const std::string& step, double share)> progress;
+};
+
+/// A plan of the layer on the setup's mandrel. `auto` takes a pattern where the mandrel has one
+/// that covers kCoveredShare of it and can be wound, else courses that cover it. \pre the layer is
+/// not imported
+[[nodiscard]] Plan plan_layer(const Setup& setup, const LayerJob& layer,
+                              const LayerPlanOptions& options);
+
+}  // namespace meshwind
