@@ -54,6 +54,7 @@ struct Job {
         double thickness_mm = 0.25;  ///< > 0
         double friction = 0.2;       ///< >= 0; dry carbon on a moulded surface, on the safe side
         double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
+        double density_g_cm3 = 1.55;         ///< > 0; of the laid tow: carbon in epoxy, 60 % fibres
     };
     struct ToleranceJob {
         double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways

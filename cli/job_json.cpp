@@ -96,11 +96,12 @@ Job::MandrelJob read_mandrel(const JsonValue& value) {
 Job::TowJob read_tow(const JsonValue& value) {
     Job::TowJob tow;
     const JsonObject object =
-        value.object({"width", "thickness", "friction", "bridging_tolerance"});
+        value.object({"width", "thickness", "friction", "bridging_tolerance", "density"});
     read_number(object, "width", kPositive, tow.width_mm);
     read_number(object, "thickness", kPositive, tow.thickness_mm);
     read_number(object, "friction", kNotNegative, tow.friction);
     read_number(object, "bridging_tolerance", kNotNegative, tow.bridging_tolerance_mm);
+    read_number(object, "density", kPositive, tow.density_g_cm3);
     return tow;
 }
 
@@ -321,6 +322,7 @@ std::string tow_text(const Job::TowJob& tow) {
     append_member(text, "thickness", tow.thickness_mm);
     append_member(text, "friction", tow.friction);
     append_member(text, "bridging_tolerance", tow.bridging_tolerance_mm);
+    append_member(text, "density", tow.density_g_cm3);
     return text + "}";
 }
 

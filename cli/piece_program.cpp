@@ -97,6 +97,7 @@ public:
             }
         };
         tell(options, "post", 0.0);
+        spindle_rad_ = options.spindle_rad;
         CollisionRule rule = setup_.rule;
         rule.told_mm = rule.clearance_mm + kMostBetweenBlocks_mm / kUsedRoom;
         std::optional<MotionImprover> improver;
@@ -248,6 +249,19 @@ private:
         path_ = refine_path(setup_.machine, found_.eyes.path, policy, block_tolerance());
         joints_ = solve_joints(setup_.machine, path_, policy);
         found_.path_points = path_.size();
+        go_on_from_spindle();
+    }
+
+    void go_on_from_spindle() {
+        const Axis& spindle = setup_.machine.mandrel_chain.back();
+        const std::size_t axis = setup_.machine.mandrel_chain.size() - 1;
+        if (!spindle_rad_ || std::isfinite(spindle.min) || std::isfinite(spindle.max)) {
+            return;
+        }
+        const double turns = std::round((*spindle_rad_ - joints_.row(0)[axis]) / (2.0 * kPi));
+        for (std::size_t i = axis; i < joints_.joints.size(); i += joints_.axis_count) {
+            joints_.joints[i] += 2.0 * kPi * turns;
+        }
     }
 
     void refuse_beyond_travel() {
@@ -463,6 +477,7 @@ private:
     JointPath joints_;             // along that path
     std::vector<double> room_mm_;  // per point: how far the eye may be off
     std::vector<double> share_;    // per point: of the tolerance, for blocks
+    std::optional<double> spindle_rad_;
     double most_mm_ = std::numeric_limits<double>::infinity();  // fibre of a block
 };
 

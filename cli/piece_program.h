@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct PieceProgramOptions {
     bool in_spite = false;
     /// Free lengths and turns of the mandrel for the least time.
     bool optimal = false;
+    /// Where the spindle stands before, if the fibre goes on from there: it is turned on from the
+    /// nearest whole turn, where it turns without end.
+    std::optional<double> spindle_rad{};
     /// From the blocks to their text and back. Empty: they are wound as they are.
     std::function<BlockList(const PieceProgram&)> through_text;
     std::function<void(const char* step, double share)> progress;

@@ -1,11 +1,14 @@
 #include "cli/plan_layer.h"
 
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "cli/piece_program.h"
 #include "core/units.h"
 #include "winding/cover.h"
+#include "winding/hoop_path.h"
 #include "winding/pattern_plan.h"
 
 namespace meshwind {
@@ -107,8 +110,25 @@ private:
         pattern.layers = layer_.target_layers;
         pattern.tow = planned_tow();
         pattern.turn.extension_mm = setup_.job.mandrel.extension_mm;
+        if (kind == PatternKind::Hoop && options_.bare != nullptr) {
+            pattern.hoop_z_mm = cylinder_of(*options_.bare);
+        }
         pattern.seed = options_.seed;
         return plan_pattern(setup_.mandrel, body, pattern);
+    }
+
+    // Heights between which the bare body is a cylinder, at its widest place.
+    static std::optional<std::array<double, 2>> cylinder_of(const Mandrel& bare) {
+        const RevolutionFinding found = find_revolution(bare);
+        if (!found.body) {
+            return std::nullopt;
+        }
+        const Meridian& meridian = found.body->meridian;
+        const CylinderPart part = cylinder_at(meridian, meridian.widest_mm());
+        if (part.from_mm == part.to_mm) {
+            return std::nullopt;
+        }
+        return std::array{meridian.at(part.from_mm).z_mm, meridian.at(part.to_mm).z_mm};
     }
 
     [[nodiscard]] Tow planned_tow() const {

@@ -19,6 +19,8 @@ inline constexpr double kCoveredShare = 0.9;
 struct LayerPlanOptions {
     std::uint64_t seed = 1;
     int effort = 1;  ///< how long the plan is improved, as a multiple
+    /// What the layers before lie on: hoops lie on its cylinder.
+    const Mandrel* bare = nullptr;
     /// Winds pieces and winds their program again; returns those that it does not lay as planned.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;
     std::function<void(const std::string& step, double share)> progress;

@@ -8,9 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fibre_files.h"
 #include "cli/report_checks.h"
+#include "cli/report_layers.h"
 #include "cli/report_mandrel.h"
+#include "cli/run_files.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "version.h"
@@ -210,7 +211,7 @@ json refused_report(const PieceProgram& made) {
     return refused;
 }
 
-json program_report(const WindResult& result, const FibreProgram& program) {
+json program_report(const WoundLayer& layer, const FibreProgram& program, bool written) {
     const PieceProgram& made = program.made;
     json binding = json::array();
     for (const BindingLimit& limit : made.binding) {
@@ -223,8 +224,8 @@ json program_report(const WindResult& result, const FibreProgram& program) {
         binding.push_back(
             {{"limit", limit.name}, {"time_s", report_number(limit.time_s)}, {"longest", longest}});
     }
-    return {{"file", result.program_written ? json(program.file) : json(nullptr)},
-            {"dialect", result.setup.machine.controller.dialect},
+    return {{"file", written ? json(program.file) : json(nullptr)},
+            {"dialect", layer.setup.machine.controller.dialect},
             {"path_points", made.path_points},
             {"blocks", made.blocks.blocks.size()},
             {"choice", choice_report(made.choice)},
@@ -257,9 +258,9 @@ std::string percent(double share) {
 }
 
 // Where the motion of least time is asked for and could not be had.
-void print_first_motions(std::ostream& out, const WindResult& result) {
-    const std::vector<FibreProgram>& programs = result.programs;
-    if (!wants_least_time(result.setup)) {
+void print_first_motions(std::ostream& out, const WoundLayer& layer) {
+    const std::vector<FibreProgram>& programs = layer.programs;
+    if (!wants_least_time(layer.setup)) {
         return;
     }
     for (std::size_t fibre = 0; fibre < programs.size(); ++fibre) {
@@ -274,9 +275,9 @@ void print_first_motions(std::ostream& out, const WindResult& result) {
 }
 
 // Bare wall by reason, the largest first, and what looser rules would reach.
-void print_bare_wall(std::ostream& out, const WindResult& result) {
+void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
     std::map<std::string, double> area_mm2;
-    for (const Uncovered& bare : result.plan.uncovered) {
+    for (const Uncovered& bare : layer.plan.uncovered) {
         area_mm2[bare.rule] += bare.area_mm2;
     }
     std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
@@ -285,8 +286,8 @@ void print_bare_wall(std::ostream& out, const WindResult& result) {
     for (const auto& [reason, mm2] : reasons) {
         out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
     }
-    const Job& job = result.setup.job;
-    const std::vector<double>& reach = result.plan.reach_of_fibres;
+    const Job& job = layer.setup.job;
+    const std::vector<double>& reach = layer.plan.reach_of_fibres;
     const auto fibres = static_cast<std::size_t>(job.fibres);
     if (reach.size() > fibres) {
         out << "  with \"fibres\": " << fibres + 1 << " in the job courses would reach "
@@ -297,12 +298,65 @@ void print_bare_wall(std::ostream& out, const WindResult& result) {
         {WhatIf::Rule::Friction, {job.tow.friction, ""}},
         {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
         {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
-    for (const WhatIf& what_if : result.plan.what_if) {
+    for (const WhatIf& what_if : layer.plan.what_if) {
         const auto [value, unit] = now.at(what_if.rule);
         out << "  with a" << (what_if.rule == WhatIf::Rule::Extension ? "n " : " ")
             << name_of(what_if.rule) << " of " << fixed(what_if.factor * value, 2) << unit
             << " instead of " << fixed(value, 2) << unit << " courses would reach "
             << percent(what_if.reachable) << " of the wall\n";
+    }
+}
+
+// What a layer is and what came of it.
+void add_layer_report(json& report, const WoundLayer& layer, bool written) {
+    report["plan"] = plan_report(layer.plan);
+    if (layer.import) {
+        report["import"] = import_report(*layer.import);
+    }
+    for (std::size_t fibre = 0; fibre < layer.programs.size(); ++fibre) {
+        const FibreProgram& program = layer.programs[fibre];
+        report["program" + fibre_suffix(fibre)] = program_report(layer, program, written);
+        report["verification" + fibre_suffix(fibre)] =
+            verification_report(program.made.verification, program.made.blocks);
+    }
+}
+
+void print_pattern(std::ostream& out, const LaidPattern& laid) {
+    const Pattern& pattern = laid.pattern;
+    out << "pattern: " << pattern.circuits << " circuits at "
+        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg, " << pattern.starts << " starts, dwell "
+        << fixed(deg_from_rad(pattern.dwell_rad), 2) << " deg a circuit, bands overlap by "
+        << percent(pattern.overlap) << '\n';
+}
+
+void print_layer(std::ostream& out, const WoundLayer& layer) {
+    const Plan& plan = layer.plan;
+    if (!plan.failure.empty()) {
+        return;
+    }
+    std::size_t blocks = 0;
+    double least_s = 0.0;
+    for (const FibreProgram& program : layer.programs) {
+        blocks += program.made.blocks.blocks.size();
+        least_s += program.made.least_s;
+    }
+    out << layer.setup.mandrel.file << " on " << layer.setup.machine.name << ": " << plan.courses
+        << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1) << " m of fibre, " << blocks
+        << " blocks, " << fixed(layer.duration_s() / 60.0, 1) << " min ("
+        << fixed(least_s / 60.0, 1) << " at the fibre's full speed)\n";
+    print_first_motions(out, layer);
+    out << "covered " << percent(plan.coverage.fraction) << " of the wall"
+        << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
+        << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
+        << plan.coverage.max_layers << '\n';
+    if (plan.pattern) {
+        print_pattern(out, *plan.pattern);
+    }
+    if (layer.import) {
+        const ImportFit& fit = *layer.import;
+        out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
+            << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
+            << " mm in line " << fit.worst_line << '\n';
     }
 }
 
@@ -313,68 +367,43 @@ std::string report_json(const WindResult& result) {
     for (const auto& [stage, seconds] : result.timing_s) {
         timing[stage] = seconds;
     }
+    const WoundLayer& first = result.layers.front();
     json report = {{"meshwind", kVersion},
-                   {"machine", result.setup.machine.name},
-                   {"mandrel", mandrel_report(result.setup.mandrel)},
-                   {"plan", plan_report(result.plan)},
+                   {"machine", first.setup.machine.name},
+                   {"mandrel", mandrel_report(first.setup.mandrel)},
                    {"checks", checks_report(result.checks)},
                    {"ok", result.passed()},
                    {"timing_s", timing}};
-    if (result.import) {
-        report["import"] = import_report(*result.import);
-    }
-    for (std::size_t fibre = 0; fibre < result.programs.size(); ++fibre) {
-        const FibreProgram& program = result.programs[fibre];
-        report["program" + fibre_suffix(fibre)] = program_report(result, program);
-        report["verification" + fibre_suffix(fibre)] =
-            verification_report(program.made.verification, program.made.blocks);
+    if (result.layers.size() == 1) {
+        add_layer_report(report, first, result.program_written);
+    } else {
+        add_laminate_report(report, result);
+        for (std::size_t i = 0; i < result.layers.size(); ++i) {
+            add_layer_report(report["layers"][i], result.layers[i], result.program_written);
+        }
     }
     return report.dump(1) + "\n";
 }
 
 void print_summary(std::ostream& out, const WindResult& result,
                    const std::filesystem::path& folder) {
-    const Plan& plan = result.plan;
-    if (plan.failure.empty()) {
-        std::size_t blocks = 0;
-        double duration_s = 0.0;
-        double least_s = 0.0;
-        for (const FibreProgram& program : result.programs) {
-            blocks += program.made.blocks.blocks.size();
-            duration_s += program.made.duration_s;
-            least_s += program.made.least_s;
-        }
-        out << result.setup.mandrel.file << " on " << result.setup.machine.name << ": "
-            << plan.courses << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1)
-            << " m of fibre, " << blocks << " blocks, " << fixed(duration_s / 60.0, 1) << " min ("
-            << fixed(least_s / 60.0, 1) << " at the fibre's full speed)\n";
-        print_first_motions(out, result);
-        out << "covered " << percent(plan.coverage.fraction) << " of the wall"
-            << (result.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")")
-            << ", " << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
-            << plan.coverage.max_layers << '\n';
-        if (plan.pattern) {
-            const Pattern& pattern = plan.pattern->pattern;
-            out << "pattern: " << pattern.circuits << " circuits at "
-                << fixed(deg_from_rad(plan.pattern->angle_rad), 2) << " deg, " << pattern.starts
-                << " starts, dwell " << fixed(deg_from_rad(pattern.dwell_rad), 2)
-                << " deg a circuit, bands overlap by " << percent(pattern.overlap) << '\n';
-        }
-        if (result.import) {
-            const ImportFit& fit = *result.import;
-            out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
-                << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
-                << " mm in line " << fit.worst_line << '\n';
-        }
+    for (std::size_t i = 0; i < result.layers.size(); ++i) {
+        out << (result.layers.size() > 1 ? "layer " + std::to_string(i + 1) + ": " : "");
+        print_layer(out, result.layers[i]);
+        print_bare_wall(out, result.layers[i]);
     }
-    print_bare_wall(out, result);
+    if (result.layers.size() > 1) {
+        print_laminate(out, result);
+    }
     print_checks(out, result.checks);
     if (!result.program_written) {
         out << "no program written\n";
     }
-    for (const FibreProgram& program : result.programs) {
-        if (result.program_written) {
-            out << "program: " << (folder / program.file).string() << '\n';
+    for (const WoundLayer& layer : result.layers) {
+        for (const FibreProgram& program : layer.programs) {
+            if (result.program_written) {
+                out << "program: " << (folder / program.file).string() << '\n';
+            }
         }
     }
     out << "report:  " << (folder / "report.json").string() << '\n';

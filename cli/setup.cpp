@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text_number.h"
@@ -135,6 +136,14 @@ std::unique_ptr<RayQuery> obstacles_of(const Machine& machine, const Mandrel& ma
     return std::make_unique<RayQuery>(parts, kTableReach_mm);
 }
 
+// What follows from machine, job and mandrel.
+void complete(Setup& setup, const fs::path& job_file) {
+    setup.rule = collision_rule(setup, job_file);
+    setup.obstacles = obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm);
+    setup.wall = std::make_unique<LaydownWall>(
+        extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
+}
+
 }  // namespace
 
 Setup read_setup(const SetupRequest& request) {
@@ -146,11 +155,19 @@ Setup read_setup(const SetupRequest& request) {
     setup.dialect = make_dialect(setup.machine.controller.dialect);
     setup.envelope = head_envelope(setup.machine, read_triangles_of);
     setup.mandrel = load_mandrel(request.mandrel, mandrel_options(setup.job, request.unit_mm));
-    setup.rule = collision_rule(setup, request.job);
-    setup.obstacles = obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm);
-    setup.wall = std::make_unique<LaydownWall>(
-        extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
+    complete(setup, request.job);
     return setup;
+}
+
+Setup setup_for(const Setup& setup, Mandrel mandrel) {
+    Setup next;
+    next.machine = setup.machine;
+    next.job = setup.job;
+    next.dialect = make_dialect(next.machine.controller.dialect);
+    next.envelope = setup.envelope;
+    next.mandrel = std::move(mandrel);
+    complete(next, {});
+    return next;
 }
 
 bool wants_least_time(const Setup& setup) {

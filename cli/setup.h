@@ -36,6 +36,9 @@ struct Setup {
 /// \throws InputError, IoError for input that cannot be used; machine and job are read first
 [[nodiscard]] Setup read_setup(const SetupRequest& request);
 
+/// The same machine and job for another mandrel: what the layers before have made of the first.
+[[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel);
+
 /// Whether the motion of least time is to be found: the job asks for it, and the machine leaves the
 /// turn of the mandrel free.
 [[nodiscard]] bool wants_least_time(const Setup& setup);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "cli/fibre_files.h"
 #include "cli/output_files.h"
 #include "cli/report_verify.h"
+#include "cli/run_files.h"
 #include "core/error.h"
 #include "core/text_file.h"
 #include "postproc/plan_tables.h"
@@ -22,7 +22,7 @@ double seconds(Clock::duration duration) {
 
 // The plan's table for this program: "path-2.csv" for "program-2.ngc", if there is one.
 fs::path table_of(const VerifyRequest& request, const std::string& name) {
-    const fs::path numbered = request.plan / (name + fibre_suffix_of(request.program) + ".csv");
+    const fs::path numbered = request.plan / (name + suffix_of(request.program) + ".csv");
     return fs::exists(numbered) ? numbered : request.plan / (name + ".csv");
 }
 

@@ -10,10 +10,8 @@
 #include <vector>
 
 #include "cli/imported_plan.h"
-#include "cli/piece_program.h"
-#include "cli/setup.h"
+#include "cli/wind_layer.h"
 #include "postproc/verify.h"
-#include "winding/plan.h"
 
 namespace meshwind {
 
@@ -31,23 +29,16 @@ struct WindRequest {
     std::function<void(const std::string& step, double share)> progress;
 };
 
-/// The program that winds one fibre of a plan.
-struct FibreProgram {
-    PieceProgram made;
-    std::string text;
-    std::string file;  ///< name, e.g. "program.ngc"
-};
-
 /// Everything that was found, for the report.
 struct WindResult {
-    Setup setup;
-    Plan plan;
-    std::optional<ImportFit> import;     ///< of landing points
-    std::vector<FibreProgram> programs;  ///< one for each fibre of the plan
-    /// Of the plan, then of each program: those of a further fibre end in its number, "slip-2".
+    std::vector<WoundLayer> layers;  ///< >= 1, in winding order, as far as they could be wound
+    /// Of all layers: those of a further one end in its number, "slip-layer-2".
     std::vector<Check> checks;
     std::map<std::string, double> timing_s;
     bool program_written = false;
+
+    /// Every layer that the job asks for has a plan.
+    [[nodiscard]] bool planned() const;
 
     [[nodiscard]] bool passed() const {
         for (const Check& check : checks) {
@@ -60,8 +51,8 @@ struct WindResult {
 };
 
 /// Runs the job and writes the output folder, whole or not at all: path.csv, motion.csv, layup.vtu,
-/// report.json, and the program if every check passed or `force` is set. Each further fibre of the
-/// plan has program, path and motion of its own (fibre_files.h).
+/// report.json, and the program if every check passed or `force` is set. Each further layer and
+/// fibre has program, path and motion of its own, each further layer its mandrel (run_files.h).
 /// \throws InputError, IoError for input that cannot be used; nothing is written then
 [[nodiscard]] WindResult wind(const WindRequest& request);
 

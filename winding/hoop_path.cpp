@@ -14,6 +14,9 @@ constexpr double kHoop_rad = 0.5 * kPi;
 // A straight piece with less slope than this is part of a cylinder: over a metre it is 1 um off.
 constexpr double kLevel_rad = 1e-6;
 
+// Slopes of a hoop's part are looked at in so many places.
+constexpr int kSlopeSamples = 1000;
+
 bool is_level(const MeridianPiece& piece) {
     const double rise = std::abs(piece.to_mm.x() - piece.from_mm.x());
     return piece.straight && rise <= kLevel_rad * piece.length_mm &&
@@ -23,8 +26,7 @@ bool is_level(const MeridianPiece& piece) {
 // Stations one after the other on a cylinder.
 class PlyPath {
 public:
-    PlyPath(const Meridian& meridian, double radius_mm, double station_mm)
-        : meridian_(meridian), radius_mm_(radius_mm), station_mm_(station_mm) {}
+    PlyPath(double radius_mm, double station_mm) : radius_mm_(radius_mm), station_mm_(station_mm) {}
 
     void start(double arc_mm) { add(arc_mm, 0.0, kHoop_rad, 0.0); }
 
@@ -66,16 +68,69 @@ private:
     }
 
     void add(double arc_mm, double azimuth_rad, double angle_rad, double s_mm) {
-        stations_.push_back({meridian_.at(arc_mm), arc_mm, azimuth_rad, angle_rad, s_mm});
+        stations_.push_back({{}, arc_mm, azimuth_rad, angle_rad, s_mm});
     }
 
-    const Meridian& meridian_;
     double radius_mm_;
     double station_mm_;
     std::vector<MeridianStation> stations_;
 };
 
+// From the cylinder to the meridian: arc and azimuth stay, tan(angle) = r dazimuth/darc.
+void lay_on(const Meridian& meridian, double radius_mm, std::vector<MeridianStation>& ply) {
+    double before_s_mm = ply.front().s_mm;
+    for (std::size_t i = 0; i < ply.size(); ++i) {
+        MeridianStation& station = ply[i];
+        station.place = meridian.at(station.arc_mm);
+        const double c = std::cos(station.angle_rad);
+        const double s = std::sin(station.angle_rad);
+        station.angle_rad = std::atan2(s * station.place.radius_mm / radius_mm, c);
+        if (i == 0) {
+            continue;
+        }
+        // Simpson's rule over the step, which is short.
+        const auto stretch = [&](double radius) { return std::hypot(c, s * radius / radius_mm); };
+        const double middle = meridian.at(0.5 * (ply[i - 1].arc_mm + station.arc_mm)).radius_mm;
+        const double mean = (stretch(ply[i - 1].place.radius_mm) + 4.0 * stretch(middle) +
+                             stretch(station.place.radius_mm)) /
+                            6.0;
+        const double step_mm = station.s_mm - before_s_mm;
+        before_s_mm = station.s_mm;
+        station.s_mm = ply[i - 1].s_mm + mean * step_mm;
+    }
+}
+
 }  // namespace
+
+CylinderPart cylinder_between(const Meridian& meridian, double low_z_mm, double high_z_mm) {
+    const double radius_mm = meridian.at(meridian.widest_mm()).radius_mm;
+    return {meridian.foot(radius_mm, low_z_mm).arc_mm, meridian.foot(radius_mm, high_z_mm).arc_mm,
+            radius_mm};
+}
+
+CylinderPart level_part(const Meridian& meridian, const CylinderPart& part, double band_mm,
+                        double most_slope) {
+    const double middle_mm = 0.5 * (part.from_mm + part.to_mm);
+    const double half_mm = 0.5 * band_mm;
+    // From the middle as far as a hoop holds, half a band within the part.
+    const auto reach = [&](double end_mm) {
+        const double last_mm = end_mm > middle_mm ? std::max(middle_mm, end_mm - half_mm)
+                                                  : std::min(middle_mm, end_mm + half_mm);
+        double held_mm = middle_mm;
+        for (int i = 0; i <= kSlopeSamples; ++i) {
+            const double arc_mm = middle_mm + (last_mm - middle_mm) * i / kSlopeSamples;
+            if (std::abs(std::tan(meridian.at(arc_mm).slope_rad)) > most_slope) {
+                break;
+            }
+            held_mm = arc_mm;
+        }
+        return held_mm == last_mm ? end_mm : held_mm + std::copysign(half_mm, end_mm - middle_mm);
+    };
+    if (std::abs(std::tan(meridian.at(middle_mm).slope_rad)) > most_slope) {
+        return {middle_mm, middle_mm, part.radius_mm};
+    }
+    return {reach(part.from_mm), reach(part.to_mm), part.radius_mm};
+}
 
 CylinderPart cylinder_at(const Meridian& meridian, double arc_mm) {
     const auto pieces = meridian.pieces();
@@ -96,40 +151,39 @@ CylinderPart cylinder_at(const Meridian& meridian, double arc_mm) {
 }
 
 std::vector<MeridianStation> hoop_ply(const Meridian& meridian, const CylinderPart& part,
-                                      double band_mm, double slip_ratio, double station_mm) {
+                                      double band_mm, double slip_ratio, double station_mm,
+                                      bool downward) {
     const double around_mm = 2.0 * kPi * part.radius_mm;
     const double rise_mm = part.to_mm - part.from_mm - band_mm;
-    PlyPath path(meridian, part.radius_mm, station_mm);
+    PlyPath path(part.radius_mm, station_mm);
     if (rise_mm <= 0.0) {
         path.start(0.5 * (part.from_mm + part.to_mm));
         path.run(kHoop_rad, around_mm);
-        return path.take();
+    } else {
+        path.start(part.from_mm + 0.5 * band_mm);
+        path.run(kHoop_rad, around_mm);
+        const double angle = hoop_layer({.radius_mm = part.radius_mm,
+                                         .length_mm = part.to_mm - part.from_mm,
+                                         .band_mm = band_mm})
+                                 .angle_rad;
+        // Steeper steering where the ends of the helix would meet.
+        const double steered =
+            std::max(slip_ratio, 2.0 * part.radius_mm * (1.0 / std::sin(angle) - 1.0) / rise_mm);
+        const double ends_mm = 2.0 * part.radius_mm / steered * (1.0 / std::sin(angle) - 1.0);
+        path.steer(angle, steered, false);
+        path.run(angle, (rise_mm - ends_mm) / std::cos(angle));
+        path.steer(angle, steered, true);
+        path.run(kHoop_rad, around_mm);
     }
-    path.start(part.from_mm + 0.5 * band_mm);
-    path.run(kHoop_rad, around_mm);
-    const double angle = hoop_layer({.radius_mm = part.radius_mm,
-                                     .length_mm = part.to_mm - part.from_mm,
-                                     .band_mm = band_mm})
-                             .angle_rad;
-    // Steeper steering where the ends of the helix would meet.
-    const double steered =
-        std::max(slip_ratio, 2.0 * part.radius_mm * (1.0 / std::sin(angle) - 1.0) / rise_mm);
-    const double ends_mm = 2.0 * part.radius_mm / steered * (1.0 / std::sin(angle) - 1.0);
-    path.steer(angle, steered, false);
-    path.run(angle, (rise_mm - ends_mm) / std::cos(angle));
-    path.steer(angle, steered, true);
-    path.run(kHoop_rad, around_mm);
-    return path.take();
-}
-
-std::vector<MeridianStation> mirrored_ply(const Meridian& meridian,
-                                          std::vector<MeridianStation> ply) {
-    const double ends_mm = ply.front().arc_mm + ply.back().arc_mm;
-    for (MeridianStation& station : ply) {
-        station.arc_mm = ends_mm - station.arc_mm;
-        station.angle_rad = kPi - station.angle_rad;
-        station.place = meridian.at(station.arc_mm);
+    std::vector<MeridianStation> ply = path.take();
+    if (downward) {
+        const double ends_mm = ply.front().arc_mm + ply.back().arc_mm;
+        for (MeridianStation& station : ply) {
+            station.arc_mm = ends_mm - station.arc_mm;
+            station.angle_rad = kPi - station.angle_rad;
+        }
     }
+    lay_on(meridian, part.radius_mm, ply);
     return ply;
 }
 

@@ -443,22 +443,26 @@ private:
     }
 
     void lay_hoops() {
-        const CylinderPart part = cylinder_at(meridian_, widest_mm_);
+        const CylinderPart asked_for =
+            options_.hoop_z_mm
+                ? cylinder_between(meridian_, (*options_.hoop_z_mm)[0], (*options_.hoop_z_mm)[1])
+                : cylinder_at(meridian_, widest_mm_);
+        const double steering = kHoopSteering * options_.tow.friction;
+        const CylinderPart part = level_part(meridian_, asked_for, options_.tow.width_mm,
+                                             options_.tow.friction - steering);
         if (part.to_mm == part.from_mm) {
             fail("hoops hold on a cylinder, and at its widest place, z " +
                  fixed(meridian_.at(widest_mm_).z_mm, 1) + " mm, the body is none");
             return;
         }
         const Wall wall(mandrel_.surface);
-        const double band_mm = options_.tow.width_mm;
-        std::vector<MeridianStation> ply =
-            hoop_ply(meridian_, part, band_mm, kHoopSteering * options_.tow.friction, kStation_mm);
         const int plies = std::max(1, static_cast<int>(std::lround(options_.layers)));
         double begin_rad = 0.0;
         for (int i = 0; i < plies; ++i) {
+            const std::vector<MeridianStation> ply =
+                hoop_ply(meridian_, part, options_.tow.width_mm, steering, kStation_mm, i % 2 == 1);
             add(piece_of(wall.path(ply, begin_rad)));
             begin_rad += ply.back().azimuth_rad;
-            ply = mirrored_ply(meridian_, std::move(ply));
         }
         plan_.pieces.front().starts_fibre = true;
         plan_.courses = plies;

@@ -1,6 +1,7 @@
 /// The pattern planner: regular windings of a body of revolution, closed exactly.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -20,7 +21,10 @@ struct PatternOptions {
     double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
     double layers = 1.0;  ///< covers; each lays a ply of either hand, of hoops one
     Tow tow{};
-    TurnRule turn{};         ///< friction and band are taken from `tow`
+    TurnRule turn{};  ///< friction and band are taken from `tow`
+    /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
+    /// place.
+    std::optional<std::array<double, 2>> hoop_z_mm{};
     std::uint64_t seed = 1;  ///< of the samples that coverage is measured on
 };
 

@@ -131,7 +131,9 @@ struct Plan {
     Places places;                       ///< of junctions and hoops in the winding order
     std::optional<LaidPattern> pattern;  ///< of the pattern planner's circuits
     PlanEffort effort;
-    std::string failure;  ///< empty, or in words why nothing can be wound
+    bool goes_on = false;     ///< begins where the fibre of the layer before ends
+    std::string cut_because;  ///< in words why it does not, where there is a layer before
+    std::string failure;      ///< empty, or in words why nothing can be wound
 };
 
 /// Per piece the number of its course in winding order: its own, or of the one before the turn.

@@ -61,7 +61,7 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "{ \"mandrel\":{\"units\":\"auto\", \"axis\":\"auto\", \"keep_regions\":\"auto\", "
               "\"extension\":100, \"turn\":\"friction\"},\n"
               "  \"tow\":{\"width\":6, \"thickness\":0.25, \"friction\":0.2, "
-              "\"bridging_tolerance\":0.5},\n"
+              "\"bridging_tolerance\":0.5, \"density\":1.55},\n"
               "  \"layers\":[{\"kind\":\"auto\", \"target_layers\":1}],\n"
               "  \"fibres\":1,\n"
               "  \"eye\":{\"rule\":\"adaptive\", \"free_length\":200},\n"

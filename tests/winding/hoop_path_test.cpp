@@ -81,7 +81,7 @@ TEST(HoopPath, TheNextPlyGoesDown) {
     const Meridian meridian = flanged();
     const CylinderPart part = cylinder_at(meridian, meridian.widest_mm());
     const auto up = hoop_ply(meridian, part, 6.0, 0.1, 4.0);
-    const auto down = mirrored_ply(meridian, up);
+    const auto down = hoop_ply(meridian, part, 6.0, 0.1, 4.0, true);
     EXPECT_NEAR(down.front().arc_mm, up.back().arc_mm, kRounding);
     EXPECT_NEAR(down.back().arc_mm, up.front().arc_mm, kRounding);
     EXPECT_EQ(down.back().azimuth_rad, up.back().azimuth_rad);

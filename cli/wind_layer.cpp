@@ -1,0 +1,245 @@
+#include "cli/wind_layer.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "cli/plan_layer.h"
+#include "cli/run_files.h"
+#include "core/text_number.h"
+
+namespace meshwind {
+namespace {
+
+class LayerWinder {
+public:
+    LayerWinder(WoundLayer& layer, const WindLayerOptions& options)
+        : layer_(layer), setup_(layer.setup), options_(options) {}
+
+    void run() {
+        plan();
+        if (!layer_.plan.failure.empty()) {
+            layer_.checks.push_back({"plan", false, layer_.plan.failure, {}});
+            return;
+        }
+        if (!holds_) {
+            (void)wind_whole(layer_.plan.pieces, true);
+        }
+        check();
+    }
+
+private:
+    void tell(const std::string& step, double share) const {
+        if (options_.progress) {
+            options_.progress(step, share);
+        }
+    }
+
+    void done(const char* stage) const {
+        if (options_.stage_done) {
+            options_.stage_done(stage);
+        }
+    }
+
+    void plan() {
+        if (options_.import) {
+            tell("plan", 0.0);
+            layer_.plan =
+                import_plan(setup_, *options_.import, options_.seed, layer_.import.emplace());
+        } else {
+            LayerPlanOptions plan;
+            plan.seed = options_.seed;
+            plan.effort = options_.effort;
+            plan.bare = options_.bare;
+            plan.refused = [this](std::span<const Piece> pieces) {
+                return wind_whole(pieces, false);
+            };
+            plan.progress = [this](const std::string& step, double share) { tell(step, share); };
+            layer_.plan = plan_layer(setup_, layer_.job, plan);
+        }
+        done("plan");
+    }
+
+    // The way from a plan to its programs, and back: each is read from its text and wound again.
+    // Returns the pieces that they do not lay as they are planned.
+    std::vector<std::size_t> wind_whole(std::span<const Piece> pieces, bool in_spite) {
+        done("plan");
+        layer_.programs.clear();
+        std::vector<std::size_t> refused;
+        std::size_t before = 0;  // pieces
+        for (const std::span<const Piece> fibre : fibres_of(pieces)) {
+            FibreProgram& program = layer_.programs.emplace_back();
+            program.file = program_file(layer_.programs.size() - 1);
+            wind_fibre(fibre, in_spite, program);
+            for (const auto& [piece, reason] : program.made.refused) {
+                refused.push_back(before + piece);
+            }
+            before += fibre.size();
+        }
+        holds_ = refused.empty();
+        return refused;
+    }
+
+    [[nodiscard]] std::string program_file(std::size_t fibre) const {
+        return "program" + options_.suffix + fibre_suffix(fibre) + setup_.dialect->extension();
+    }
+
+    void wind_fibre(std::span<const Piece> pieces, bool in_spite, FibreProgram& program) {
+        PieceProgramOptions options;
+        options.in_spite = in_spite;
+        options.optimal = wants_least_time(setup_);
+        options.through_text = [&](const PieceProgram& made) {
+            return setup_.dialect->read(text_of(made), program.file, setup_.machine);
+        };
+        options.progress = [this](const char* step, double share) { tell(step, share); };
+        options.stage_done = [this](const char* stage) { done(stage); };
+        if (const WoundLayer* before = goes_on(program) ? options_.before : nullptr) {
+            const BlockList& blocks = before->programs.back().made.blocks;
+            options.spindle_rad = joints_at(blocks, blocks.blocks.size() - 1)[spindle()];
+        }
+        program.made = program_of(setup_, pieces, options);
+    }
+
+    // With the fibre of the layer before.
+    [[nodiscard]] bool goes_on(const FibreProgram& program) const {
+        return layer_.plan.goes_on && &program == layer_.programs.data();
+    }
+
+    [[nodiscard]] std::size_t spindle() const { return setup_.machine.mandrel_chain.size() - 1; }
+
+    [[nodiscard]] static std::string place_of(const EyePoint& eye) {
+        const Eigen::Vector3d& p = eye.landing_mm;
+        return "piece " + std::to_string(eye.piece) + ", point " + std::to_string(eye.point) +
+               " at (" + fixed(p.x(), 1) + ", " + fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ")";
+    }
+
+    void check() {
+        check_fibres();
+        if (layer_.import) {
+            check_import();
+        } else {
+            check_coverage();
+        }
+        for (std::size_t fibre = 0; fibre < layer_.programs.size(); ++fibre) {
+            std::vector<Check> found = checks_of(layer_.programs[fibre].made);
+            for (Check& check : found) {
+                check.name += fibre_suffix(fibre);
+                layer_.checks.push_back(std::move(check));
+            }
+        }
+        for (FibreProgram& program : layer_.programs) {
+            program.text = text_of(program.made);  // with what failed, for --force
+        }
+    }
+
+    void check_fibres() {
+        Check check{"continuity", layer_.plan.fibres <= setup_.job.fibres, {}, {}};
+        check.numbers = {{"fibres", static_cast<double>(layer_.plan.fibres)},
+                         {"limit", static_cast<double>(setup_.job.fibres)},
+                         {"worst_joint_mm", layer_.plan.worst_joint_mm}};
+        if (!check.ok) {
+            check.words =
+                "the plan takes " + std::to_string(layer_.plan.fibres) +
+                " separate fibres; a slimmer head, less clearance, a longer extension or more "
+                "friction gives more courses to join them";
+        }
+        layer_.checks.push_back(check);
+    }
+
+    // Points too far off are refused before; how far they were tells of their mandrel.
+    void check_import() {
+        const ImportFit& fit = *layer_.import;
+        Check check{"import", true, {}, {}};
+        check.numbers = {{"worst_mm", fit.worst_mm},
+                         {"mean_mm", fit.mean_mm},
+                         {"limit_mm", fit.limit_mm},
+                         {"worst_line", static_cast<double>(fit.worst_line)}};
+        layer_.checks.push_back(check);
+    }
+
+    // ": 12.3 cm2 are bare, for ..." with the reason that keeps most wall bare.
+    [[nodiscard]] std::string largest_bare_wall() const {
+        std::map<std::string, double> area_mm2;
+        for (const Uncovered& bare : layer_.plan.uncovered) {
+            area_mm2[bare.rule] += bare.area_mm2;
+        }
+        const auto largest =
+            std::max_element(area_mm2.begin(), area_mm2.end(),
+                             [](const auto& a, const auto& b) { return a.second < b.second; });
+        return largest == area_mm2.end() ? ""
+                                         : "; " + fixed(largest->second / 100.0, 2) +
+                                               " cm2 are bare for this: " + largest->first;
+    }
+
+    void check_coverage() {
+        const Coverage& coverage = layer_.plan.coverage;
+        const double limit = kCoveredShare * coverage.reachable;
+        Check check{"coverage", coverage.fraction >= limit, {}, {}};
+        check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
+        if (!check.ok) {
+            check.words = "only " + fixed(100.0 * coverage.fraction, 1) +
+                          " % of the wall is covered although single courses reach " +
+                          fixed(100.0 * coverage.reachable, 1) + " %" + largest_bare_wall();
+        }
+        layer_.checks.push_back(check);
+    }
+
+    [[nodiscard]] std::vector<Check> checks_of(const PieceProgram& made) const {
+        std::vector<Check> checks{eye_check(made), rounding_check(made)};
+        const std::vector<Check>& found = made.verification.checks;
+        checks.insert(checks.end(), found.begin(), found.end());
+        return checks;
+    }
+
+    [[nodiscard]] Check eye_check(const PieceProgram& made) const {
+        const std::vector<std::size_t>& blocked = made.eyes.blocked;
+        Check check{"eye", blocked.empty(), {}, {}};
+        check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
+        if (!check.ok) {
+            check.words = made.eyes.words + " at " + place_of(made.eyes.path[blocked.front()]);
+        }
+        return check;
+    }
+
+    [[nodiscard]] static Check rounding_check(const PieceProgram& made) {
+        Check check{"rounding", made.read.nano == made.blocks.nano, {}, {}};
+        check.numbers["blocks"] = static_cast<double>(made.read.blocks.size());
+        if (!check.ok) {
+            check.words = "the program read back does not give the positions that were planned";
+        }
+        return check;
+    }
+
+    [[nodiscard]] std::string text_of(const PieceProgram& made) const {
+        ProgramHeader header = options_.header;
+        header.fibre_length_mm = made.eyes.path.back().s_mm;
+        header.tie_on_mm = made.eyes.path.front().landing_mm;
+        for (const Check& check : layer_.checks) {
+            if (!check.ok) {
+                header.notes.push_back("CHECK FAILED, written by force: " + check.name);
+            }
+        }
+        return setup_.dialect->write(setup_.machine, made.blocks, made.layout, header);
+    }
+
+    WoundLayer& layer_;
+    const Setup& setup_;
+    const WindLayerOptions& options_;
+    bool holds_ = false;  // the last plan that was wound is laid as it is planned
+};
+
+}  // namespace
+
+double WoundLayer::duration_s() const {
+    double sum_s = 0.0;
+    for (const FibreProgram& program : programs) {
+        sum_s += program.made.duration_s;
+    }
+    return sum_s;
+}
+
+void wind_layer(WoundLayer& layer, const WindLayerOptions& options) {
+    LayerWinder(layer, options).run();
+}
+
+}  // namespace meshwind

@@ -1,0 +1,62 @@
+/// One layer: its plan, its programs, and what they lay.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/imported_plan.h"
+#include "cli/job.h"
+#include "cli/piece_program.h"
+#include "cli/setup.h"
+#include "postproc/dialect.h"
+#include "postproc/verify.h"
+#include "winding/plan.h"
+
+namespace meshwind {
+
+/// The program that winds one fibre of a layer.
+struct FibreProgram {
+    PieceProgram made;
+    std::string text;
+    std::string file;  ///< name, e.g. "program.ngc"
+};
+
+struct WoundLayer {
+    LayerJob job;
+    Setup setup;  ///< its mandrel is what the layers before have left
+    Plan plan;
+    std::optional<ImportFit> import;     ///< of landing points
+    std::vector<FibreProgram> programs;  ///< one for each fibre of the plan
+    std::vector<Check> checks;  ///< of the plan, then of each program: those of a further fibre end
+                                ///< in its number, "slip-2"
+    /// Per vertex of the mandrel's surface, what this layer adds; empty where it is the only one.
+    std::vector<double> build_up_mm;
+
+    [[nodiscard]] double duration_s() const;
+};
+
+struct WindLayerOptions {
+    std::string suffix;  ///< in names of files: "", "-layer-2"
+    /// What every program's head says: version, mandrel, digests.
+    ProgramHeader header;
+    /// Landing points to wind instead of what the layer asks for.
+    std::optional<ImportRequest> import;
+    const WoundLayer* before = nullptr;  ///< none for the first
+    const Mandrel* bare = nullptr;       ///< under all layers; none for the first
+    std::uint64_t seed = 1;
+    int effort = 1;
+    std::function<void(const std::string& step, double share)> progress;
+    std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
+};
+
+/// Plans the layer on its setup's mandrel, makes the programs and winds them again. What cannot be
+/// is a check that failed: "plan" where there is no plan.
+/// \param layer has job and setup; the rest is filled in
+/// \throws InputError what import_plan and dialects throw
+void wind_layer(WoundLayer& layer, const WindLayerOptions& options);
+
+}  // namespace meshwind
