@@ -113,6 +113,11 @@ private:
         if (kind == PatternKind::Hoop && options_.bare != nullptr) {
             pattern.hoop_z_mm = cylinder_of(*options_.bare);
         }
+        if (options_.before != nullptr) {
+            const Piece& last = options_.before->pieces.back();
+            pattern.before =
+                FibreEnd{last.path.back().position_mm, last.path.back().tangent, last.end_rim};
+        }
         pattern.seed = options_.seed;
         return plan_pattern(setup_.mandrel, body, pattern);
     }
@@ -158,7 +163,11 @@ private:
         };
         cover.refused = options_.refused;
         cover.progress = [this](const char* step, double share) { options_.progress(step, share); };
-        return plan_cover(setup_.mandrel, *setup_.obstacles, cover);
+        Plan plan = plan_cover(setup_.mandrel, *setup_.obstacles, cover);
+        if (options_.before != nullptr) {
+            plan.cut_because = "courses that cover are not led on from another layer";
+        }
+        return plan;
     }
 
     const Setup& setup_;

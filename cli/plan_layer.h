@@ -21,6 +21,7 @@ struct LayerPlanOptions {
     int effort = 1;  ///< how long the plan is improved, as a multiple
     /// What the layers before lie on: hoops lie on its cylinder.
     const Mandrel* bare = nullptr;
+    const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
     /// Winds pieces and winds their program again; returns those that it does not lay as planned.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;
     std::function<void(const std::string& step, double share)> progress;

@@ -51,6 +51,7 @@ private:
             plan.seed = options_.seed;
             plan.effort = options_.effort;
             plan.bare = options_.bare;
+            plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;
             plan.refused = [this](std::span<const Piece> pieces) {
                 return wind_whole(pieces, false);
             };

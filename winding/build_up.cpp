@@ -15,14 +15,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Fibre is counted in cells of the meridian, so many to a tow width: a whole number, so that the
-// splines over them add up to one.
-constexpr int kCellsPerTow = 32;
+// What a mesh of straight edges can show.
+constexpr double kSpreadEdges = 1.5;
 
-// Half the spline's support, in tow widths.
+// Fibre is counted in cells of the meridian, so many to a knot distance: a whole number, so that
+// the splines over them add up to one.
+constexpr int kCells = 32;
+
+// Half the spline's support, in knots.
 constexpr double kReach = 2.0;
 
-// Steps of diffusion whose variance is together that of the spline, a third of the width squared.
+// Steps of diffusion whose variance is together that of the spline, a third of the spread squared.
 constexpr int kDiffusionSteps = 2;
 
 constexpr std::size_t kChunk = 256;
@@ -92,11 +95,15 @@ double cot(const Vector3d& a, const Vector3d& b) {
 
 }  // namespace
 
+double spread_mm(const Surface& surface, double tow_width_mm) {
+    return std::max(tow_width_mm, kSpreadEdges * surface.mean_edge_mm);
+}
+
 std::vector<double> regular_build_up_mm(const Surface& surface, const BodyOfRevolution& body,
                                         std::span<const Piece> pieces, double tow_width_mm,
                                         double tow_thickness_mm) {
     const Meridian& meridian = body.meridian;
-    const double cell_mm = tow_width_mm / kCellsPerTow;
+    const double cell_mm = spread_mm(surface, tow_width_mm) / kCells;
     FibreByArc fibre(meridian, cell_mm);
     for (const Piece& piece : pieces) {
         if (piece.path.front().at.face != kNoFace) {  // turns lie on extensions
@@ -112,14 +119,14 @@ std::vector<double> regular_build_up_mm(const Surface& surface, const BodyOfRevo
     }
     const auto at = [&](double arc_mm) {
         const double place = arc_mm / cell_mm - 0.5;
-        const double reach = kReach * kCellsPerTow;
+        const double reach = kReach * kCells;
         const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(place - reach)));
         const auto last =
             std::min(length_mm.size() - 1, static_cast<std::size_t>(std::max(0.0, place + reach)));
         double covered_mm2 = 0.0;
         double area_mm2 = 0.0;
         for (std::size_t cell = first; cell <= last; ++cell) {
-            const double weight = spline((static_cast<double>(cell) - place) / kCellsPerTow);
+            const double weight = spline((static_cast<double>(cell) - place) / kCells);
             covered_mm2 += weight * tow_width_mm * length_mm[cell];
             area_mm2 += weight * ring_mm2[cell];
         }
@@ -161,7 +168,8 @@ std::vector<double> build_up_mm(const Surface& surface, std::span<const double> 
         }
     }
     // Variance along a line: twice the time.
-    const double time_mm2 = tow_width_mm * tow_width_mm / 6.0 / kDiffusionSteps;
+    const double spread = spread_mm(surface, tow_width_mm);
+    const double time_mm2 = spread * spread / 6.0 / kDiffusionSteps;
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(stiffness.begin(), stiffness.end());
     matrix *= time_mm2;

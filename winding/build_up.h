@@ -10,20 +10,25 @@
 
 namespace meshwind {
 
-/// What lies on each vertex of a surface, mm. Bands flow into each other where they end or pile up,
-/// as if their fibre were spread with a standard deviation of tow width / sqrt(3): that of a cubic
-/// B-spline of two tow widths to either side.
+/// How wide bands flow into each other where they end or pile up: the knot distance of the cubic
+/// B-spline, two to either side, that their fibre is spread with. One tow width, but no less than
+/// one and a half edges of the mesh, which could not show the slopes.
+[[nodiscard]] double spread_mm(const Surface& surface, double tow_width_mm);
+
+/// What lies on each vertex of a surface, mm, spread so that its standard deviation is that of the
+/// spline, spread / sqrt(3).
 ///
-/// On any surface: from the layers per face, spread by two implicit steps of diffusion (finite
-/// elements, lumped masses). The volume is kept. Edges longer than the tow leave it as it is.
+/// On any surface: from the layers per face, by two implicit steps of diffusion (finite elements,
+/// lumped masses). The volume is kept.
 /// \param face_layers mean layers per face of the surface \param tow_width_mm, thickness_mm > 0
+/// \throws InputError build_up.mesh where triangles are too thin for that
 [[nodiscard]] std::vector<double> build_up_mm(const Surface& surface,
                                               std::span<const double> face_layers,
                                               double tow_width_mm, double tow_thickness_mm);
 
 /// On a body of revolution the same all around: fibre length per arc length of the meridian, spread
 /// by the spline itself. Where circuits lie evenly, as on a cylinder, the layer is even to
-/// rounding; the volume of fibre is kept to the spread beyond the body's ends.
+/// rounding. At the ends of the body what would flow over them stays.
 [[nodiscard]] std::vector<double> regular_build_up_mm(const Surface& surface,
                                                       const BodyOfRevolution& body,
                                                       std::span<const Piece> pieces,

@@ -187,6 +187,24 @@ MeridianPass pass_through(const Meridian& meridian, double arc_mm, double angle_
     return pass;
 }
 
+MeridianPass pass_from(const Meridian& meridian, double arc_mm, bool upward, double slip_ratio,
+                       double station_mm, double longest_mm) {
+    MeridianPass pass;
+    const MeridianStop stop =
+        Follower(meridian, slip_ratio, upward ? 1.0 : -1.0)
+            .follow({arc_mm, 0.0, kHalf_rad}, station_mm, longest_mm, pass.stations);
+    (upward ? pass.upper : pass.lower) = stop;
+    (upward ? pass.lower : pass.upper) = MeridianStop::Hoop;
+    if (!upward) {
+        std::reverse(pass.stations.begin(), pass.stations.end());
+        const double s0 = pass.stations.front().s_mm;
+        for (MeridianStation& station : pass.stations) {
+            station.s_mm -= s0;
+        }
+    }
+    return pass;
+}
+
 std::vector<MeridianStation> way_back(const MeridianPass& pass) {
     std::vector<MeridianStation> back(pass.stations.rbegin(), pass.stations.rend());
     const MeridianStation end = pass.stations.back();

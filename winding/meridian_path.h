@@ -49,6 +49,12 @@ struct MeridianPass {
 [[nodiscard]] MeridianPass pass_through(const Meridian& meridian, double arc_mm, double angle_rad,
                                         double slip_ratio, double station_mm, double longest_mm);
 
+/// The path that leaves a parallel, along which it runs, upward or downward; the same law, with the
+/// sign of the slip ratio of pass_through. Its stations are in the order of the arc as well: the
+/// parallel is the first station or the last. A path that does not leave has only stations there.
+[[nodiscard]] MeridianPass pass_from(const Meridian& meridian, double arc_mm, bool upward,
+                                     double slip_ratio, double station_mm, double longest_mm);
+
 /// The way back: the same path from its upper end to the lower one, mirrored so that the azimuth
 /// grows on. It begins at azimuth 0 and s = 0.
 [[nodiscard]] std::vector<MeridianStation> way_back(const MeridianPass& pass);

@@ -13,6 +13,7 @@
 #include "geodesic/field_walk.h"
 #include "geodesic/measure.h"
 #include "mesh/nearest.h"
+#include "winding/connecting_passes.h"
 #include "winding/hoop_path.h"
 #include "winding/lay_out.h"
 #include "winding/measure_plan.h"
@@ -50,6 +51,13 @@ constexpr double kLeastDwell_rad = 1e-9;
 
 // Share of the friction with which hoops turn into a helix and back: it is over in a few mm.
 constexpr double kHoopSteering = 0.5;
+
+// Share of the friction that connecting passes are steered with: over the steps that other layers
+// leave, the press of the fibre changes within a few mm, and the laid fibre evens that out.
+constexpr double kConnecting = 0.7;
+
+// A fibre along a parallel: the sine of its angle to the meridian.
+constexpr double kAlong = 1.0 - 1e-5;
 
 // Openings that differ by less are turned at without steering.
 constexpr double kSameTurn_mm = 1e-6;
@@ -127,6 +135,7 @@ public:
         if (!ends_hold() || !choose_pattern()) {
             return std::move(plan_);
         }
+        begin_after({goal(0), goal(1)});
         lay();
         // At a turn of its own the band is whole as far as its middle.
         measure(pass_.stations.front().arc_mm, pass_.stations.back().arc_mm);
@@ -333,31 +342,171 @@ private:
         return true;
     }
 
+    // Where the pattern may begin at an end.
+    [[nodiscard]] ConnectingGoal goal(std::size_t end) const {
+        if (dwells(end)) {
+            return {ConnectingGoal::Kind::Rim, 0.0};
+        }
+        const MeridianStation& at = end == 0 ? pass_.stations.front() : pass_.stations.back();
+        return {ConnectingGoal::Kind::Parallel, at.arc_mm};
+    }
+
+    // Leads on from the fibre of the layer before, where there is one and it can be, to where the
+    // pattern begins then.
+    void begin_after(const std::array<ConnectingGoal, 2>& goals) {
+        if (!options_.before) {
+            return;
+        }
+        plan_.cut_because = options_.before->rim >= 0 ? begin_over_rim(*options_.before, goals)
+                                                      : begin_along(*options_.before, goals);
+        plan_.goes_on = plan_.cut_because.empty();
+        if (!plan_.goes_on) {
+            plan_.pieces.clear();
+            begin_ = {};
+        }
+    }
+
+    // The same from a parallel. Returns in words why it cannot be.
+    std::string begin_along(const FibreEnd& before, const std::array<ConnectingGoal, 2>& goals) {
+        const Vector3d& p = before.position_mm;
+        const Vector3d around = Vector3d(-p.y(), p.x(), 0.0).normalized();
+        if (before.tangent.dot(around) < kAlong) {
+            return "the one before does not end along a parallel";
+        }
+        ConnectingRequest request = connecting_request(goals);
+        request.from_arc_mm = meridian_.foot(std::hypot(p.x(), p.y()), p.z()).arc_mm;
+        const ConnectingPasses way = connecting_passes(meridian_, request);
+        if (!way.failure.empty()) {
+            return way.failure;
+        }
+        begin_ = {way.end, std::atan2(p.y(), p.x())};
+        add_connecting(way.passes);
+        if (goals[way.end].kind == ConnectingGoal::Kind::Rim) {
+            begin_at_rim(plan_.pieces.back().path.back());
+        }
+        return "";
+    }
+
+    // The same where it leaves over a rim: it is turned there, straight into the pattern or into
+    // passes that lead to it.
+    std::string begin_over_rim(const FibreEnd& before, const std::array<ConnectingGoal, 2>& goals) {
+        const std::size_t end = body_.end[0].rim == before.rim ? 0 : 1;
+        const Rim& rim = *rim_of(end);
+        PathPoint from;
+        from.position_mm = before.position_mm;
+        from.tangent = before.tangent;
+        const RimCrossing crossing = crossing_at(rim, from.position_mm, from.tangent);
+        if (!can_turn(rim, crossing, rule_)) {
+            return "on the layers before it the fibre cannot be turned over the rim";
+        }
+        if (goals[end].kind == ConnectingGoal::Kind::Rim) {
+            begin_.end = end;
+            begin_at_rim(from);
+            return "";
+        }
+        // Found backwards, from where the pattern begins.
+        for (const std::size_t start : {1 - end, end}) {
+            if (goals[start].kind != ConnectingGoal::Kind::Parallel) {
+                continue;
+            }
+            std::array<ConnectingGoal, 2> over_rim{};
+            over_rim[end].kind = ConnectingGoal::Kind::Rim;
+            ConnectingRequest request = connecting_request(over_rim);
+            request.from_arc_mm = goals[start].arc_mm;
+            const ConnectingPasses way = connecting_passes(meridian_, request);
+            if (!way.failure.empty()) {
+                continue;
+            }
+            const auto passes = other_way_round(way);
+            const MeridianStation& first = passes.front().front();
+            const double azimuth = turned_azimuth(end, from, first);
+            begin_ = {start, azimuth};
+            PathPoint to = swept(first, azimuth - first.azimuth_rad);
+            add(turn_piece(end, from, to));
+            add_connecting(passes);
+            return "";
+        }
+        return "no friction up to " + fixed(options_.tow.friction, 3) +
+               " leads from the rim to where the layer begins";
+    }
+
+    [[nodiscard]] ConnectingRequest connecting_request(
+        const std::array<ConnectingGoal, 2>& goals) const {
+        ConnectingRequest request;
+        request.goal = goals;
+        request.friction = kConnecting * options_.tow.friction;
+        request.station_mm = kStation_mm;
+        request.can_turn = [this](std::size_t end, const MeridianStation& leaving) {
+            const Rim* const rim = rim_of(end);
+            if (rim == nullptr) {
+                return false;
+            }
+            const PathPoint point = swept(leaving, 0.0);
+            return meshwind::can_turn(
+                *rim,
+                crossing_at(*rim, point.position_mm,
+                            end == 0 ? Vector3d(-point.tangent) : point.tangent),
+                rule_);
+        };
+        return request;
+    }
+
+    // Passes from the azimuth where the pattern begins so far, which moves on to their end.
+    void add_connecting(const std::vector<std::vector<MeridianStation>>& passes) {
+        const Wall wall(mandrel_.surface);
+        for (const std::vector<MeridianStation>& stations : passes) {
+            Piece piece =
+                piece_of(wall.path(stations, begin_.azimuth_rad - stations.front().azimuth_rad));
+            piece.kind = PieceKind::Transition;
+            begin_.azimuth_rad += stations.back().azimuth_rad - stations.front().azimuth_rad;
+            add(std::move(piece));
+        }
+    }
+
+    // Turns from a station over the rim where the pattern begins, with hardly any dwell.
+    void begin_at_rim(const PathPoint& from) {
+        const bool upward = begin_.end == 0;
+        const MeridianStation first = upward ? pass_.stations.front() : way_back(pass_).front();
+        begin_.azimuth_rad = turned_azimuth(begin_.end, from, first);
+        add(turn_piece(begin_.end, from, swept(first, begin_.azimuth_rad - first.azimuth_rad)));
+    }
+
+    // Azimuth at which a fibre that leaves over a rim comes back as `first` without dwell.
+    [[nodiscard]] double turned_azimuth(std::size_t end, const PathPoint& from,
+                                        const MeridianStation& first) const {
+        const Rim& rim = *rim_of(end);
+        const PathPoint to = swept(first, -first.azimuth_rad);
+        const double dwell = dwell_rad(rim, crossing_at(rim, from.position_mm, from.tangent),
+                                       crossing_at(rim, to.position_mm, -to.tangent), rule_);
+        return kLeastDwell_rad - dwell;
+    }
+
     void lay() {
         const Wall wall(mandrel_.surface);
         const std::vector<MeridianStation> back = way_back(pass_);
         const std::array<double, 2> turn = turns_at_ends();
-        const double start_rad = pass_.stations.front().azimuth_rad;
+        const std::size_t start = begin_.end;
         std::vector<Piece> passes(2 * static_cast<std::size_t>(pattern_.circuits));
         std::vector<double> begins(passes.size());
         for (std::size_t i = 0; i < passes.size(); i += 2) {
             const auto place =
                 static_cast<std::int64_t>(i / 2) * pattern_.turns % pattern_.circuits;
-            begins[i] = static_cast<double>(place) * pattern_.step_rad;
-            begins[i + 1] = begins[i] + pass_.turn_rad() + turn[1];
+            begins[i] = begin_.azimuth_rad + static_cast<double>(place) * pattern_.step_rad;
+            begins[i + 1] = begins[i] + pass_.turn_rad() + turn[1 - start];
         }
         parallel_for(passes.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                const bool up = i % 2 == 0;
-                passes[i] = piece_of(up ? wall.path(pass_.stations, begins[i] - start_rad)
-                                        : wall.path(back, begins[i]));
-                passes[i].start_rim = rim_at(up ? 0 : 1);
-                passes[i].end_rim = rim_at(up ? 1 : 0);
+                const std::size_t from = i % 2 == 0 ? start : 1 - start;
+                const std::vector<MeridianStation>& way = from == 0 ? pass_.stations : back;
+                passes[i] = piece_of(wall.path(way, begins[i] - way.front().azimuth_rad));
+                passes[i].start_rim = rim_at(from);
+                passes[i].end_rim = rim_at(1 - from);
             }
         });
-        plan_.turns.assign(mandrel_.rims.size(), {});
+        plan_.turns.resize(mandrel_.rims.size());
+        const std::size_t connecting = plan_.pieces.size();
         for (std::size_t i = 0; i < passes.size(); ++i) {
-            const std::size_t end = i % 2 == 0 ? 1 : 0;
+            const std::size_t end = i % 2 == 0 ? 1 - start : start;
             const bool turns = dwells(end) && i + 1 < passes.size();
             const SurfacePath& from = passes[i].path;
             std::optional<Piece> between;
@@ -372,17 +521,17 @@ private:
         plan_.pieces.front().starts_fibre = true;
         plan_.courses = static_cast<int>(passes.size());
         plan_.fibres = 1;
-        plan_.pattern = {pattern_, angle_rad_, slip_ratio_, closure_rad(turn[0])};
+        plan_.pattern = {pattern_, angle_rad_, slip_ratio_,
+                         closure_rad(plan_.pieces[connecting], turn[start])};
     }
 
-    // From where the fibre ends, turned on over its last rim, to where it began.
-    [[nodiscard]] double closure_rad(double last_turn_rad) const {
+    // From where the fibre ends, turned on over its last rim, to where its first course began.
+    [[nodiscard]] double closure_rad(const Piece& first, double last_turn_rad) const {
         const auto azimuth = [](const PathPoint& point) {
             return std::atan2(point.position_mm.y(), point.position_mm.x());
         };
         const double end = azimuth(plan_.pieces.back().path.back()) + last_turn_rad;
-        return std::abs(
-            std::remainder(end - azimuth(plan_.pieces.front().path.front()), 2.0 * kPi));
+        return std::abs(std::remainder(end - azimuth(first.path.front()), 2.0 * kPi));
     }
 
     [[nodiscard]] std::int32_t rim_at(std::size_t end) const {
@@ -422,6 +571,7 @@ private:
         const Rim& rim = *rim_of(end);
         Turn turn = make_turn(rim, crossing_at(rim, from.position_mm, from.tangent),
                               crossing_at(rim, to.position_mm, -to.tangent), rule_, kStation_mm);
+        plan_.turns.resize(mandrel_.rims.size());
         TurnsAtRim& turns = plan_.turns[static_cast<std::size_t>(rim.id)];
         ++turns.turns;
         turns.dwell_rad += turn.dwell_rad;
@@ -456,18 +606,24 @@ private:
             return;
         }
         const Wall wall(mandrel_.surface);
+        const auto ply = [&](bool downward) {
+            return hoop_ply(meridian_, part, options_.tow.width_mm, steering, kStation_mm,
+                            downward);
+        };
+        begin_after({ConnectingGoal{ConnectingGoal::Kind::Parallel, ply(false).front().arc_mm},
+                     ConnectingGoal{ConnectingGoal::Kind::Parallel, ply(true).front().arc_mm}});
         const int plies = std::max(1, static_cast<int>(std::lround(options_.layers)));
-        double begin_rad = 0.0;
-        for (int i = 0; i < plies; ++i) {
-            const std::vector<MeridianStation> ply =
-                hoop_ply(meridian_, part, options_.tow.width_mm, steering, kStation_mm, i % 2 == 1);
-            add(piece_of(wall.path(ply, begin_rad)));
-            begin_rad += ply.back().azimuth_rad;
+        double begin_rad = begin_.azimuth_rad;
+        bool downward = begin_.end == 1;
+        for (int i = 0; i < plies; ++i, downward = !downward) {
+            const std::vector<MeridianStation> stations = ply(downward);
+            add(piece_of(wall.path(stations, begin_rad)));
+            begin_rad += stations.back().azimuth_rad;
         }
         plan_.pieces.front().starts_fibre = true;
         plan_.courses = plies;
         plan_.fibres = 1;
-        plan_.turns.assign(mandrel_.rims.size(), {});
+        plan_.turns.resize(mandrel_.rims.size());
         measure(part.from_mm, part.to_mm);
     }
 
@@ -503,6 +659,10 @@ private:
     double slip_ratio_ = 0.0;  // of the passes
     MeridianPass pass_;
     Pattern pattern_;
+    struct {
+        std::size_t end = 0;
+        double azimuth_rad = 0.0;
+    } begin_;  // of the first circuit or ply
     Plan plan_;
 };
 

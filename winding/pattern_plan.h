@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include <Eigen/Core>
+
 #include "core/units.h"
 #include "mesh/mandrel.h"
 #include "mesh/revolution.h"
@@ -16,6 +18,13 @@ namespace meshwind {
 
 enum class PatternKind { Helical, Polar, Hoop };
 
+/// Where the fibre of the layer before ends, over a rim or along a parallel.
+struct FibreEnd {
+    Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
+    Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();
+    std::int32_t rim = -1;  ///< it leaves over; -1: it does not
+};
+
 struct PatternOptions {
     PatternKind kind = PatternKind::Helical;
     double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
@@ -25,6 +34,9 @@ struct PatternOptions {
     /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
     /// place.
     std::optional<std::array<double, 2>> hoop_z_mm{};
+    /// To go on with its fibre, by connecting passes (connecting_passes.h) or a turn; where that
+    /// cannot be, Plan::cut_because says why and the pattern begins anew.
+    std::optional<FibreEnd> before{};
     std::uint64_t seed = 1;  ///< of the samples that coverage is measured on
 };
 
