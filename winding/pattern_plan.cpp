@@ -10,21 +10,14 @@
 #include "core/parallel.h"
 #include "core/text_number.h"
 #include "core/units.h"
-#include "geodesic/field_walk.h"
-#include "geodesic/measure.h"
-#include "mesh/nearest.h"
-#include "winding/connecting_passes.h"
 #include "winding/hoop_path.h"
-#include "winding/lay_out.h"
 #include "winding/measure_plan.h"
+#include "winding/revolution_pieces.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
-
-// Distance of the stations of a plan, as the other planners have it.
-constexpr double kStation_mm = 4.0;
 
 // A pass that meets no end within this circles for ever.
 constexpr double kLongest_mm = 1e5;
@@ -52,13 +45,6 @@ constexpr double kLeastDwell_rad = 1e-9;
 // Share of the friction with which hoops turn into a helix and back: it is over in a few mm.
 constexpr double kHoopSteering = 0.5;
 
-// Share of the friction that connecting passes are steered with: over the steps that other layers
-// leave, the press of the fibre changes within a few mm, and the laid fibre evens that out.
-constexpr double kConnecting = 0.7;
-
-// A fibre along a parallel: the sine of its angle to the meridian.
-constexpr double kAlong = 1.0 - 1e-5;
-
 // Openings that differ by less are turned at without steering.
 constexpr double kSameTurn_mm = 1e-6;
 
@@ -71,52 +57,16 @@ std::string degrees(double angle_rad) {
     return fixed(deg_from_rad(angle_rad), 2) + " deg";
 }
 
-// The faces under a path. Its stations stay on the body that the meridian sweeps, from which the
-// mesh is off by BodyOfRevolution::residual_mm.
-class Wall {
-public:
-    explicit Wall(const Surface& surface) : surface_(surface) {
-        std::vector<Vector3d> centres;
-        for (const auto& [a, b, c] : surface.face) {
-            centres.push_back((point(a) + point(b) + point(c)) / 3.0);
-        }
-        nearest_.emplace(centres);
-    }
-
-    [[nodiscard]] SurfacePath path(const std::vector<MeridianStation>& stations,
-                                   double turn_rad) const {
-        SurfacePath path;
-        std::optional<FieldWalker> walker;
-        for (const MeridianStation& station : stations) {
-            PathPoint point = swept(station, turn_rad);
-            if (!walker || !walker->move_under(point.position_mm)) {
-                // On a rim the place may lie just beyond.
-                walker.emplace(surface_, SurfacePoint{nearest_->nearest(point.position_mm)});
-                (void)walker->move_under(point.position_mm);
-            }
-            point.at = walker->station(point.tangent).at;
-            path.push_back(point);
-        }
-        return path;
-    }
-
-private:
-    [[nodiscard]] const Vector3d& point(std::int32_t i) const {
-        return surface_.position_mm[static_cast<std::size_t>(i)];
-    }
-
-    const Surface& surface_;
-    std::optional<NearestPoints> nearest_;
-};
-
 class PatternPlanner {
 public:
     PatternPlanner(const Mandrel& mandrel, const BodyOfRevolution& body,
                    const PatternOptions& options)
-        : mandrel_(mandrel), body_(body), meridian_(body.meridian), options_(options) {
-        rule_ = options.turn;
-        rule_.friction = options.tow.friction;
-        rule_.band_mm = options.tow.width_mm;
+        : mandrel_(mandrel),
+          body_(body),
+          meridian_(body.meridian),
+          options_(options),
+          rule_{options.tow.friction, options.turn.extension_mm, options.tow.width_mm},
+          pieces_(mandrel, body, rule_) {
         plan_.planner = "pattern";
         widest_mm_ = meridian_.widest_mm();
         widest_radius_mm_ = meridian_.at(widest_mm_).radius_mm;
@@ -135,7 +85,7 @@ public:
         if (!ends_hold() || !choose_pattern()) {
             return std::move(plan_);
         }
-        begin_after({goal(0), goal(1)});
+        begin_at({goal(0), goal(1)}, {pass_.stations.front(), way_back(pass_).front()});
         lay();
         // At a turn of its own the band is whole as far as its middle.
         measure(pass_.stations.front().arc_mm, pass_.stations.back().arc_mm);
@@ -149,13 +99,8 @@ private:
     }
 
     [[nodiscard]] MeridianPass pass(double angle_rad) const {
-        return pass_through(meridian_, widest_mm_, angle_rad, slip_ratio_, kStation_mm,
+        return pass_through(meridian_, widest_mm_, angle_rad, slip_ratio_, kPatternStation_mm,
                             kLongest_mm);
-    }
-
-    [[nodiscard]] const Rim* rim_of(std::size_t end) const {
-        const std::int32_t rim = body_.end[end].rim;
-        return rim >= 0 ? &mandrel_.rims[static_cast<std::size_t>(rim)] : nullptr;
     }
 
     // r sin(angle) where a pass stops: the radius at which it turns, or would.
@@ -178,7 +123,7 @@ private:
     bool aim_at_openings() {
         std::array<double, 2> turn_mm{};
         for (std::size_t end = 0; end < 2; ++end) {
-            const Rim* const rim = rim_of(end);
+            const Rim* const rim = pieces_.rim_of(end);
             turn_mm[end] = (rim != nullptr ? rim->radius_mm : 0.0) + 0.5 * options_.tow.width_mm;
             if (turn_mm[end] >= widest_radius_mm_) {
                 return fail("a polar winding turns round the openings, and the " +
@@ -230,12 +175,12 @@ private:
             if (stop == MeridianStop::Hoop) {
                 continue;
             }
-            const Rim* const rim = rim_of(end);
+            const Rim* const rim = pieces_.rim_of(end);
             if (rim == nullptr) {
                 return fail("a fibre at " + degrees(angle_rad_) + " runs over the " + name +
                             " pole; a larger angle turns before it");
             }
-            const RimCrossing crossing = crossing_of(end, 0.0);
+            const RimCrossing crossing = crossing_of(end);
             if (!can_turn(*rim, crossing, rule_)) {
                 const double run_mm =
                     turn_run_mm(rim->radius_mm, crossing.angle_rad, options_.tow.friction) +
@@ -252,19 +197,17 @@ private:
     }
 
     // How the pass crosses the rim of an end on its way out, or begins there (seen backwards).
-    [[nodiscard]] RimCrossing crossing_of(std::size_t end, double turn_rad) const {
-        const MeridianStation& at = end == 0 ? pass_.stations.front() : pass_.stations.back();
-        const PathPoint point = swept(at, turn_rad);
-        return crossing_at(*rim_of(end), point.position_mm,
-                           end == 0 ? Vector3d(-point.tangent) : point.tangent);
+    [[nodiscard]] RimCrossing crossing_of(std::size_t end) const {
+        return pieces_.crossing_of(end, end == 0 ? pass_.stations.front() : pass_.stations.back(),
+                                   0.0);
     }
 
     // About +Z, of a turn over a rim without dwell.
     [[nodiscard]] double steered_rad(std::size_t end) const {
-        const RimCrossing crossing = crossing_of(end, 0.0);
+        const RimCrossing crossing = crossing_of(end);
         RimCrossing back = crossing;
         back.sense = -crossing.sense;
-        return positive_angle(-dwell_rad(*rim_of(end), crossing, back, rule_));
+        return positive_angle(-dwell_rad(*pieces_.rim_of(end), crossing, back, rule_));
     }
 
     [[nodiscard]] bool dwells(std::size_t end) const {
@@ -353,136 +296,24 @@ private:
 
     // Leads on from the fibre of the layer before, where there is one and it can be, to where the
     // pattern begins then.
-    void begin_after(const std::array<ConnectingGoal, 2>& goals) {
+    void begin_at(const std::array<ConnectingGoal, 2>& goals,
+                  const std::array<MeridianStation, 2>& first) {
         if (!options_.before) {
             return;
         }
-        plan_.cut_because = options_.before->rim >= 0 ? begin_over_rim(*options_.before, goals)
-                                                      : begin_along(*options_.before, goals);
+        PatternBegin begin = begin_after(*options_.before, meridian_, pieces_, goals, first, rule_);
+        plan_.cut_because = begin.cut_because;
         plan_.goes_on = plan_.cut_because.empty();
         if (!plan_.goes_on) {
-            plan_.pieces.clear();
-            begin_ = {};
+            return;
         }
-    }
-
-    // The same from a parallel. Returns in words why it cannot be.
-    std::string begin_along(const FibreEnd& before, const std::array<ConnectingGoal, 2>& goals) {
-        const Vector3d& p = before.position_mm;
-        const Vector3d around = Vector3d(-p.y(), p.x(), 0.0).normalized();
-        if (before.tangent.dot(around) < kAlong) {
-            return "the one before does not end along a parallel";
+        for (LaidTurn& laid : begin.pieces) {
+            add(std::move(laid));
         }
-        ConnectingRequest request = connecting_request(goals);
-        request.from_arc_mm = meridian_.foot(std::hypot(p.x(), p.y()), p.z()).arc_mm;
-        const ConnectingPasses way = connecting_passes(meridian_, request);
-        if (!way.failure.empty()) {
-            return way.failure;
-        }
-        begin_ = {way.end, std::atan2(p.y(), p.x())};
-        add_connecting(way.passes);
-        if (goals[way.end].kind == ConnectingGoal::Kind::Rim) {
-            begin_at_rim(plan_.pieces.back().path.back());
-        }
-        return "";
-    }
-
-    // The same where it leaves over a rim: it is turned there, straight into the pattern or into
-    // passes that lead to it.
-    std::string begin_over_rim(const FibreEnd& before, const std::array<ConnectingGoal, 2>& goals) {
-        const std::size_t end = body_.end[0].rim == before.rim ? 0 : 1;
-        const Rim& rim = *rim_of(end);
-        PathPoint from;
-        from.position_mm = before.position_mm;
-        from.tangent = before.tangent;
-        const RimCrossing crossing = crossing_at(rim, from.position_mm, from.tangent);
-        if (!can_turn(rim, crossing, rule_)) {
-            return "on the layers before it the fibre cannot be turned over the rim";
-        }
-        if (goals[end].kind == ConnectingGoal::Kind::Rim) {
-            begin_.end = end;
-            begin_at_rim(from);
-            return "";
-        }
-        // Found backwards, from where the pattern begins.
-        for (const std::size_t start : {1 - end, end}) {
-            if (goals[start].kind != ConnectingGoal::Kind::Parallel) {
-                continue;
-            }
-            std::array<ConnectingGoal, 2> over_rim{};
-            over_rim[end].kind = ConnectingGoal::Kind::Rim;
-            ConnectingRequest request = connecting_request(over_rim);
-            request.from_arc_mm = goals[start].arc_mm;
-            const ConnectingPasses way = connecting_passes(meridian_, request);
-            if (!way.failure.empty()) {
-                continue;
-            }
-            const auto passes = other_way_round(way);
-            const MeridianStation& first = passes.front().front();
-            const double azimuth = turned_azimuth(end, from, first);
-            begin_ = {start, azimuth};
-            PathPoint to = swept(first, azimuth - first.azimuth_rad);
-            add(turn_piece(end, from, to));
-            add_connecting(passes);
-            return "";
-        }
-        return "no friction up to " + fixed(options_.tow.friction, 3) +
-               " leads from the rim to where the layer begins";
-    }
-
-    [[nodiscard]] ConnectingRequest connecting_request(
-        const std::array<ConnectingGoal, 2>& goals) const {
-        ConnectingRequest request;
-        request.goal = goals;
-        request.friction = kConnecting * options_.tow.friction;
-        request.station_mm = kStation_mm;
-        request.can_turn = [this](std::size_t end, const MeridianStation& leaving) {
-            const Rim* const rim = rim_of(end);
-            if (rim == nullptr) {
-                return false;
-            }
-            const PathPoint point = swept(leaving, 0.0);
-            return meshwind::can_turn(
-                *rim,
-                crossing_at(*rim, point.position_mm,
-                            end == 0 ? Vector3d(-point.tangent) : point.tangent),
-                rule_);
-        };
-        return request;
-    }
-
-    // Passes from the azimuth where the pattern begins so far, which moves on to their end.
-    void add_connecting(const std::vector<std::vector<MeridianStation>>& passes) {
-        const Wall wall(mandrel_.surface);
-        for (const std::vector<MeridianStation>& stations : passes) {
-            Piece piece =
-                piece_of(wall.path(stations, begin_.azimuth_rad - stations.front().azimuth_rad));
-            piece.kind = PieceKind::Transition;
-            begin_.azimuth_rad += stations.back().azimuth_rad - stations.front().azimuth_rad;
-            add(std::move(piece));
-        }
-    }
-
-    // Turns from a station over the rim where the pattern begins, with hardly any dwell.
-    void begin_at_rim(const PathPoint& from) {
-        const bool upward = begin_.end == 0;
-        const MeridianStation first = upward ? pass_.stations.front() : way_back(pass_).front();
-        begin_.azimuth_rad = turned_azimuth(begin_.end, from, first);
-        add(turn_piece(begin_.end, from, swept(first, begin_.azimuth_rad - first.azimuth_rad)));
-    }
-
-    // Azimuth at which a fibre that leaves over a rim comes back as `first` without dwell.
-    [[nodiscard]] double turned_azimuth(std::size_t end, const PathPoint& from,
-                                        const MeridianStation& first) const {
-        const Rim& rim = *rim_of(end);
-        const PathPoint to = swept(first, -first.azimuth_rad);
-        const double dwell = dwell_rad(rim, crossing_at(rim, from.position_mm, from.tangent),
-                                       crossing_at(rim, to.position_mm, -to.tangent), rule_);
-        return kLeastDwell_rad - dwell;
+        begin_ = std::move(begin);
     }
 
     void lay() {
-        const Wall wall(mandrel_.surface);
         const std::vector<MeridianStation> back = way_back(pass_);
         const std::array<double, 2> turn = turns_at_ends();
         const std::size_t start = begin_.end;
@@ -498,7 +329,7 @@ private:
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t from = i % 2 == 0 ? start : 1 - start;
                 const std::vector<MeridianStation>& way = from == 0 ? pass_.stations : back;
-                passes[i] = piece_of(wall.path(way, begins[i] - way.front().azimuth_rad));
+                passes[i] = pieces_.course(way, begins[i] - way.front().azimuth_rad);
                 passes[i].start_rim = rim_at(from);
                 passes[i].end_rim = rim_at(1 - from);
             }
@@ -509,9 +340,9 @@ private:
             const std::size_t end = i % 2 == 0 ? 1 - start : start;
             const bool turns = dwells(end) && i + 1 < passes.size();
             const SurfacePath& from = passes[i].path;
-            std::optional<Piece> between;
+            std::optional<LaidTurn> between;
             if (turns) {
-                between = turn_piece(end, from.back(), passes[i + 1].path.front());
+                between = pieces_.turn(end, from.back(), passes[i + 1].path.front());
             }
             add(std::move(passes[i]));
             if (between) {
@@ -551,33 +382,15 @@ private:
         return turn;
     }
 
-    [[nodiscard]] Piece piece_of(SurfacePath path) const {
-        Piece piece;
-        piece.kind = PieceKind::Course;
-        piece.string = taut_string(path);
-        const SlipMeasure slip =
-            measure_slip(mandrel_.surface, path, piece.string,
-                         {.friction = options_.tow.friction, .method = TraceMethod::Patches});
-        for (std::size_t i = 0; i < path.size(); ++i) {
-            path[i].kg_per_mm = slip.kg_per_mm[i];
+    void add(LaidTurn laid) {
+        if (laid.rim >= 0) {
+            plan_.turns.resize(mandrel_.rims.size());
+            TurnsAtRim& turns = plan_.turns[static_cast<std::size_t>(laid.rim)];
+            turns.turns += laid.asks.turns;
+            turns.dwell_rad += laid.asks.dwell_rad;
+            turns.extension_mm = std::max(turns.extension_mm, laid.asks.extension_mm);
         }
-        piece.slip = slip.slip;
-        piece.worst_slip = slip.worst;
-        piece.path = std::move(path);
-        return piece;
-    }
-
-    Piece turn_piece(std::size_t end, const PathPoint& from, const PathPoint& to) {
-        const Rim& rim = *rim_of(end);
-        Turn turn = make_turn(rim, crossing_at(rim, from.position_mm, from.tangent),
-                              crossing_at(rim, to.position_mm, -to.tangent), rule_, kStation_mm);
-        plan_.turns.resize(mandrel_.rims.size());
-        TurnsAtRim& turns = plan_.turns[static_cast<std::size_t>(rim.id)];
-        ++turns.turns;
-        turns.dwell_rad += turn.dwell_rad;
-        turns.extension_mm =
-            std::max(turns.extension_mm, turn.run_mm + 0.5 * options_.tow.width_mm);
-        return piece_of_turn(std::move(turn), rim.id);
+        add(std::move(laid.piece));
     }
 
     void add(Piece piece) {
@@ -605,19 +418,20 @@ private:
                  fixed(meridian_.at(widest_mm_).z_mm, 1) + " mm, the body is none");
             return;
         }
-        const Wall wall(mandrel_.surface);
         const auto ply = [&](bool downward) {
-            return hoop_ply(meridian_, part, options_.tow.width_mm, steering, kStation_mm,
+            return hoop_ply(meridian_, part, options_.tow.width_mm, steering, kPatternStation_mm,
                             downward);
         };
-        begin_after({ConnectingGoal{ConnectingGoal::Kind::Parallel, ply(false).front().arc_mm},
-                     ConnectingGoal{ConnectingGoal::Kind::Parallel, ply(true).front().arc_mm}});
+        const std::array first{ply(false).front(), ply(true).front()};
+        begin_at({ConnectingGoal{ConnectingGoal::Kind::Parallel, first[0].arc_mm},
+                  ConnectingGoal{ConnectingGoal::Kind::Parallel, first[1].arc_mm}},
+                 first);
         const int plies = std::max(1, static_cast<int>(std::lround(options_.layers)));
         double begin_rad = begin_.azimuth_rad;
         bool downward = begin_.end == 1;
         for (int i = 0; i < plies; ++i, downward = !downward) {
             const std::vector<MeridianStation> stations = ply(downward);
-            add(piece_of(wall.path(stations, begin_rad)));
+            add(pieces_.course(stations, begin_rad));
             begin_rad += stations.back().azimuth_rad;
         }
         plan_.pieces.front().starts_fibre = true;
@@ -653,16 +467,14 @@ private:
     const Meridian& meridian_;
     const PatternOptions& options_;
     TurnRule rule_;
+    RevolutionPieces pieces_;
     double widest_mm_ = 0.0;
     double widest_radius_mm_ = 0.0;
     double angle_rad_ = 0.0;   // at the widest place
     double slip_ratio_ = 0.0;  // of the passes
     MeridianPass pass_;
     Pattern pattern_;
-    struct {
-        std::size_t end = 0;
-        double azimuth_rad = 0.0;
-    } begin_;  // of the first circuit or ply
+    PatternBegin begin_;  // where the first circuit or ply begins
     Plan plan_;
 };
 

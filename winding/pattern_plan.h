@@ -5,25 +5,17 @@
 #include <cstdint>
 #include <optional>
 
-#include <Eigen/Core>
-
 #include "core/units.h"
 #include "mesh/mandrel.h"
 #include "mesh/revolution.h"
 #include "winding/library.h"
 #include "winding/meridian_path.h"
+#include "winding/pattern_begin.h"
 #include "winding/plan.h"
 
 namespace meshwind {
 
 enum class PatternKind { Helical, Polar, Hoop };
-
-/// Where the fibre of the layer before ends, over a rim or along a parallel.
-struct FibreEnd {
-    Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
-    Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();
-    std::int32_t rim = -1;  ///< it leaves over; -1: it does not
-};
 
 struct PatternOptions {
     PatternKind kind = PatternKind::Helical;

@@ -183,7 +183,6 @@ class BadInput(program.ProgramTest):
                            ('{"eye": {"radius": 200}}', "/eye/radius"),
                            ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "x.csv"),
                            ('{"layers": [{"kind": "hoops"}]}', "/layers/0/kind"),
-                           ('{"layers": [{"kind": "hoop"}, {"kind": "polar"}]}', "/layers"),
                            ('{"mandrel": {"turn": "pins"}}', "/mandrel/turn")):
             with self.subTest(text):
                 self.refused_job(text, word)

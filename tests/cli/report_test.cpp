@@ -17,10 +17,11 @@ constexpr const char* kSixAxis = "six_axis.json";
 std::string summary(const std::string& machine, RedundancyRule redundancy,
                     const std::vector<bool>& least_time) {
     WindResult result;
-    result.setup.machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + machine);
-    result.setup.job.redundancy = redundancy;
+    WoundLayer& layer = result.layers.emplace_back();
+    layer.setup.machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + machine);
+    layer.setup.job.redundancy = redundancy;
     for (const bool optimal : least_time) {
-        result.programs.emplace_back().made.optimal = optimal;
+        layer.programs.emplace_back().made.optimal = optimal;
     }
     std::ostringstream out;
     print_summary(out, result, "out");

@@ -1,0 +1,60 @@
+/// Stations of a meridian's path as pieces of a plan on the mandrel's mesh.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "mesh/mandrel.h"
+#include "mesh/nearest.h"
+#include "mesh/revolution.h"
+#include "winding/meridian_path.h"
+#include "winding/plan.h"
+#include "winding/turn.h"
+
+namespace meshwind {
+
+/// Distance of the stations of a plan, as the other planners have it.
+inline constexpr double kPatternStation_mm = 4.0;
+
+/// A turn over a rim, and what it asks of the rim's extension.
+struct LaidTurn {
+    Piece piece;
+    TurnsAtRim asks;
+    std::int32_t rim = -1;
+};
+
+/// The lower end of a body is 0, the upper 1. Const functions are thread-safe.
+class RevolutionPieces {
+public:
+    /// All are kept by reference. \param rule its friction is what pieces are judged by
+    RevolutionPieces(const Mandrel& mandrel, const BodyOfRevolution& body, const TurnRule& rule);
+
+    /// The stations, turned about +Z, with the faces under them: they stay on the body that the
+    /// meridian sweeps, from which the mesh is off by BodyOfRevolution::residual_mm. Slip is
+    /// measured.
+    [[nodiscard]] Piece course(const std::vector<MeridianStation>& stations, double turn_rad) const;
+
+    /// Over the rim of an end, from where a course leaves it to where the next one comes back.
+    /// \pre both can be turned (can_turn)
+    [[nodiscard]] LaidTurn turn(std::size_t end, const PathPoint& from, const PathPoint& to) const;
+
+    /// Of an end; none at a pole.
+    [[nodiscard]] const Rim* rim_of(std::size_t end) const;
+
+    /// How a path over an end's rim crosses it. \param place on the way out for end 1; of end 0 the
+    /// first station, seen backwards
+    [[nodiscard]] RimCrossing crossing_of(std::size_t end, const MeridianStation& place,
+                                          double turn_rad) const;
+
+private:
+    [[nodiscard]] SurfacePath path(const std::vector<MeridianStation>& stations,
+                                   double turn_rad) const;
+
+    const Mandrel& mandrel_;
+    const BodyOfRevolution& body_;
+    const TurnRule& rule_;
+    std::optional<NearestPoints> nearest_;  // of the faces' centres
+};
+
+}  // namespace meshwind
