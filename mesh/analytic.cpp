@@ -208,15 +208,21 @@ ShapeFoot elbow_foot(const ElbowShape& shape, const Vector3d& point_mm) {
             best = foot;
         }
     };
-    if (turn >= 0.0 && turn <= shape.angle_rad) {
-        const Vector3d way(-std::cos(turn), 0.0, std::sin(turn));
+    const auto offer_bend = [&](double at_rad) {
+        const Vector3d way(-std::cos(at_rad), 0.0, std::sin(at_rad));
         offer(bend_centre + shape.bend_radius_mm * way, ShapePart::Bend);
+    };
+    if (turn >= 0.0 && turn <= shape.angle_rad) {
+        offer_bend(turn);
     }
-    if (from_centre.z() <= 0.0 || !best) {
+    if (from_centre.z() <= 0.0) {
         offer({0.0, 0.0, point_mm.z()}, ShapePart::Leg);
     }
     if (along_leg2 >= 0.0) {
         offer(leg2_start + along_leg2 * leg2_way, ShapePart::Leg);
+    }
+    if (!best) {
+        offer_bend(shape.angle_rad);  // by rounding between bend and second leg
     }
     return *best;
 }

@@ -37,6 +37,24 @@ TEST(MandrelFoot, FindsTheFootOfPointsOffTheSurface) {
     }
 }
 
+// Where bend and second leg meet, rounding may leave a place in neither: angles and places all
+// around.
+TEST(ElbowFoot, HasNoGapWhereBendAndLegMeet) {
+    for (int degrees = 1; degrees <= 180; ++degrees) {
+        const ElbowShape shape{40.0, 120.0, rad_from_deg(degrees), 150.0, 90.0};
+        const double c = std::cos(shape.angle_rad);
+        const double s = std::sin(shape.angle_rad);
+        const Vector3d outward(-c, 0.0, s);
+        for (int k = 0; k < 60; ++k) {
+            const double phi = 2.0 * kPi * k / 60;
+            const Vector3d place = Vector3d(120.0, 0.0, 150.0) +
+                                   (120.0 + 40.0 * std::cos(phi)) * outward +
+                                   40.0 * std::sin(phi) * Vector3d::UnitY();
+            EXPECT_NEAR(elbow_foot(shape, place).distance_mm, 0.0, 1e-9) << degrees << ' ' << k;
+        }
+    }
+}
+
 // Sphere: the foot is known without any search.
 TEST(EllipsoidFoot, AgreesWithTheSphere) {
     const EllipsoidShape sphere{100.0, 100.0};
