@@ -170,9 +170,11 @@ int run_inspect(const InspectOptions& options, const Common& common) {
         options.refine_mm ? write_refined(mandrel, *options.refine_mm, options.out) : 0;
     const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface);
     const RevolutionFinding revolution = find_revolution(mandrel);
+    const TubeFinding tube = find_tube(mandrel);
     if (common.json) {
         nlohmann::json report{{"meshwind", kVersion}, {"mandrel", mandrel_report(mandrel)}};
         report["mandrel"]["revolution"] = revolution_report(revolution);
+        report["mandrel"]["tube"] = tube_report(tube);
         report["mandrel"]["accuracy"] = accuracy_report(accuracy);
         if (options.refine_mm) {
             report["refined"] = {{"file", options.out},
@@ -181,7 +183,7 @@ int run_inspect(const InspectOptions& options, const Common& common) {
         }
         std::cout << report.dump(1) << '\n';
     } else {
-        print_mandrel(std::cout, mandrel, accuracy, revolution);
+        print_mandrel(std::cout, mandrel, accuracy, revolution, tube);
         if (options.refine_mm) {
             std::cout << "refined       " << options.out << ": " << refined_faces
                       << " triangles, edges of at most " << fixed(*options.refine_mm, 3) << " mm\n";

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/text_number.h"
+#include "core/units.h"
 
 namespace meshwind {
 namespace {
@@ -125,10 +126,41 @@ void print_revolution(std::ostream& out, const RevolutionFinding& finding) {
     out << "residual " << fixed(finding.body->residual_mm, 4) << " mm\n";
 }
 
+std::string words_of(const TubePart& part) {
+    const std::string length = " " + fixed(part.to_mm - part.from_mm, 2) + " mm";
+    const std::string turn = fixed(deg_from_rad(part.angle_rad), 2) + " deg";
+    switch (part.kind) {
+        case TubePartKind::Straight:
+            return "straight" + length;
+        case TubePartKind::Bend:
+            return "bend " + turn + " R " + fixed(part.bend_radius_mm, 2);
+        case TubePartKind::Curve:
+            break;
+    }
+    return "curve" + length + " that turns by " + turn;
+}
+
+void print_tube(std::ostream& out, const TubeFinding& finding) {
+    if (!finding.tube) {
+        out << "tube          no tube: " << finding.why_not << "\n";
+        return;
+    }
+    const Tube& tube = *finding.tube;
+    out << "tube          radius " << fixed(tube.radius.front().radius_mm, 2);
+    if (tube.radius.size() > 1) {
+        out << " to " << fixed(tube.radius.back().radius_mm, 2);
+    }
+    out << ": ";
+    for (const TubePart& part : tube.parts) {
+        out << words_of(part) << ", ";
+    }
+    out << "residual " << fixed(tube.residual_mm, 4) << " mm\n";
+}
+
 }  // namespace
 
 void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy,
-                   const RevolutionFinding& revolution) {
+                   const RevolutionFinding& revolution, const TubeFinding& tube) {
     print_size(out, mandrel);
     print_repairs(out, mandrel.repairs);
     print_regions(out, mandrel);
@@ -144,6 +176,7 @@ void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy
         << " corners quartic, " << fit.cubic << " cubic, " << fit.quadratic << " quadratic, "
         << fit.reduced << " reduced, " << fit.averaged << " averaged\n";
     print_revolution(out, revolution);
+    print_tube(out, tube);
     print_accuracy(out, accuracy);
     for (const std::string& remark : mandrel.remarks) {
         out << "remark        " << remark << "\n";

@@ -103,6 +103,34 @@ json revolution_report(const RevolutionFinding& finding) {
             {"parts", parts}};
 }
 
+json tube_report(const TubeFinding& finding) {
+    if (!finding.tube) {
+        return {{"why_not", finding.why_not}};
+    }
+    const Tube& tube = *finding.tube;
+    json parts = json::array();
+    for (const TubePart& part : tube.parts) {
+        parts.push_back(
+            {{"kind", name_of(part.kind)}, {"from_mm", part.from_mm}, {"to_mm", part.to_mm}});
+        if (part.kind != TubePartKind::Straight) {
+            parts.back()["angle_deg"] = deg_from_rad(part.angle_rad);
+        }
+        if (part.kind == TubePartKind::Bend) {
+            parts.back()["bend_radius_mm"] = part.bend_radius_mm;
+        }
+    }
+    json radius = json::array();
+    for (const TubeRadius& node : tube.radius) {
+        radius.push_back({{"at_mm", node.arc_mm}, {"radius_mm", node.radius_mm}});
+    }
+    return {{"residual_mm", tube.residual_mm},
+            {"length_mm", tube.line.length_mm()},
+            {"rims", tube.rim},
+            {"lean_deg", {deg_from_rad(tube.lean_rad[0]), deg_from_rad(tube.lean_rad[1])}},
+            {"radius", radius},
+            {"parts", parts}};
+}
+
 json accuracy_report(const PathAccuracy& accuracy) {
     if (accuracy.paths == 0) {
         return nullptr;

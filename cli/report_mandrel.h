@@ -6,6 +6,7 @@
 #include "geodesic/path_accuracy.h"
 #include "mesh/mandrel.h"
 #include "mesh/revolution.h"
+#include "mesh/tube.h"
 
 namespace meshwind {
 
@@ -15,6 +16,10 @@ namespace meshwind {
 
 /// The object "revolution": residual_mm, length_mm, ends, parts; only why_not where there is none.
 [[nodiscard]] nlohmann::json revolution_report(const RevolutionFinding& finding);
+
+/// The object "tube": residual_mm, length_mm, rims, lean_deg, radius, parts; only why_not where
+/// there is none.
+[[nodiscard]] nlohmann::json tube_report(const TubeFinding& finding);
 
 /// The object "accuracy": paths, length_mm, walk_mm_per_m, patches_mm_per_m; null without paths.
 [[nodiscard]] nlohmann::json accuracy_report(const PathAccuracy& accuracy);

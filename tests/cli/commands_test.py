@@ -110,6 +110,24 @@ class Commands(program.ProgramTest):
         self.assertEqual(set(part), {"why_not"})
         self.assertIn("3 rims", part["why_not"])
 
+    def test_inspect_names_the_parts_of_a_tube(self):
+        elbow = self.make("elbow", "--edge", "8")
+        part = json.loads(self.done("inspect", elbow, "--json").stdout)["mandrel"]["tube"]
+        self.assertEqual(set(part), {"residual_mm", "length_mm", "rims", "lean_deg", "radius",
+                                     "parts"})
+        self.assertEqual([p["kind"] for p in part["parts"]], ["straight", "bend", "straight"])
+        # The file has single precision: 8e-6 mm at 180 mm.
+        self.assertAlmostEqual(part["parts"][1]["bend_radius_mm"], 100.0, 3)
+        self.assertAlmostEqual(part["parts"][1]["angle_deg"], 90.0, 3)
+        self.assertAlmostEqual(part["radius"][0]["radius_mm"], 40.0, 4)
+        self.assertLess(part["residual_mm"], 1e-4)
+        self.assertRegex(self.done("inspect", elbow).stdout,
+                         r"(?m)^tube +radius 40\.00: straight 80\.00 mm, bend 90\.00 deg R 100\.00, "
+                         r"straight 80\.00 mm, residual 0\.0000 mm$")
+        tee = self.make("tee", "--edge", "12")
+        part = json.loads(self.done("inspect", tee, "--json").stdout)["mandrel"]["tube"]
+        self.assertEqual(set(part), {"why_not"})
+
     def test_inspect_estimates_accuracy(self):
         """Half the edges: a quarter of the drift by walk, a sixteenth by patches; half of that fall
         is asked for. Not a word of it changes with the number of threads."""
