@@ -76,12 +76,13 @@ void check_machine(const Machine& machine, const std::string& file) {
     }
 }
 
-std::array<std::int64_t, 6> start_nano(const CarriedJoints& joints) {
+// Axis values at a sample, for the first move of a program.
+std::array<std::int64_t, 6> start_nano(const CarriedJoints& joints, std::size_t sample) {
     std::array<std::int64_t, 6> start{};
     for (std::size_t a = 0; a < start.size(); ++a) {
         constexpr double kSteps = 1e5;  // kKrlAngleDecimals
         constexpr std::int64_t kStep_nano = 10'000;
-        start[a] = std::llround(deg_from_rad(joints.path.row(0)[a]) * kSteps) * kStep_nano;
+        start[a] = std::llround(deg_from_rad(joints.path.row(sample)[a]) * kSteps) * kStep_nano;
     }
     return start;
 }
@@ -96,6 +97,7 @@ public:
         make_program();
         wind();
         check();
+        lay_fibres();
         write();
         return std::move(result_);
     }
@@ -149,7 +151,7 @@ private:
         planned_.name = result_.request.name;
         planned_.base = krl_frame(Isometry3d::Identity());
         planned_.tool = krl_frame(tool_);
-        planned_.start_nano = start_nano(result_.joints);
+        planned_.start_nano = start_nano(result_.joints, 0);
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             // The start is taken at the passage's own speed.
             double path_mm_s = result_.request.speed_mm_s;
@@ -173,6 +175,31 @@ private:
         result_.duration_s = durations_s(planned_);
         text_ = write_krl(planned_, {}, result_.machine.controller.header);
         result_.program = read_krl(text_, planned_.name + ".src");
+        back_ = back_program(planned_, planned_.name + "_back",
+                             start_nano(result_.joints, result_.samples.size() - 1));
+    }
+
+    void lay_fibres() {
+        const CarryRequest& request = result_.request;
+        if (!(request.angle_deg > 0.0)) {
+            return;
+        }
+        const CarryWindingTask task{result_.head,
+                                    *axis_,
+                                    result_.points.s_mm,
+                                    text_,
+                                    winds_back() ? write_krl(back_, {}) : "",
+                                    request.tube_radius_mm,
+                                    rad_from_deg(request.angle_deg),
+                                    request.tows,
+                                    request.tow_width_mm.value_or(0.0)};
+        result_.winding = wind_carried(task, request.winding);
+        result_.checks.insert(result_.checks.end(), result_.winding->checks.begin(),
+                              result_.winding->checks.end());
+    }
+
+    [[nodiscard]] bool winds_back() const {
+        return result_.request.angle_deg > 0.0 && !result_.request.winding.at_once;
     }
 
     // Speed of the frame's axis in a move, and of the frame's own turn in the head.
@@ -436,12 +463,22 @@ private:
     }
 
     void write() {
-        const std::string file = planned_.name + ".src";
         result_.written = result_.passed() || result_.request.force;
-        if (result_.written) {
-            folder_->add(file, write_krl(planned_, comments(), result_.machine.controller.header));
+        for (const KrlProgram* program : {&planned_, &back_}) {
+            const std::string file = program->name + ".src";
+            if (result_.written && (program == &planned_ || winds_back())) {
+                folder_->add(file,
+                             write_krl(*program, comments(), result_.machine.controller.header));
+            } else {
+                folder_->withdraw(file);
+            }
+        }
+        if (result_.winding) {
+            folder_->add("rings.csv", result_.winding->rings);
+            folder_->add("fibre.csv", fibre_csv(result_.winding->fibres));
         } else {
-            folder_->withdraw(file);
+            folder_->withdraw("rings.csv");
+            folder_->withdraw("fibre.csv");
         }
         folder_->add("motion.csv", motion_csv());
         folder_->add("report.json", carry_json(result_));
@@ -454,6 +491,7 @@ private:
     Isometry3d tool_ = Isometry3d::Identity();
     std::vector<KrlFrame> frames_;  ///< of the points
     KrlProgram planned_;
+    KrlProgram back_;  ///< the same moves the other way
     std::string text_;
 };
 

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "cli/carry_winding.h"
 #include "machines/machine.h"
 #include "postproc/carried_path.h"
 #include "postproc/frame_axis.h"
@@ -32,10 +33,11 @@ struct CarryRequest {
     double tube_radius_mm = 20.0;
     double ring_radius_mm = 40.0;
     double ring_distance_mm = 70.0;
-    double clearance_mm = 5.0;  ///< of the frame from bodies on the machine's base
-    double angle_deg = 45.0;    ///< wanted of the rings' fibres, one ring to each side
-    int tows = 12;              ///< on each ring
-    std::optional<double> tow_width_mm;
+    double clearance_mm = 5.0;           ///< of the frame from bodies on the machine's base
+    double angle_deg = 45.0;             ///< wanted of the rings' fibres, one ring to each side
+    int tows = 12;                       ///< on each ring
+    std::optional<double> tow_width_mm;  ///< none: the narrowest that covers
+    CarryWindingOptions winding;
     /// Frame of the axis' table on the robot's flange: x, y, z in mm, a, b, c in deg.
     std::array<double, 6> tool{};
     bool force = false;
@@ -69,16 +71,19 @@ struct CarryOutcome {
     double turns_per_mm = 0.0;       ///< of a ring, for the wanted angle
     std::array<RingResult, 2> ring;  ///< right-handed, left-handed
     double longitudinal_deg = 0.0;   ///< largest lean of fibres along the axis, of the frame's turn
-    std::vector<Check>
-        checks;  ///< ring, reach, limits, wrist, clearance (with bodies), interpolation, rounding
-    bool written = false;  ///< the program
+    std::optional<CarryWinding> winding;  ///< none at an angle of 0: the rings stand still
+    /// ring, reach, limits, wrist, clearance (with bodies), interpolation, rounding, and those of
+    /// `winding`
+    std::vector<Check> checks;
+    bool written = false;  ///< the programs
 
     [[nodiscard]] bool passed() const;
     [[nodiscard]] double total_s() const;
 };
 
 /// Works everything out, reads the program back from its text, checks it and writes the folder:
-/// NAME.src where all checks passed or `force` is set, motion.csv and report.json.
+/// NAME.src and NAME_back.src (unless all is wound at once) where all checks passed or `force` is
+/// set, motion.csv and report.json, with an angle also rings.csv and fibre.csv.
 /// \throws InputError carry.*, axis.*, krl.*; IoError; nothing is written then
 [[nodiscard]] CarryOutcome run_carry(const CarryRequest& request);
 

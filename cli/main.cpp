@@ -266,7 +266,21 @@ void add_carry(CLI::App& app, CarryOptionsText& text) {
            "wanted angle of the rings' fibres from the axis, degrees");
     app.add_option("--tows", request.tows, "tows on each ring")->capture_default_str();
     app.add_option("--tow-width", request.tow_width_mm,
-                   "mm; given, the share of the tube that is covered is told");
+                   "mm; without it the narrowest that covers the tube in one pass");
+    CarryWindingOptions& winding = request.winding;
+    app.add_option("--passes", winding.passes,
+                   "passes of each ring; 0: as few as cover the tube with tows of that width")
+        ->check(CLI::Range(0, 100))
+        ->capture_default_str();
+    app.add_flag("--at-once", winding.at_once,
+                 "both rings wind on the way forth, instead of one on each way");
+    app.add_option("--spool-radius", winding.spool_radius_mm,
+                   "radius of the circle where fibres leave a ring, mm; without it its opening");
+    number("--angle-tolerance", winding.angle_tolerance_deg,
+           "how far laid fibre may be off the angle on regular arms, degrees");
+    app.add_option("--friction", winding.friction,
+                   "of fibre on the tube: no more may be needed; without it the need is told");
+    app.add_option("--tow-tex", winding.tow_tex, "mass of the tow, g per km, to tell the fibre's");
     app.add_option("--name", request.name, "name of the program")->capture_default_str();
     app.add_option("-o,--out", text.out, "output folder")->capture_default_str();
 }

@@ -1,6 +1,7 @@
 #include "cli/report_carry.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -69,6 +70,59 @@ json winding_json(const CarryOutcome& outcome) {
     return winding;
 }
 
+json pattern_json(const CarryWinding& winding, const CarryRequest& request) {
+    const RingPattern& pattern = winding.pattern;
+    const auto degrees = [](double rad) { return report_number(deg_from_rad(rad)); };
+    const bool bent = std::isfinite(winding.bend_radius_mm);
+    json result = {
+        {"ways", request.winding.at_once ? "at-once" : "to-and-fro"},
+        {"passes", pattern.passes},
+        {"offset_deg", degrees(pattern.offset_rad)},
+        {"tow_width_mm", report_number(pattern.tow_width_mm)},
+        {"tows_needed", report_number(pattern.tows_needed)},
+        {"tows_needed_outside", report_number(pattern.tows_needed_outside)},
+        {"layers_of_a_ring", report_number(pattern.coverage)},
+        {"layers_of_a_ring_outside", report_number(pattern.coverage_outside)},
+        {"bend_radius_mm", bent ? json(report_number(winding.bend_radius_mm)) : json(nullptr)},
+        {"inside_deg", degrees(pattern.inside_rad)},
+        {"outside_deg", degrees(pattern.outside_rad)},
+        {"inside_over_outside", report_number(pattern.thickness_ratio)},
+        {"bridging_below_deg", degrees(pattern.bridging_rad)},
+        {"spool_radius_mm", report_number(winding.spool_radius_mm)},
+        {"lag_mm", report_number(winding.lag_mm)},
+        {"wound_from_mm", report_number(winding.zone_from_mm)},
+        {"wound_to_mm", report_number(winding.zone_to_mm)},
+        {"fibre_mm", report_number(pattern.fibre_mm)},
+        {"fibre_per_tow_mm", report_number(pattern.fibre_per_tow_mm)},
+        {"mass_kg", nullptr}};
+    if (request.winding.tow_tex) {
+        result["mass_kg"] =
+            report_number(fibre_mass_kg(pattern.fibre_mm, *request.winding.tow_tex));
+    }
+    return result;
+}
+
+json laid_json(const CarryWinding& winding) {
+    const auto degrees = [](double rad) { return report_number(deg_from_rad(rad)); };
+    const RingCover& cover = winding.cover;
+    const RingQuality& quality = winding.quality;
+    json laid = {{"fibre_mm", report_number(winding.fibre_mm)},
+                 {"covered", report_number(cover.covered)},
+                 {"mean_layers", report_number(cover.mean_layers)},
+                 {"regular_cv", report_number(cover.regular_cv)},
+                 {"regular_mm", report_number(cover.regular_mm)},
+                 {"friction_needed",
+                  std::isfinite(quality.slip) ? json(report_number(quality.slip)) : json(nullptr)},
+                 {"friction_needed_at_mm", report_number(quality.slip_s_mm)},
+                 {"inside_over_outside", nullptr}};
+    if (cover.outside_layers > 0.0) {
+        laid["inside_over_outside"] = report_number(cover.inside_layers / cover.outside_layers);
+        laid["bend_deg"] = {{"min", degrees(quality.outside_rad)},
+                            {"max", degrees(quality.inside_rad)}};
+    }
+    return laid;
+}
+
 json axes_json(const CarryOutcome& outcome) {
     json axes = json::object();
     for (std::size_t a = 0; a < outcome.joints.path.axis_count; ++a) {
@@ -82,6 +136,22 @@ json axes_json(const CarryOutcome& outcome) {
                                              {"max", report_number(deg_from_rad(high))}};
     }
     return axes;
+}
+
+void print_winding(std::ostream& out, const CarryWinding& winding, int tows) {
+    const RingPattern& pattern = winding.pattern;
+    const RingCover& cover = winding.cover;
+    out << "pattern: " << tows << " tows of " << fixed(pattern.tow_width_mm, 2) << " mm a ring in "
+        << pattern.passes << (pattern.passes == 1 ? " pass, " : " passes, ")
+        << fixed(1e-3 * winding.fibre_mm, 2) << " m of fibre from "
+        << fixed(winding.zone_from_mm, 1) << " to " << fixed(winding.zone_to_mm, 1) << " mm\n"
+        << "laid: " << fixed(100.0 * cover.covered, 2) << " % covered, layers scatter by "
+        << fixed(cover.regular_cv, 4) << " on regular arms";
+    if (cover.outside_layers > 0.0) {
+        out << ", " << fixed(cover.inside_layers / cover.outside_layers, 3)
+            << " times as thick inside the bend as outside";
+    }
+    out << "; needs a friction of " << fixed(winding.quality.slip, 3) << '\n';
 }
 
 }  // namespace
@@ -108,6 +178,8 @@ std::string carry_json(const CarryOutcome& outcome) {
           {"ring_radius_mm", outcome.head.ring_radius_mm}}},
         {"tool", outcome.request.tool},
         {"winding", winding_json(outcome)},
+        {"pattern", outcome.winding ? pattern_json(*outcome.winding, outcome.request) : json()},
+        {"laid", outcome.winding ? laid_json(*outcome.winding) : json()},
         {"robot",
          {{"singular",
            {{"least", report_number(joints.singular)},
@@ -136,6 +208,9 @@ void print_carry(std::ostream& out, const CarryOutcome& outcome) {
         << " to " << fixed(outcome.ring.back().highest_deg, 1)
         << " deg; motion.csv has the speeds that keep " << fixed(outcome.request.angle_deg, 1)
         << " deg\n";
+    if (outcome.winding) {
+        print_winding(out, *outcome.winding, outcome.request.tows);
+    }
     print_checks(out, outcome.checks);
     out << (outcome.written ? "written: " + outcome.request.name + ".src" : "no program written")
         << ", motion.csv and report.json in " << outcome.request.out.string() << '\n';

@@ -18,6 +18,7 @@ std::string meaning_of(const std::string& check) {
         {"continuity", "fibres that are tied on, and how well their pieces meet"},
         {"plan", "courses that can be wound"},
         {"coverage", "wall under at least one layer"},
+        {"thickness", "even layers where the winding is regular"},
         {"import", "how far the landing points were from the mandrel"},
         {"eye", "a free length that the rule allows everywhere"},
         {"rounding", "the program read back is the motion that was planned"},

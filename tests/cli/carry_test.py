@@ -34,7 +34,12 @@ class Carry(program.ProgramTest):
         self.assertEqual((self.folder / "out/l_frame.src").read_text(),
                          (program.SOURCE / "data/programs/l_frame.src").read_text())
         self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()),
-                         ["l_frame.src", "motion.csv", "report.json"])
+                         ["fibre.csv", "l_frame.src", "l_frame_back.src", "motion.csv", "report.json",
+                          "rings.csv"])
+        forth, back = ([FRAME.match(line).groups()[:6] for line in
+                        (self.folder / f"out/{name}.src").read_text().splitlines()
+                        if line.startswith("LIN")] for name in ("l_frame", "l_frame_back"))
+        self.assertEqual(back, forth[::-1])
 
     def test_frames_of_the_program_have_the_axis_in_the_head(self):
         """From the text alone: each frame's origin and turn put a point of the axis at H."""
@@ -98,6 +103,79 @@ class Carry(program.ProgramTest):
                                places=6)
         self.assertAlmostEqual(report["checks"]["ring"]["reach_mm"], 28.9068, places=3)
 
+    def test_fibre_lies_on_the_frame_in_helices(self):
+        report = json.loads(self.done(*CARRY, "-o", "out", "--json").stdout)
+        pattern, laid = report["pattern"], report["laid"]
+        self.assertEqual(pattern["ways"], "to-and-fro")
+        self.assertEqual(pattern["passes"], 1)
+        self.assertEqual(laid["covered"], 1)
+        self.assertLess(laid["regular_cv"], 0.02)
+        radius = 280 / math.pi
+        self.assertAlmostEqual(pattern["inside_deg"],
+                               math.degrees(math.atan(1 / (1 - 20 / radius))), delta=0.02)
+        self.assertAlmostEqual(pattern["lag_mm"], math.sqrt(1200), places=6)
+        # Thicker inside than outside, as even advance has it or more.
+        self.assertGreater(laid["inside_over_outside"], pattern["inside_over_outside"])
+        length = 0
+        fibres = {}
+        for row in self.rows(self.folder / "out/fibre.csv"):
+            key = (int(row["ring"]), int(row["spool"]))
+            fibres.setdefault(key, []).append(row)
+        self.assertEqual(len(fibres), 24)
+        for (ring, _), rows in fibres.items():
+            points = [[float(row[k]) for k in ("x_mm", "y_mm", "z_mm")] for row in rows]
+            length += sum(math.dist(p, q) for p, q in zip(points, points[1:]))
+            sense = 1 if ring == 1 else -1
+            for row, (x, y, z) in zip(rows, points):
+                s = float(row["s_mm"])
+                if s < 550:
+                    self.assertAlmostEqual(math.hypot(x, y), 20, delta=1e-3)
+                    self.assertAlmostEqual(z, s, delta=1e-2)
+                elif s > 690:
+                    self.assertAlmostEqual(math.hypot(y, z - 550 - radius), 20, delta=1e-3)
+                else:
+                    out = math.hypot(x - radius, z - 550)
+                    self.assertAlmostEqual(math.hypot(out - radius, y), 20, delta=1e-3)
+            arm = [row for row in rows if 10 < float(row["s_mm"]) < 440]
+            for p, q in zip(arm, arm[1:]):
+                turn = math.radians(float(q["round_deg"]) - float(p["round_deg"]))
+                step = float(q["s_mm"]) - float(p["s_mm"])
+                self.assertAlmostEqual(math.degrees(math.atan2(20 * turn, step)) % 180 - 90,
+                                       sense * 45 % 180 - 90, delta=0.4)
+        self.assertAlmostEqual(length / laid["fibre_mm"], 1, delta=2e-3)
+        self.assertAlmostEqual(length / pattern["fibre_mm"], 1, delta=0.01)
+
+    def test_rings_follow_frame_and_passage(self):
+        self.done(*CARRY, "-o", "out")
+        rows = self.rows(self.folder / "out/rings.csv")
+        for ring, way in (("1", 1), ("2", -1)):
+            own = [row for row in rows if row["ring"] == ring]
+            places = [float(row["s_mm"]) for row in own]
+            self.assertEqual(places, sorted(places)[::way])
+            # 1050 mm at 45 deg on 20 mm, and half a turn of the frame one way or the other.
+            turn = math.radians(float(own[-1]["ring_deg"]))
+            self.assertAlmostEqual(turn, 1050 / 20 + way * math.pi, delta=0.02)
+
+    def test_what_the_fibre_does_not_keep(self):
+        self.failed("--friction", "0.2", check="slip", word="friction of 0.38")
+        self.failed("--at-once", check="laydown", word="nearer to the head's centre")
+        self.failed("--tow-width", "4", "--passes", "1", check="coverage", word="4.00 mm wide")
+        self.failed("--angle", "20", check="bridging", word="steeper than 28.28 deg")
+
+    def test_passes_and_mass(self):
+        report = json.loads(self.done(*CARRY, "--tow-width", "4", "--tow-tex", "800", "--friction",
+                                      "0.5", "-o", "out", "--json").stdout)
+        pattern = report["pattern"]
+        self.assertEqual(pattern["passes"], 3)
+        self.assertAlmostEqual(pattern["offset_deg"], 10, places=6)
+        self.assertAlmostEqual(pattern["mass_kg"], pattern["fibre_mm"] * 800e-9, places=6)
+        self.assertAlmostEqual(pattern["fibre_mm"], 72 * pattern["fibre_per_tow_mm"], places=3)
+        self.assertTrue(report["checks"]["slip"]["ok"])
+        still = json.loads(self.done(*CARRY, "--angle", "0", "-o", "out", "--json").stdout)
+        self.assertIsNone(still["pattern"])
+        self.assertFalse((self.folder / "out/fibre.csv").exists())
+        self.assertFalse((self.folder / "out/program_back.src").exists())
+
     def test_finer_tolerance_has_more_points(self):
         def moves(tolerance):
             report = json.loads(self.done(*CARRY, "--tolerance", tolerance, "-o", "out",
@@ -160,6 +238,10 @@ class Carry(program.ProgramTest):
         self.refused(*CARRY, "--tows", "0", word="--tows")
         self.refused(*CARRY, "--tolerance", "nan", word="--tolerance")
         self.refused(*CARRY, "--angle", "90", word="--angle")
+        self.refused(*CARRY, "--spool-radius", "20", word="--spool-radius")
+        self.refused(*CARRY, "--friction", "0", word="--friction")
+        self.refused(*CARRY, "--tube-radius", "90", "--ring-radius", "99", word="tightest bend")
+        self.refused(*CARRY, "--angle", "0.1", word="longer axis")
         self.refused(*CARRY, "--tool", "1,2,3", word="--tool")
         self.refused(*CARRY, "--tool", "1,2,3,4,5,6,7", word="--tool")
         self.refused(*CARRY, "--name", "7 frames", word="name")
