@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "cli/carry_axis.h"
 #include "cli/digest.h"
 #include "cli/output_files.h"
 #include "cli/report_carry.h"
@@ -50,7 +51,7 @@ void check_numbers(const CarryRequest& request) {
     positive("--speed", request.speed_mm_s);
     positive("--tolerance", request.tolerance_mm);
     positive("--tolerance-angle", request.tolerance_deg);
-    positive("--tube-radius", request.tube_radius_mm);
+    positive("--tube-radius", request.tube_radius_mm.value_or(1.0));
     positive("--ring-radius", request.ring_radius_mm);
     positive("--ring-distance", request.ring_distance_mm);
     positive("--clearance", request.clearance_mm);
@@ -106,10 +107,7 @@ private:
     void read() {
         const CarryRequest& request = result_.request;
         check_numbers(request);
-        const std::string text = read_text_file(request.axis);
-        result_.axis_file = request.axis.filename().string();
-        result_.axis_digest = sha256_hex(text);
-        axis_ = std::make_unique<FrameAxis>(read_axis_csv(text, request.axis.string()));
+        read_axis();
         result_.stations = axis_->stations().size();
         result_.length_mm = axis_->length_mm();
         result_.machine = read_machine(request.machine.string());
@@ -131,10 +129,29 @@ private:
         folder_ = std::make_unique<OutputFolder>(request.out);
     }
 
+    void read_axis() {
+        const CarryRequest& request = result_.request;
+        const std::string text = read_text_file(request.axis);
+        result_.axis_file = request.axis.filename().string();
+        result_.axis_digest = sha256_hex(text);
+        result_.tube_radius_mm = request.tube_radius_mm.value_or(kTubeRadius_mm);
+        if (!is_mesh_file(request.axis)) {
+            axis_ = std::make_unique<FrameAxis>(read_axis_csv(text, request.axis.string()));
+            return;
+        }
+        MeshAxis found = read_mesh_axis(
+            request.axis,
+            {request.unit_mm, {request.from_the_end, rad_from_deg(request.bend_turn_deg)}});
+        axis_ = std::make_unique<FrameAxis>(std::move(found.tube.axis));
+        result_.tube_radius_mm = request.tube_radius_mm.value_or(found.tube.radius_mm);
+        result_.tube_residual_mm = found.residual_mm;
+        result_.frame_in_file = found.frame_in_file;
+    }
+
     void plan() {
         const CarryRequest& request = result_.request;
         const CarryTolerance tolerance{request.tolerance_mm, rad_from_deg(request.tolerance_deg)};
-        result_.fit = worst_ring_fit(result_.head, *axis_, request.tube_radius_mm);
+        result_.fit = worst_ring_fit(result_.head, *axis_, result_.tube_radius_mm);
         result_.points = choose_carry_points(result_.head, *axis_, tolerance);
         std::vector<Isometry3d> poses;
         for (const double s : result_.points.s_mm) {
@@ -189,7 +206,7 @@ private:
                                     result_.points.s_mm,
                                     text_,
                                     winds_back() ? write_krl(back_, {}) : "",
-                                    request.tube_radius_mm,
+                                    result_.tube_radius_mm,
                                     rad_from_deg(request.angle_deg),
                                     request.tows,
                                     request.tow_width_mm.value_or(0.0)};
@@ -225,13 +242,13 @@ private:
         const double even =
             (ring == 0 ? 2.0 : -2.0) * kPi * result_.turns_per_mm * request.speed_mm_s;
         return deg_from_rad(
-            laid_angle_rad(request.tube_radius_mm, even, frame_rad_s(move), passage_mm_s(move)));
+            laid_angle_rad(result_.tube_radius_mm, even, frame_rad_s(move), passage_mm_s(move)));
     }
 
     void wind() {
         const CarryRequest& request = result_.request;
         result_.turns_per_mm =
-            ring_turns_per_mm(rad_from_deg(request.angle_deg), request.tube_radius_mm);
+            ring_turns_per_mm(rad_from_deg(request.angle_deg), result_.tube_radius_mm);
         for (std::size_t ring = 0; ring < result_.ring.size(); ++ring) {
             RingResult& found = result_.ring[ring];
             found.lowest_deg = found.slowest_rev_min = std::numeric_limits<double>::infinity();
@@ -246,7 +263,7 @@ private:
         }
         for (std::size_t i = 1; i < frames_.size(); ++i) {
             const double lean =
-                laid_angle_rad(request.tube_radius_mm, 0.0, frame_rad_s(i), passage_mm_s(i));
+                laid_angle_rad(result_.tube_radius_mm, 0.0, frame_rad_s(i), passage_mm_s(i));
             result_.longitudinal_deg =
                 std::max(result_.longitudinal_deg, deg_from_rad(std::abs(lean)));
         }
@@ -342,7 +359,7 @@ private:
     void check_clearance() {
         const CarryRequest& request = result_.request;
         const auto found =
-            frame_clearance(result_.machine, *axis_, result_.samples, request.tube_radius_mm);
+            frame_clearance(result_.machine, *axis_, result_.samples, result_.tube_radius_mm);
         if (!found) {
             return;
         }
@@ -415,7 +432,7 @@ private:
             "passage: " + fixed(request.speed_mm_s, 3) + " mm/s",
             "rings: " + fixed(result_.turns_per_mm * request.speed_mm_s * kSecondsPerMinute, 4) +
                 " rev/min each way for " + fixed(request.angle_deg, 2) + " deg on radius " +
-                fixed(request.tube_radius_mm, 3) + " mm"};
+                fixed(result_.tube_radius_mm, 3) + " mm"};
         for (const Check& failed : result_.checks) {
             if (!failed.ok) {
                 lines.push_back("FAILED check " + failed.name + ": " + failed.words);

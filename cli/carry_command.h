@@ -22,15 +22,23 @@ namespace meshwind {
 /// The dialect of machines that carry; its programs are no lists of axis blocks (dialect.h).
 inline constexpr const char* kCarryDialect = "krl";
 
+/// The paper's frame.
+inline constexpr double kTubeRadius_mm = 20.0;
+
 struct CarryRequest {
-    std::filesystem::path axis;     ///< table of postproc/frame_axis.h
+    /// Table of postproc/frame_axis.h, or a mesh (.stl, .obj, .ply, .off) that is a tube.
+    std::filesystem::path axis;
+    double unit_mm = 0.0;           ///< of a mesh's lengths; 0: found (mesh/mandrel.h)
+    bool from_the_end = false;      ///< of a mesh: TubeAxisOptions
+    double bend_turn_deg = 180.0;   ///< of a mesh: keeps longitudinal fibre from bridging in bends
     std::filesystem::path machine;  ///< its eye stands still: the centre of the head
     std::filesystem::path out;
     std::string name = "program";  ///< of the program and its file
     double speed_mm_s = 20.0;      ///< passage of the frame's axis through the head
     double tolerance_mm = 0.2;     ///< of the axis from the centre of the head
     double tolerance_deg = 0.2;    ///< of the frame's turn from what is wanted
-    double tube_radius_mm = 20.0;
+    /// None: that of the mesh; of a table kTubeRadius_mm.
+    std::optional<double> tube_radius_mm;
     double ring_radius_mm = 40.0;
     double ring_distance_mm = 70.0;
     double clearance_mm = 5.0;           ///< of the frame from bodies on the machine's base
@@ -55,6 +63,10 @@ struct CarryOutcome {
     std::string axis_file;
     std::string axis_digest;
     CarryRequest request;
+    double tube_radius_mm = 0.0;
+    /// Of a mesh: the frame in which all is told, in the file's; no value for a table.
+    std::optional<Eigen::Isometry3d> frame_in_file;
+    double tube_residual_mm = 0.0;  ///< of the mesh's vertices from the tube
     Machine machine;
     RingHead head;
     std::size_t stations = 0;

@@ -239,6 +239,7 @@ int run_carry_command(CarryOptionsText& text, const Common& common) {
     request.machine = find_input(text.machine);
     request.out = text.out;
     request.tool = tool_of(text.tool);
+    request.unit_mm = unit_mm(common.units);
     request.force = common.force;
     const CarryOutcome outcome = run_carry(request);
     if (common.json) {

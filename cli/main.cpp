@@ -72,6 +72,7 @@ constexpr const char* kCarryHelp =
     "if\n"
     "every check passed), motion.csv and report.json with the speeds of the rings.\n"
     "  meshwind carry l_frame_axis.csv\n"
+    "  meshwind carry frame.stl --tow-width 6 --friction 0.4\n"
     "  meshwind carry axis.csv --machine my_robot.json --tool 0,0,120,0,0,0 --speed 30";
 
 constexpr const char* kMeshSizeHelp =
@@ -241,8 +242,14 @@ void add_mesh_size(CLI::App& app, StudyRequest& request) {
 
 void add_carry(CLI::App& app, CarryOptionsText& text) {
     CarryRequest& request = text.request;
-    app.add_option("axis", text.axis, "table of points along the frame's axis, CSV; columns below")
+    app.add_option("axis", text.axis,
+                   "table of points along the frame's axis, CSV, columns below; or the frame's "
+                   "mesh: .stl, .obj, .ply, .off")
         ->required();
+    app.add_flag("--from-end", request.from_the_end, "of a mesh: begin at its other end");
+    app.add_option("--bend-turn", request.bend_turn_deg,
+                   "of a mesh: turn of the frame about its axis over each bend, degrees")
+        ->capture_default_str();
     app.add_option("--machine", text.machine,
                    "machine file, JSON: a robot whose eye stands still, in the head's centre")
         ->capture_default_str();
@@ -257,7 +264,8 @@ void add_carry(CLI::App& app, CarryOptionsText& text) {
            "how far the axis may be off the head's centre, mm");
     number("--tolerance-angle", request.tolerance_deg,
            "how far the frame's turn may be off, degrees");
-    number("--tube-radius", request.tube_radius_mm, "radius of the frame's tube, mm");
+    app.add_option("--tube-radius", request.tube_radius_mm,
+                   "radius of the frame's tube, mm; without it that of the mesh, or 20");
     number("--ring-radius", request.ring_radius_mm, "radius of the rings' clear opening, mm");
     number("--ring-distance", request.ring_distance_mm, "distance between the two rings, mm");
     number("--clearance", request.clearance_mm,

@@ -54,7 +54,7 @@ json winding_json(const CarryOutcome& outcome) {
     }
     json winding = {
         {"angle_deg", request.angle_deg},
-        {"tube_radius_mm", request.tube_radius_mm},
+        {"tube_radius_mm", outcome.tube_radius_mm},
         {"tows_per_ring", request.tows},
         {"turns_per_mm", report_number(outcome.turns_per_mm)},
         {"mm_per_turn", outcome.turns_per_mm > 0.0 ? json(report_number(1.0 / outcome.turns_per_mm))
@@ -65,7 +65,7 @@ json winding_json(const CarryOutcome& outcome) {
     if (request.tow_width_mm) {
         winding["coverage"] =
             report_number(ring_coverage(request.tows, *request.tow_width_mm,
-                                        rad_from_deg(request.angle_deg), request.tube_radius_mm));
+                                        rad_from_deg(request.angle_deg), outcome.tube_radius_mm));
     }
     return winding;
 }
@@ -123,6 +123,21 @@ json laid_json(const CarryWinding& winding) {
     return laid;
 }
 
+json axis_json(const CarryOutcome& outcome) {
+    json axis = {{"file", outcome.axis_file},
+                 {"sha256", outcome.axis_digest},
+                 {"points", outcome.stations},
+                 {"length_mm", report_number(outcome.length_mm)}};
+    if (outcome.frame_in_file) {
+        const Eigen::Isometry3d& frame = *outcome.frame_in_file;
+        axis["frame_in_file"] = {{"origin_mm", vector_json(frame.translation())},
+                                 {"x", vector_json(frame.linear().col(0))},
+                                 {"z", vector_json(frame.linear().col(2))}};
+        axis["residual_mm"] = report_number(outcome.tube_residual_mm);
+    }
+    return axis;
+}
+
 json axes_json(const CarryOutcome& outcome) {
     json axes = json::object();
     for (std::size_t a = 0; a < outcome.joints.path.axis_count; ++a) {
@@ -164,11 +179,7 @@ std::string carry_json(const CarryOutcome& outcome) {
     const CarriedJoints& joints = outcome.joints;
     const json report = {
         {"meshwind", kVersion},
-        {"axis",
-         {{"file", outcome.axis_file},
-          {"sha256", outcome.axis_digest},
-          {"points", outcome.stations},
-          {"length_mm", report_number(outcome.length_mm)}}},
+        {"axis", axis_json(outcome)},
         {"machine", outcome.machine.name},
         {"head",
          {{"centre_mm", vector_json(outcome.head.centre_mm)},
@@ -212,8 +223,15 @@ void print_carry(std::ostream& out, const CarryOutcome& outcome) {
         print_winding(out, *outcome.winding, outcome.request.tows);
     }
     print_checks(out, outcome.checks);
-    out << (outcome.written ? "written: " + outcome.request.name + ".src" : "no program written")
-        << ", motion.csv and report.json in " << outcome.request.out.string() << '\n';
+    std::string files =
+        outcome.written ? "written: " + outcome.request.name + ".src" : "no program";
+    if (outcome.winding) {
+        if (outcome.written && !outcome.request.winding.at_once) {
+            files += ", " + outcome.request.name + "_back.src";
+        }
+        files += ", rings.csv, fibre.csv";
+    }
+    out << files << ", motion.csv and report.json in " << outcome.request.out.string() << '\n';
 }
 
 }  // namespace meshwind

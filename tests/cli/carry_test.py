@@ -145,6 +145,30 @@ class Carry(program.ProgramTest):
         self.assertAlmostEqual(length / laid["fibre_mm"], 1, delta=2e-3)
         self.assertAlmostEqual(length / pattern["fibre_mm"], 1, delta=0.01)
 
+    def test_mesh_gives_the_axis(self):
+        """One command from the mesh of the paper's frame to a proven program."""
+        mesh = self.make("frame", "--pipe-radius", "20", "--bend-radius", str(280 / math.pi),
+                         "--leg1", "550", "--leg2", "360", "--edge", "5")
+        carry = ("carry", mesh, "--machine", "robot_kr16.json")
+        report = json.loads(self.done(*carry, "-o", "out", "--json").stdout)
+        self.assertEqual(report["laid"]["covered"], 1)
+        self.assertLess(report["laid"]["regular_cv"], 0.02)
+        self.assertAlmostEqual(report["axis"]["length_mm"], 1050, delta=0.01)
+        self.assertAlmostEqual(report["winding"]["tube_radius_mm"], 20, delta=0.001)
+        self.assertLess(math.dist(report["axis"]["frame_in_file"]["origin_mm"], (0, 0, 0)), 0.01)
+        # The flange stands where the table of the same frame has it.
+        table = json.loads(self.done(*CARRY, "-o", "table", "--json").stdout)
+        for axis, ends in table["robot"]["axes_deg"].items():
+            self.assertAlmostEqual(report["robot"]["axes_deg"][axis]["min"], ends["min"], delta=0.05)
+            self.assertAlmostEqual(report["robot"]["axes_deg"][axis]["max"], ends["max"], delta=0.05)
+        other = json.loads(self.run_program(*carry, "--from-end", "-o", "out", "--json").stdout)
+        origin = other["axis"]["frame_in_file"]["origin_mm"]
+        radius = 280 / math.pi
+        self.assertLess(math.dist(origin, (radius + 360, 0, 550 + radius)), 0.01)
+        result = self.run_program("carry", self.make("tee"), "--quiet")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("is no tube: it has 3 rims", result.stderr)
+
     def test_rings_follow_frame_and_passage(self):
         self.done(*CARRY, "-o", "out")
         rows = self.rows(self.folder / "out/rings.csv")
