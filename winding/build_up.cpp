@@ -176,7 +176,7 @@ std::vector<double> build_up_mm(const Surface& surface, std::span<const double> 
     matrix.diagonal() += mass;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     if (solver.info() != Eigen::Success) {
-        throw InputError("build_up.mesh", "",
+        throw InputError("thicken.thin", "",
                          "the layers' thickness cannot be spread over triangles as thin as some of "
                          "this mesh; refine or remesh the part");
     }

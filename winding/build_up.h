@@ -21,7 +21,7 @@ namespace meshwind {
 /// On any surface: from the layers per face, by two implicit steps of diffusion (finite elements,
 /// lumped masses). The volume is kept.
 /// \param face_layers mean layers per face of the surface \param tow_width_mm, thickness_mm > 0
-/// \throws InputError build_up.mesh where triangles are too thin for that
+/// \throws InputError thicken.thin where triangles are too thin for that
 [[nodiscard]] std::vector<double> build_up_mm(const Surface& surface,
                                               std::span<const double> face_layers,
                                               double tow_width_mm, double tow_thickness_mm);
