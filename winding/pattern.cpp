@@ -81,9 +81,10 @@ Pattern closed(std::int64_t circuits, std::int64_t turns, const Cover& cover) {
     return p;
 }
 
-void set_dwell(Pattern& pattern, double circuit_rad, double most_dwell_rad) {
+void set_dwell(Pattern& pattern, double circuit_rad, double least_dwell_rad,
+               double most_dwell_rad) {
     const double extra_rad = pattern.turn_rad - circuit_rad;
-    pattern.dwell_rad = std::clamp(extra_rad, 0.0, most_dwell_rad);
+    pattern.dwell_rad = std::clamp(extra_rad, least_dwell_rad, most_dwell_rad);
     pattern.change_rad = extra_rad - pattern.dwell_rad;
 }
 
@@ -155,9 +156,21 @@ void require_circuit(double turn_rad) {
             most_rad);
 }
 
-std::int64_t least_circuits(const PatternRequest& r) {
-    return std::max<std::int64_t>(
-        1, ceil_count(r.layers * kTurn_rad * (1.0 + r.least_overlap) / r.band_rad));
+// N from which on, and up to which, patterns are looked for.
+std::pair<std::int64_t, std::int64_t> circuits_to_try(const PatternRequest& r) {
+    if (r.circuits > 0) {
+        return {r.circuits, r.circuits};
+    }
+    const double per_overlap = r.layers * kTurn_rad / r.band_rad;
+    const std::int64_t first =
+        std::max<std::int64_t>(1, ceil_count(per_overlap * (1.0 + r.least_overlap)));
+    const double most = per_overlap * (1.0 + r.most_overlap);
+    return {first, std::max(first, whole(std::floor(most + kSameCount)))};
+}
+
+bool wished_for(const Pattern& p, const PatternRequest& r) {
+    const bool both = p.circuits <= 2;
+    return (r.starts == 0 || p.starts == r.starts) && (!r.order || p.order == *r.order || both);
 }
 
 }  // namespace
@@ -174,6 +187,13 @@ void PatternRequest::validate() const {
             most_overlap, "finite and at least", least_overlap);
     require(wanted_starts >= 0, kRange, "wanted_starts", wanted_starts, "at least", 0.0);
     require(most_patterns >= 1, kRange, "most_patterns", most_patterns, "at least", 1.0);
+    require_finite_at_least_0("least_dwell_rad", least_dwell_rad);
+    require(least_dwell_rad <= most_dwell_rad, kRange, "least_dwell_rad", least_dwell_rad,
+            "at most", most_dwell_rad);
+    require(circuits >= 0, kRange, "circuits", static_cast<double>(circuits), "at least", 0.0);
+    require(circuits <= kMostCircuits, kRange, "circuits", static_cast<double>(circuits), "at most",
+            static_cast<double>(kMostCircuits));
+    require(starts >= 0, kRange, "starts", static_cast<double>(starts), "at least", 0.0);
     const double least_rad =
         layers * kTurn_rad * (1.0 + most_overlap) / static_cast<double>(kMostCircuits);
     require(band_rad >= least_rad, "pattern.band_too_narrow", "band_rad", band_rad, "at least",
@@ -183,13 +203,11 @@ void PatternRequest::validate() const {
 std::vector<Pattern> find_patterns(const PatternRequest& request) {
     request.validate();
     const Cover cover{request.band_rad, request.layers};
-    const double least_rad = request.circuit_rad - request.most_change_rad - kSameTurn_rad;
+    const double least_rad =
+        request.circuit_rad + request.least_dwell_rad - request.most_change_rad - kSameTurn_rad;
     const double most_rad =
         request.circuit_rad + request.most_change_rad + request.most_dwell_rad + kSameTurn_rad;
-    const std::int64_t first = least_circuits(request);
-    const double most =
-        request.layers * kTurn_rad * (1.0 + request.most_overlap) / request.band_rad;
-    const std::int64_t last = std::max(first, whole(std::floor(most + kSameCount)));
+    const auto [first, last] = circuits_to_try(request);
     Best best(request);
     for (std::int64_t n = first; n <= last; ++n) {
         const double per_turn = static_cast<double>(n) / kTurn_rad;
@@ -198,8 +216,11 @@ std::vector<Pattern> find_patterns(const PatternRequest& request) {
         for (std::int64_t k = from; k <= to; ++k) {
             if (std::gcd(n, k) == 1) {
                 Pattern pattern = closed(n, k, cover);
-                set_dwell(pattern, request.circuit_rad, request.most_dwell_rad);
-                best.add(pattern);
+                set_dwell(pattern, request.circuit_rad, request.least_dwell_rad,
+                          request.most_dwell_rad);
+                if (wished_for(pattern, request)) {
+                    best.add(pattern);
+                }
             }
         }
     }
@@ -219,7 +240,7 @@ Pattern lattice(double circuit_rad, int circuits, double band_rad) {
         ++turns;  // of any N numbers in a row one has no factor in common with N
     }
     Pattern pattern = closed(circuits, turns, {band_rad, 1});
-    set_dwell(pattern, circuit_rad, kTurn_rad);
+    set_dwell(pattern, circuit_rad, 0.0, kTurn_rad);
     return pattern;
 }
 

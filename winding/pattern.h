@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace meshwind {
@@ -33,6 +34,10 @@ struct PatternRequest {
     double most_overlap = 0.1;   ///< >= least; the least N is tried even where it has more
     int wanted_starts = 0;       ///< >= 0: of patterns as good those of nearly so many starts first
     int most_patterns = 100;     ///< > 0: only so many, the best
+    double least_dwell_rad = 0.0;      ///< 0 .. most_dwell_rad: is added per circuit at any rate
+    std::int64_t circuits = 0;         ///< > 0: only this N, however much its bands overlap or gape
+    std::int64_t starts = 0;           ///< > 0: only patterns of so many starts
+    std::optional<BandOrder> order{};  ///< only these; N <= 2 is both
 
     /// \throws InputError pattern.out_of_range, pattern.band_too_narrow
     void validate() const;

@@ -27,9 +27,6 @@ constexpr double kMostAngle_rad = rad_from_deg(3.0);
 
 constexpr double kSlope_rad = 1e-4;
 
-// Bands of a closed pattern overlap by no more than this share of them.
-constexpr double kMostOverlap = 0.25;
-
 // Closure in rad: far below what any axis resolves.
 constexpr double kClosed_rad = 1e-12;
 constexpr int kSecants = 60;
@@ -225,27 +222,41 @@ private:
 
     bool choose_pattern() {
         const bool dwell = dwells(0) || dwells(1);
-        PatternRequest request;
-        request.circuit_rad = circuit_rad();
-        request.band_rad = options_.tow.width_mm / (widest_radius_mm_ * std::cos(angle_rad_));
-        request.most_dwell_rad = dwell ? 2.0 * kPi : 0.0;
-        request.most_change_rad = dwell ? 0.0 : most_change_rad();
-        request.most_overlap = kMostOverlap;
-        request.layers = std::max(1, static_cast<int>(std::lround(options_.layers)));
-        std::vector<Pattern> patterns;
+        CircuitToClose circuit;
+        circuit.turn_rad = circuit_rad();
+        circuit.most_change_rad = dwell ? 0.0 : most_change_rad();
+        circuit.dwelling_ends = static_cast<int>(dwells(0)) + static_cast<int>(dwells(1));
+        circuit.band_mm = options_.tow.width_mm;
+        circuit.mm_per_rad = widest_radius_mm_ * std::cos(angle_rad_);
+        circuit.layers =
+            options_.lattice ? 1 : std::max(1, static_cast<int>(std::lround(options_.layers)));
+        FoundPattern found;
         try {
-            patterns = find_patterns(request);
+            found = options_.lattice
+                        ? find_wished_lattice(circuit, *options_.lattice, options_.wish)
+                        : find_wished_pattern(circuit, options_.wish);
         } catch (const InputError& error) {
             return fail(std::string("no pattern can be looked for: ") + error.what());
         }
-        if (patterns.empty()) {
-            return fail("no pattern of overlaps up to " + fixed(100.0 * kMostOverlap, 0) +
-                        " % closes for circuits of " + degrees(request.circuit_rad) +
-                        ", which the winding angle changes by no more than " +
-                        degrees(request.most_change_rad) + "; another angle or tow width would");
+        if (!found.pattern) {
+            return fail(found.failure);
         }
-        pattern_ = patterns.front();
-        return dwell || close_by_angle(pattern_.turn_rad);
+        pattern_ = *found.pattern;
+        if (!dwell) {
+            if (!close_by_angle(pattern_.turn_rad)) {
+                return false;
+            }
+            circuit.mm_per_rad = widest_radius_mm_ * std::cos(angle_rad_);
+        }
+        if (options_.lattice) {
+            lattice_ = laid_lattice(pattern_, circuit, *options_.lattice, options_.wish);
+            if (lattice_->series > 1 && !dwell) {
+                return fail(
+                    "the bands of a rib are set side by side by dwelling at a rim, and the "
+                    "fibre turns by itself at both ends; ask for one series");
+            }
+        }
+        return true;
     }
 
     // How much the turn of a circuit changes within kMostAngle_rad, by its slope.
@@ -317,13 +328,16 @@ private:
         const std::vector<MeridianStation> back = way_back(pass_);
         const std::array<double, 2> turn = turns_at_ends();
         const std::size_t start = begin_.end;
-        std::vector<Piece> passes(2 * static_cast<std::size_t>(pattern_.circuits));
+        const std::vector<double> starts = circuit_starts_rad(pattern_, lattice_);
+        std::vector<Piece> passes(2 * starts.size());
         std::vector<double> begins(passes.size());
-        for (std::size_t i = 0; i < passes.size(); i += 2) {
-            const auto place =
-                static_cast<std::int64_t>(i / 2) * pattern_.turns % pattern_.circuits;
-            begins[i] = begin_.azimuth_rad + static_cast<double>(place) * pattern_.step_rad;
-            begins[i + 1] = begins[i] + pass_.turn_rad() + turn[1 - start];
+        for (std::size_t i = 0; i < starts.size(); ++i) {
+            begins[2 * i] = begin_.azimuth_rad + starts[i];
+            begins[2 * i + 1] = begins[2 * i] + pass_.turn_rad() + turn[1 - start];
+            if (!dwells(start) && i + 1 < starts.size()) {
+                // What the next circuit is off its place is made up at the other end.
+                begins[2 * i + 1] += starts[i + 1] - starts[i] - pattern_.turn_rad;
+            }
         }
         parallel_for(passes.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -352,16 +366,27 @@ private:
         plan_.pieces.front().starts_fibre = true;
         plan_.courses = static_cast<int>(passes.size());
         plan_.fibres = 1;
-        plan_.pattern = {pattern_, angle_rad_, slip_ratio_,
-                         closure_rad(plan_.pieces[connecting], turn[start])};
+        LaidPattern& laid = plan_.pattern.emplace();
+        laid.pattern = pattern_;
+        laid.angle_rad = angle_rad_;
+        laid.slip_ratio = slip_ratio_;
+        laid.closure_rad = closure_rad(plan_.pieces[connecting], turn[start], starts);
+        laid.band_offset_mm = pattern_.step_rad * widest_radius_mm_ * std::cos(angle_rad_);
+        laid.interlacing = interlacing_of(pattern_, pass_.turn_rad(), turn[1 - start]);
+        laid.starts_rad = starts;
+        laid.lattice = lattice_;
     }
 
-    // From where the fibre ends, turned on over its last rim, to where its first course began.
-    [[nodiscard]] double closure_rad(const Piece& first, double last_turn_rad) const {
+    // From where the fibre ends, turned on over its last rim, to where its pattern began.
+    // \param first course of the pattern
+    [[nodiscard]] double closure_rad(const Piece& first, double last_turn_rad,
+                                     const std::vector<double>& starts_rad) const {
         const auto azimuth = [](const PathPoint& point) {
             return std::atan2(point.position_mm.y(), point.position_mm.x());
         };
-        const double end = azimuth(plan_.pieces.back().path.back()) + last_turn_rad;
+        const double moved_rad =
+            starts_rad[starts_rad.size() - static_cast<std::size_t>(pattern_.circuits)];
+        const double end = azimuth(plan_.pieces.back().path.back()) + last_turn_rad - moved_rad;
         return std::abs(std::remainder(end - azimuth(first.path.front()), 2.0 * kPi));
     }
 
@@ -475,6 +500,7 @@ private:
     MeridianPass pass_;
     Pattern pattern_;
     PatternBegin begin_;  // where the first circuit or ply begins
+    std::optional<LaidLattice> lattice_;
     Plan plan_;
 };
 

@@ -11,6 +11,7 @@
 #include "winding/library.h"
 #include "winding/meridian_path.h"
 #include "winding/pattern_begin.h"
+#include "winding/pattern_wish.h"
 #include "winding/plan.h"
 
 namespace meshwind {
@@ -22,7 +23,9 @@ struct PatternOptions {
     double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
     double layers = 1.0;  ///< covers; each lays a ply of either hand, of hoops one
     Tow tow{};
-    TurnRule turn{};  ///< friction and band are taken from `tow`
+    TurnRule turn{};                       ///< friction and band are taken from `tow`
+    PatternWish wish{};                    ///< helical, polar
+    std::optional<LatticeWish> lattice{};  ///< helical: ribs instead of a closed wall
     /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
     /// place.
     std::optional<std::array<double, 2>> hoop_z_mm{};
@@ -41,6 +44,8 @@ struct PatternOptions {
 ///    as long as closing takes.
 ///  - Polar: the band touches the opening, or the pole, of either end; where these are of different
 ///    sizes it is steered with a constant slip ratio from one to the other.
+///  - Lattices: after each series the fibre dwells a little longer, by the offset of its bands; all
+///    series are wound once for each ply.
 ///  - Hoop: the cylinder at the widest place, wound side by side, a ply for each cover, up and down
 ///    in turn (hoop_path.h).
 /// \return a plan; where nothing can be wound `failure` says why, with numbers

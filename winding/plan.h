@@ -12,6 +12,7 @@
 #include "winding/arrange.h"
 #include "winding/library.h"
 #include "winding/pattern.h"
+#include "winding/pattern_wish.h"
 #include "winding/wound_angle.h"
 
 namespace meshwind {
@@ -90,9 +91,15 @@ struct TurnsAtRim {
 /// A pattern as it is laid.
 struct LaidPattern {
     Pattern pattern;
-    double angle_rad = 0.0;    ///< winding angle at the widest place
-    double slip_ratio = 0.0;   ///< with which the courses are steered
-    double closure_rad = 0.0;  ///< how far off its start the fibre ends, about the spindle
+    double angle_rad = 0.0;       ///< winding angle at the widest place
+    double slip_ratio = 0.0;      ///< with which the courses are steered
+    double closure_rad = 0.0;     ///< how far off its start the fibre ends, about the spindle
+    double band_offset_mm = 0.0;  ///< between neighbouring bands, at the widest place
+    Interlacing interlacing{};
+    /// Per circuit, in winding order: where it begins, from the first one, 0 .. 2 pi. N of them, of
+    /// lattices N for each series and ply.
+    std::vector<double> starts_rad{};
+    std::optional<LaidLattice> lattice{};
 };
 
 /// What planning took; for reports.

@@ -142,6 +142,121 @@ TEST(PatternPlan, HelicesOnAVesselTurnByThemselves) {
     EXPECT_LT(p.plan.worst_slip, 0.1);
 }
 
+// Azimuth that a pass of the plan has wound at its ends and where it begins, about +Z.
+struct PassAround {
+    double begin_rad = 0.0;
+    double wound_rad = 0.0;
+};
+
+std::vector<PassAround> passes_of(const Plan& plan) {
+    std::vector<PassAround> passes;
+    for (const Piece& piece : plan.pieces) {
+        if (piece.kind != PieceKind::Course) {
+            continue;
+        }
+        PassAround& pass = passes.emplace_back();
+        const auto azimuth = [](const PathPoint& p) {
+            return std::atan2(p.position_mm.y(), p.position_mm.x());
+        };
+        pass.begin_rad = azimuth(piece.path.front());
+        for (std::size_t i = 1; i < piece.path.size(); ++i) {
+            pass.wound_rad +=
+                std::remainder(azimuth(piece.path[i]) - azimuth(piece.path[i - 1]), 2.0 * kPi);
+        }
+    }
+    return passes;
+}
+
+// Helices of either hand cross wherever both azimuths, which run against one another, are equal;
+// where a fibre turns by itself its own two passes meet without crossing.
+std::int64_t crossings_of(const Plan& plan) {
+    const std::vector<PassAround> passes = passes_of(plan);
+    std::int64_t count = 0;
+    for (std::size_t up = 0; up < passes.size(); up += 2) {
+        for (std::size_t down = 1; down < passes.size(); down += 2) {
+            const double at_bottom =
+                passes[down].begin_rad + passes[down].wound_rad - passes[up].begin_rad;
+            const double at_top =
+                passes[down].begin_rad - passes[up].begin_rad - passes[up].wound_rad;
+            constexpr double kMeet_rad = 1e-7;
+            count += static_cast<std::int64_t>(std::floor((at_bottom - kMeet_rad) / (2.0 * kPi)) -
+                                               std::floor((at_top + kMeet_rad) / (2.0 * kPi)));
+        }
+    }
+    return count;
+}
+
+TEST(PatternPlan, LatticesAreRibsWithWallBetween) {
+    PatternOptions options{.angle_rad = rad_from_deg(50.0), .tow = kTow};
+    options.lattice = LatticeWish{.circuits = 6};
+    const Planned p = planned(test::made_cylinder(40.0, 200.0, 5.0), options);
+    expect_one_fibre(p.plan);
+    expect_closed(p.plan);
+    const LaidPattern& laid = *p.plan.pattern;
+    EXPECT_EQ(laid.pattern.circuits, 6);
+    EXPECT_EQ(laid.interlacing.crossings, crossings_of(p.plan));
+    // Bands of either hand cover a share c each, and cross where both do.
+    const double share = 6.0 * kTow.width_mm / (2.0 * kPi * 40.0 * std::cos(options.angle_rad));
+    EXPECT_NEAR(p.plan.coverage.fraction, 1.0 - (1.0 - share) * (1.0 - share), 0.01);
+}
+
+TEST(PatternPlan, SeriesLieBesideOneAnotherAndPliesOnEachOther) {
+    PatternOptions options{.angle_rad = rad_from_deg(50.0), .tow = kTow};
+    options.lattice = LatticeWish{.circuits = 5, .series = 2, .plies = 2};
+    const Planned p = planned(test::made_cylinder(40.0, 200.0, 5.0), options);
+    expect_one_fibre(p.plan);
+    const std::vector<PassAround> passes = passes_of(p.plan);
+    ASSERT_EQ(passes.size(), 40U);
+    EXPECT_LT(p.plan.pattern->closure_rad, kClosure_rad);
+    const double band_rad = kTow.width_mm / (40.0 * std::cos(options.angle_rad));
+    for (std::size_t i = 0; i < 20; ++i) {
+        EXPECT_NEAR(std::remainder(passes[i + 20].begin_rad - passes[i].begin_rad, 2.0 * kPi), 0.0,
+                    kClosure_rad);
+        if (i < 10) {
+            EXPECT_NEAR(std::remainder(passes[i + 10].begin_rad - passes[i].begin_rad, 2.0 * kPi),
+                        band_rad, kClosure_rad);
+        }
+    }
+    EXPECT_NEAR(p.plan.pattern->lattice->rib_mm, 12.0, 1e-12);
+}
+
+TEST(PatternPlan, LatticesOnAVesselHaveNoSeries) {
+    PatternOptions options{.angle_rad = rad_from_deg(40.0), .tow = kTow};
+    options.lattice = LatticeWish{.circuits = 9};
+    const Mandrel vessel = test::made("vessel", kVessel, 5.0);
+    const Planned one = planned(vessel, options);
+    expect_one_fibre(one.plan);
+    expect_closed(one.plan);
+    EXPECT_EQ(one.plan.pattern->interlacing.crossings, crossings_of(one.plan));
+    options.lattice->series = 2;
+    const Planned two = planned(vessel, options);
+    EXPECT_NE(two.plan.failure.find("ask for one series"), std::string::npos) << two.plan.failure;
+}
+
+TEST(PatternPlan, WishesReachTheFibre) {
+    PatternOptions options{.angle_rad = rad_from_deg(50.0), .tow = kTow};
+    options.wish = {.circuits = 30,
+                    .starts = 7,
+                    .order = BandOrder::Lagging,
+                    .least_dwell_rad = rad_from_deg(20.0)};
+    const Planned p = planned(test::made_cylinder(40.0, 200.0, 5.0), options);
+    expect_one_fibre(p.plan);
+    expect_closed(p.plan);
+    EXPECT_EQ(p.plan.courses, 60);
+    EXPECT_EQ(p.plan.pattern->interlacing.crossings, crossings_of(p.plan));
+    // After 7 circuits a band lies beside the first, behind it.
+    const std::vector<PassAround> passes = passes_of(p.plan);
+    EXPECT_NEAR(std::remainder(passes[14].begin_rad - passes[0].begin_rad, 2.0 * kPi),
+                -2.0 * kPi / 30.0, kClosure_rad);
+    // All turns but the last, of which the lower rim has one less.
+    EXPECT_GE(p.plan.turns[0].dwell_rad + p.plan.turns[1].dwell_rad,
+              59.0 * rad_from_deg(20.0) - 1e-6);
+    options.wish.starts = 6;
+    EXPECT_NE(planned(test::made_cylinder(40.0, 200.0, 5.0), options)
+                  .plan.failure.find("30 circuits, 7 starts"),
+              std::string::npos);
+}
+
 TEST(PatternPlan, HoopsCoverTheCylinderAlone) {
     const Planned p = planned(test::made("vessel", kVessel, 5.0),
                               {.kind = PatternKind::Hoop, .layers = 2.0, .tow = kTow});

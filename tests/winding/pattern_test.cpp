@@ -341,8 +341,9 @@ TEST(FindPatterns, RefusesWhatIsOutOfRange) {
     for (const double bad : {nan, infinity, -1.0}) {
         for (double PatternRequest::*field :
              {&PatternRequest::circuit_rad, &PatternRequest::band_rad,
-              &PatternRequest::most_dwell_rad, &PatternRequest::most_change_rad,
-              &PatternRequest::least_overlap, &PatternRequest::most_overlap}) {
+              &PatternRequest::most_dwell_rad, &PatternRequest::least_dwell_rad,
+              &PatternRequest::most_change_rad, &PatternRequest::least_overlap,
+              &PatternRequest::most_overlap}) {
             PatternRequest request = good;
             request.*field = bad;
             EXPECT_EQ(code_of(request), "pattern.out_of_range") << bad;
@@ -355,6 +356,17 @@ TEST(FindPatterns, RefusesWhatIsOutOfRange) {
     }
     PatternRequest request = good;
     request.wanted_starts = -1;
+    EXPECT_EQ(code_of(request), "pattern.out_of_range");
+    for (const std::int64_t bad : {-1, 10'001}) {
+        request = good;
+        request.circuits = bad;
+        EXPECT_EQ(code_of(request), "pattern.out_of_range");
+    }
+    request = good;
+    request.starts = -1;
+    EXPECT_EQ(code_of(request), "pattern.out_of_range");
+    request = good;
+    request.least_dwell_rad = 1.5;  // above the most
     EXPECT_EQ(code_of(request), "pattern.out_of_range");
     request = good;
     request.circuit_rad = 1e7;
