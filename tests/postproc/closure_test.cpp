@@ -1,0 +1,119 @@
+#include "postproc/closure.h"
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace meshwind {
+namespace {
+
+constexpr double kTurn_rad = 2.0 * kPi;
+constexpr double kRadius_mm = 50.0;
+constexpr double kHalf_mm = 100.0;
+constexpr double kPass_rad = 4.0;
+
+// Chords instead of arcs of a helix: interpolated azimuths are exact, so only rounding is left.
+constexpr double kExact_rad = 1e-9;
+
+struct Wound {
+    SurfacePath laid;
+    std::vector<double> starts_rad;
+};
+
+// Circuits up and down a cylinder, n of them in k turns, turning far beyond its ends; `off` moves
+// a place of the fibre about the spindle, by circuit (with its fraction) and pass.
+Wound wound(int n, int k, const std::function<double(double circuit, int pass, double z)>& off) {
+    Wound made;
+    const double turn = kTurn_rad * k / n;
+    for (int i = 0; i < n; ++i) {
+        made.starts_rad.push_back(std::fmod(static_cast<double>(i) * k / n, 1.0) * kTurn_rad);
+        for (int pass = 0; pass < 2; ++pass) {
+            constexpr int kStations = 300;
+            for (int s = 0; s <= kStations; ++s) {
+                const double share = static_cast<double>(s) / kStations;
+                const double along = (pass == 0 ? 2.0 * share - 1.0 : 1.0 - 2.0 * share);
+                const double z = 1.2 * kHalf_mm * along;
+                const double azimuth = made.starts_rad.back() + pass * 0.5 * turn +
+                                       kPass_rad * share + off(i + 0.5 * (pass + share), pass, z);
+                PathPoint point;
+                point.position_mm = {kRadius_mm * std::cos(azimuth), kRadius_mm * std::sin(azimuth),
+                                     z};
+                point.normal = {std::cos(azimuth), std::sin(azimuth), 0.0};
+                point.tangent = Eigen::Vector3d::UnitZ();
+                made.laid.push_back(point);
+            }
+        }
+    }
+    return made;
+}
+
+LaidClosure closure_of(const Wound& w) {
+    return laid_closure(w.laid, w.starts_rad, -kHalf_mm, kHalf_mm);
+}
+
+TEST(Closure, APatternThatClosesDoesSo) {
+    for (const auto& [n, k] : {std::pair(2, 5), {3, 4}, {7, 5}, {51, 245}}) {
+        const LaidClosure closure = closure_of(wound(n, k, [](auto...) { return 0.0; }));
+        EXPECT_TRUE(closure.holds()) << closure.failure;
+        EXPECT_LT(closure.closure_rad, kExact_rad);
+        EXPECT_LT(closure.drift_rad, kExact_rad);
+        EXPECT_EQ(closure.parallels, 21U);
+    }
+}
+
+TEST(Closure, DriftOfEachCircuitAddsUp) {
+    for (const int n : {5, 20, 51}) {
+        const double per_circuit = rad_from_deg(0.001);
+        const LaidClosure closure = closure_of(
+            wound(n, n + 1, [&](double circuit, int, double) { return per_circuit * circuit; }));
+        EXPECT_NEAR(closure.closure_rad, n * per_circuit, 1e-3 * n * per_circuit);
+        EXPECT_EQ(closure.holds(), n < 10);
+        EXPECT_NEAR(closure.drift_rad, 0.5 * n * per_circuit, per_circuit);
+    }
+}
+
+// As blocks do it: the same at the same places of like circuits, of which there are three kinds,
+// twenty times as large as the limit.
+TEST(Closure, FollowingThePlanBadlyIsNoDrift) {
+    const auto badly = [](double circuit, int pass, double z) {
+        const int kind = static_cast<int>(circuit) % 3;
+        return rad_from_deg(0.2) * std::sin(0.05 * z + kind + 2.0 * pass);
+    };
+    const LaidClosure closed = closure_of(wound(27, 79, badly));
+    EXPECT_TRUE(closed.holds());
+    EXPECT_LT(closed.closure_rad, 0.1 * kClosureLimit_rad);
+    EXPECT_GT(closed.drift_rad, kClosureLimit_rad);
+    const LaidClosure open = closure_of(wound(27, 79, [&](double circuit, int pass, double z) {
+        return badly(circuit, pass, z) + rad_from_deg(0.001) * std::floor(circuit);
+    }));
+    EXPECT_FALSE(open.holds());
+    EXPECT_NEAR(deg_from_rad(open.closure_rad), 0.027, 0.002);
+}
+
+TEST(Closure, TheTieOnPullsTheFirstPassAlone) {
+    const LaidClosure closure = closure_of(wound(34, 53, [](double circuit, int, double z) {
+        return circuit < 0.5 ? rad_from_deg(0.3) * std::exp(-(z + 120.0) / 50.0) : 0.0;
+    }));
+    EXPECT_LT(closure.closure_rad, kExact_rad);
+}
+
+TEST(Closure, AJumpInTheMiddleIsSeen) {
+    const LaidClosure closure = closure_of(wound(40, 37, [](double circuit, int, double) {
+        return circuit < 20.0 ? 0.0 : rad_from_deg(0.05);
+    }));
+    EXPECT_FALSE(closure.holds());
+    EXPECT_GT(deg_from_rad(closure.closure_rad), 0.04);
+}
+
+TEST(Closure, TooFewCircuitsAreAFailure) {
+    Wound w = wound(7, 5, [](auto...) { return 0.0; });
+    w.laid.resize(w.laid.size() / 2);
+    const LaidClosure closure = closure_of(w);
+    EXPECT_FALSE(closure.holds());
+    EXPECT_NE(closure.failure.find("7 circuits"), std::string::npos) << closure.failure;
+}
+
+}  // namespace
+}  // namespace meshwind
