@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "postproc/eye_rules.h"
+#include "winding/pattern_wish.h"
 
 namespace meshwind {
 
@@ -21,17 +22,30 @@ enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
 /// How the fibre turns round beyond a rim.
 enum class TurnKind { Friction, Pins, Pole };
 
-enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported };
+enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice };
 
 /// Who decides the mandrel's turn where several would do; docs/post.md.
 enum class RedundancyRule { CentralAngle, Hold, Oscillate, Optimal };
+
+/// What the pattern of a layer is to be; what is left out is free (winding/pattern_wish.h).
+struct PatternJob {
+    std::int64_t circuits = 0;  ///< > 0: so many; not of lattices
+    std::int64_t starts = 0;    ///< > 0: the pattern number
+    std::optional<BandOrder> lead{};
+    std::optional<double> most_overlap{};    ///< 0 .. 1, share of the bands' distance
+    double dwell_deg = 0.0;                  ///< >= 0: least dwell at each rim
+    std::optional<double> most_dwell_deg{};  ///< >= dwell_deg, at each rim
+    double band_offset_mm = 0.0;             ///< > 0: distance of bands; 0: the tow's width
+};
 
 /// One layer; each kind reads what concerns it.
 struct LayerJob {
     LayerKind kind = LayerKind::Auto;
     std::optional<double> angle_deg;  ///< 0 (axial) .. 90 (hoop), from the local axial direction
     double target_layers = 1.0;       ///< > 0; how often each place is to be covered
-    std::string file;                 ///< landing points of an Imported layer; empty for all others
+    std::optional<PatternJob> pattern{};   ///< Helical, Polar and Lattice layers only
+    std::optional<LatticeWish> lattice{};  ///< set for Lattice layers and no others
+    std::string file;  ///< landing points of an Imported layer; empty for all others
 };
 
 /// Each fibre more is one more time that somebody cuts it and ties it on.
@@ -81,8 +95,8 @@ struct Job {
 /// Reads a job from text; what the text leaves out keeps its default.
 /// \param name file name for messages
 /// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
-///         job.file_missing, job.file_unused, job.eye_unused, job.turn_forced; each with file and
-///         JSON pointer
+///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced;
+///         each with file and JSON pointer
 [[nodiscard]] Job parse_job(std::string_view text, const std::string& name);
 
 /// `parse_job` of a file. \throws IoError io.cannot_read; InputError as parse_job

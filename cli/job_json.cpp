@@ -15,8 +15,10 @@ namespace {
 // The words of the file, in the order of the enumerators.
 const std::initializer_list<std::string_view> kUnitWords = {"auto", "um", "mm", "cm", "m", "in"};
 const std::initializer_list<std::string_view> kTurnWords = {"friction", "pins", "pole"};
-const std::initializer_list<std::string_view> kLayerWords = {"auto",  "helical", "hoop",
-                                                             "polar", "cover",   "imported"};
+const std::initializer_list<std::string_view> kLayerWords = {"auto",  "helical",  "hoop",   "polar",
+                                                             "cover", "imported", "lattice"};
+// Those of the order, then none.
+const std::initializer_list<std::string_view> kLeadWords = {"leading", "lagging", "any"};
 const std::initializer_list<std::string_view> kEyeWords = {
     "equal-free-length", "cylinder", "horizontal-plane", "vertical-plane", "adaptive"};
 const std::initializer_list<std::string_view> kRedundancyWords = {"central-angle", "hold",
@@ -25,6 +27,18 @@ const std::initializer_list<std::string_view> kRedundancyWords = {"central-angle
 constexpr JsonRange kPositive = {.min = 0.0, .above_min = true};
 constexpr JsonRange kNotNegative = {.min = 0.0};
 constexpr JsonRange kAngleDeg = {.min = 0.0, .max = 90.0};
+
+// More circuits than patterns are looked for (winding/pattern.cpp), more series and plies than
+// anybody winds.
+constexpr std::int64_t kMostCircuits = 10'000;
+constexpr std::int64_t kMostSeries = 1'000;
+constexpr std::int64_t kMostPlies = 1'000;
+
+// Dwells of a turn and less end at every place there is.
+constexpr double kMostDwell_deg = 3600.0;
+
+// Bands that overlap by more are a layer more.
+constexpr double kMostOverlap = 1.0;
 
 /// Leaves `target` as it is where the key is absent.
 void read_number(const JsonObject& object, std::string_view key, const JsonRange& range,
@@ -105,10 +119,93 @@ Job::TowJob read_tow(const JsonValue& value) {
     return tow;
 }
 
+PatternJob read_pattern(const JsonValue& value, LayerKind kind) {
+    PatternJob wish;
+    const JsonObject object = value.object({"circuits", "starts", "lead", "most_overlap",
+                                            "most_dwell_deg", "dwell_deg", "band_offset_mm"});
+    for (const char* key : {"circuits", "most_overlap"}) {
+        const auto unused = object.optional(key);
+        if (unused && kind == LayerKind::Lattice) {
+            unused->fail("job.pattern_unused",
+                         "a lattice has its \"circuits\" beside \"kind\", and its bands do not "
+                         "overlap; remove it");
+        }
+    }
+    if (const auto circuits = object.optional("circuits")) {
+        wish.circuits = circuits->integer(1, kMostCircuits);
+    }
+    if (const auto starts = object.optional("starts")) {
+        wish.starts = starts->integer(1, kMostCircuits);
+    }
+    if (const auto lead = object.optional("lead")) {
+        const std::size_t word = lead->one_of(kLeadWords);
+        if (word + 1 < kLeadWords.size()) {
+            wish.lead = static_cast<BandOrder>(word);
+        }
+    }
+    if (const auto overlap = object.optional("most_overlap")) {
+        wish.most_overlap = overlap->number({.min = 0.0, .max = kMostOverlap});
+    }
+    read_number(object, "dwell_deg", {.min = 0.0, .max = kMostDwell_deg}, wish.dwell_deg);
+    if (const auto most = object.optional("most_dwell_deg")) {
+        wish.most_dwell_deg = most->number({.min = wish.dwell_deg, .max = kMostDwell_deg});
+    }
+    read_number(object, "band_offset_mm", kPositive, wish.band_offset_mm);
+    return wish;
+}
+
+int read_count(const JsonObject& object, std::string_view key, std::int64_t most, int otherwise) {
+    const auto value = object.optional(key);
+    return value ? static_cast<int>(value->integer(1, most)) : otherwise;
+}
+
+LatticeWish read_lattice(const JsonObject& object) {
+    LatticeWish lattice;
+    lattice.circuits = static_cast<int>(object.required("circuits").integer(1, kMostCircuits));
+    const auto series = object.optional("series");
+    if (series && series->is_string()) {
+        (void)series->one_of({"fill"});
+        lattice.series = 0;
+    } else {
+        lattice.series = read_count(object, "series", kMostSeries, lattice.series);
+    }
+    lattice.plies = read_count(object, "plies", kMostPlies, lattice.plies);
+    if (const auto unused = object.optional("target_layers")) {
+        unused->fail("job.pattern_unused", "a lattice is wound \"plies\" times; write that");
+    }
+    return lattice;
+}
+
+// What only patterns read.
+void read_patterns(const JsonObject& object, LayerJob& layer) {
+    const bool lattice = layer.kind == LayerKind::Lattice;
+    if (lattice) {
+        layer.lattice = read_lattice(object);
+    }
+    for (const char* key : {"circuits", "series", "plies"}) {
+        const auto unused = object.optional(key);
+        if (unused && !lattice) {
+            unused->fail("job.pattern_unused",
+                         "only a lattice reads it; a helical or polar layer has \"pattern\": "
+                         "{\"circuits\": N}");
+        }
+    }
+    if (const auto pattern = object.optional("pattern")) {
+        if (!lattice && layer.kind != LayerKind::Helical && layer.kind != LayerKind::Polar) {
+            pattern->fail("job.pattern_unused",
+                          "only layers of kind \"helical\", \"polar\" and \"lattice\" read it; "
+                          "name one of these, or remove it");
+        }
+        layer.pattern = read_pattern(*pattern, layer.kind);
+    }
+}
+
 LayerJob read_layer(const JsonValue& value) {
     LayerJob layer;
-    const JsonObject object = value.object({"kind", "angle", "target_layers", "file"});
+    const JsonObject object = value.object(
+        {"kind", "angle", "target_layers", "pattern", "circuits", "series", "plies", "file"});
     read_word(object, "kind", kLayerWords, layer.kind);
+    read_patterns(object, layer);
     if (object.optional("angle")) {
         read_number(object, "angle", kAngleDeg, layer.angle_deg.emplace());
     }
@@ -326,6 +423,29 @@ std::string tow_text(const Job::TowJob& tow) {
     return text + "}";
 }
 
+std::string pattern_text(const PatternJob& wish) {
+    std::string text = "{";
+    const auto add_count = [&](std::string_view key, std::int64_t count) {
+        if (count > 0) {
+            append_member(text, key, std::to_string(count));
+        }
+    };
+    add_count("circuits", wish.circuits);
+    add_count("starts", wish.starts);
+    append_member(text, "lead", json_string(wish.lead ? word_of(*wish.lead, kLeadWords) : "any"));
+    if (wish.most_overlap) {
+        append_member(text, "most_overlap", *wish.most_overlap);
+    }
+    append_member(text, "dwell_deg", wish.dwell_deg);
+    if (wish.most_dwell_deg) {
+        append_member(text, "most_dwell_deg", *wish.most_dwell_deg);
+    }
+    if (wish.band_offset_mm > 0.0) {
+        append_member(text, "band_offset_mm", wish.band_offset_mm);
+    }
+    return text + "}";
+}
+
 std::string layers_text(std::span<const LayerJob> layers) {
     std::string text = "[";
     for (const LayerJob& layer : layers) {
@@ -334,7 +454,18 @@ std::string layers_text(std::span<const LayerJob> layers) {
         if (layer.angle_deg) {
             append_member(text, "angle", *layer.angle_deg);
         }
-        append_member(text, "target_layers", layer.target_layers);
+        if (layer.lattice) {
+            append_member(text, "circuits", std::to_string(layer.lattice->circuits));
+            append_member(text, "series",
+                          layer.lattice->series > 0 ? std::to_string(layer.lattice->series)
+                                                    : json_string("fill"));
+            append_member(text, "plies", std::to_string(layer.lattice->plies));
+        } else {
+            append_member(text, "target_layers", layer.target_layers);
+        }
+        if (layer.pattern) {
+            append_member(text, "pattern", pattern_text(*layer.pattern));
+        }
         if (!layer.file.empty()) {
             append_member(text, "file", json_string(layer.file));
         }

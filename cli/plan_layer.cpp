@@ -33,6 +33,20 @@ PatternKind pattern_of(LayerKind kind) {
     }
 }
 
+PatternWish wish_of(const PatternJob& job) {
+    PatternWish wish;
+    wish.circuits = job.circuits;
+    wish.starts = job.starts;
+    wish.order = job.lead;
+    wish.most_overlap = job.most_overlap;
+    wish.least_dwell_rad = rad_from_deg(job.dwell_deg);
+    if (job.most_dwell_deg) {
+        wish.most_dwell_rad = rad_from_deg(*job.most_dwell_deg);
+    }
+    wish.band_offset_mm = job.band_offset_mm;
+    return wish;
+}
+
 Rejection first_of(const std::map<std::size_t, Rejection>& refused) {
     return refused.empty() ? Rejection::None : refused.begin()->second;
 }
@@ -119,6 +133,10 @@ private:
                 FibreEnd{last.path.back().position_mm, last.path.back().tangent, last.end_rim};
         }
         pattern.seed = options_.seed;
+        pattern.lattice = layer_.lattice;
+        if (layer_.pattern) {
+            pattern.wish = wish_of(*layer_.pattern);
+        }
         return plan_pattern(setup_.mandrel, body, pattern);
     }
 

@@ -84,19 +84,40 @@ json angles_report(const Plan& plan) {
     return angles;
 }
 
+const char* word_of(BandOrder order) {
+    return order == BandOrder::Leading ? "leading" : "lagging";
+}
+
 json pattern_report(const LaidPattern& laid) {
     const Pattern& pattern = laid.pattern;
-    return {{"angle_deg", report_number(deg_from_rad(laid.angle_rad))},
-            {"slip_ratio", report_number(laid.slip_ratio)},
-            {"circuits", pattern.circuits},
-            {"turns", pattern.turns},
-            {"starts", pattern.starts},
-            {"skip", pattern.skip},
-            {"order", pattern.order == BandOrder::Leading ? "leading" : "lagging"},
-            {"circuit_turn_deg", report_number(deg_from_rad(pattern.turn_rad))},
-            {"dwell_deg", report_number(deg_from_rad(pattern.dwell_rad))},
-            {"overlap", report_number(pattern.overlap)},
-            {"closure_deg", report_number(deg_from_rad(laid.closure_rad))}};
+    json report = {{"angle_deg", report_number(deg_from_rad(laid.angle_rad))},
+                   {"slip_ratio", report_number(laid.slip_ratio)},
+                   {"circuits", pattern.circuits},
+                   {"turns", pattern.turns},
+                   {"starts", pattern.starts},
+                   {"skip", pattern.skip},
+                   {"order", word_of(pattern.order)},
+                   {"circuit_turn_deg", report_number(deg_from_rad(pattern.turn_rad))},
+                   {"dwell_deg", report_number(deg_from_rad(pattern.dwell_rad))},
+                   {"overlap", report_number(pattern.overlap)},
+                   {"closure_deg", report_number(deg_from_rad(laid.closure_rad))},
+                   {"band_offset_mm", report_number(laid.band_offset_mm)},
+                   {"interlacing",
+                    {{"crossing_rows", laid.interlacing.crossing_rows},
+                     {"crossings", laid.interlacing.crossings},
+                     {"diamonds_around", laid.interlacing.diamonds_around}}}};
+    if (laid.lattice) {
+        const LaidLattice& lattice = *laid.lattice;
+        report["lattice"] = {{"ribs", 2 * pattern.circuits},
+                             {"series", lattice.series},
+                             {"plies", lattice.plies},
+                             {"circuits_in_all", laid.starts_rad.size()},
+                             {"offset_mm", report_number(lattice.offset_mm)},
+                             {"rib_mm", report_number(lattice.rib_mm)},
+                             {"rib_spacing_mm", report_number(lattice.rib_spacing_mm)},
+                             {"filled", lattice.filled}};
+    }
+    return report;
 }
 
 json plan_report(const Plan& plan) {
@@ -274,6 +295,25 @@ void print_first_motions(std::ostream& out, const WoundLayer& layer) {
     }
 }
 
+void print_pattern(std::ostream& out, const LaidPattern& laid) {
+    const Pattern& pattern = laid.pattern;
+    out << "pattern: " << pattern.circuits << " circuits at "
+        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg, " << pattern.starts << " starts "
+        << word_of(pattern.order) << ", dwell " << fixed(deg_from_rad(pattern.dwell_rad), 2)
+        << " deg a circuit, bands " << (pattern.overlap < 0.0 ? "leave gaps of " : "overlap by ")
+        << percent(std::abs(pattern.overlap)) << '\n';
+    const Interlacing& cross = laid.interlacing;
+    out << "  " << cross.crossing_rows << " rows of " << pattern.circuits << " crossings, "
+        << cross.diamonds_around << " diamonds around\n";
+    if (laid.lattice) {
+        const LaidLattice& lattice = *laid.lattice;
+        out << "  lattice: " << 2 * pattern.circuits << " ribs of " << fixed(lattice.rib_mm, 2)
+            << " mm, " << fixed(lattice.rib_spacing_mm, 2) << " mm apart at the widest place, "
+            << lattice.series << " series " << fixed(lattice.offset_mm, 2) << " mm apart, "
+            << lattice.plies << " plies\n";
+    }
+}
+
 // Bare wall by reason, the largest first, and what looser rules would reach.
 void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
     std::map<std::string, double> area_mm2;
@@ -319,14 +359,6 @@ void add_layer_report(json& report, const WoundLayer& layer, bool written) {
         report["verification" + fibre_suffix(fibre)] =
             verification_report(program.made.verification, program.made.blocks);
     }
-}
-
-void print_pattern(std::ostream& out, const LaidPattern& laid) {
-    const Pattern& pattern = laid.pattern;
-    out << "pattern: " << pattern.circuits << " circuits at "
-        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg, " << pattern.starts << " starts, dwell "
-        << fixed(deg_from_rad(pattern.dwell_rad), 2) << " deg a circuit, bands overlap by "
-        << percent(pattern.overlap) << '\n';
 }
 
 void print_layer(std::ostream& out, const WoundLayer& layer) {

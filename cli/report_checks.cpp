@@ -19,6 +19,7 @@ std::string meaning_of(const std::string& check) {
         {"plan", "courses that can be wound"},
         {"coverage", "wall under at least one layer"},
         {"thickness", "even layers where the winding is regular"},
+        {"closure", "the pattern's last circuit ends where its first began"},
         {"import", "how far the landing points were from the mandrel"},
         {"eye", "a free length that the rule allows everywhere"},
         {"rounding", "the program read back is the motion that was planned"},

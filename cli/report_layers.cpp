@@ -23,8 +23,8 @@ constexpr double kMmPerM = 1000.0;
 constexpr double kMm3PerCm3 = 1000.0;
 
 const char* word_of(LayerKind kind) {
-    constexpr std::array<const char*, 6> kWords = {"auto",  "helical", "hoop",
-                                                   "polar", "cover",   "imported"};
+    constexpr std::array<const char*, 7> kWords = {"auto",  "helical",  "hoop",   "polar",
+                                                   "cover", "imported", "lattice"};
     return kWords[static_cast<std::size_t>(kind)];
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "cli/pattern_checks.h"
 #include "cli/plan_layer.h"
 #include "cli/run_files.h"
 #include "core/text_number.h"
@@ -128,6 +129,10 @@ private:
                 layer_.checks.push_back(std::move(check));
             }
         }
+        if (layer_.plan.pattern && layer_.plan.pattern->starts_rad.size() > 1) {
+            const LaidPath& laid = layer_.programs.front().made.verification.laid;
+            layer_.checks.push_back(closure_check(layer_.plan, laid.path));
+        }
         for (FibreProgram& program : layer_.programs) {
             program.text = text_of(program.made);  // with what failed, for --force
         }
@@ -173,6 +178,10 @@ private:
     }
 
     void check_coverage() {
+        if (is_open(layer_.plan)) {
+            layer_.checks.push_back(open_coverage_check(layer_.plan));
+            return;
+        }
         const Coverage& coverage = layer_.plan.coverage;
         const double limit = kCoveredShare * coverage.reachable;
         Check check{"coverage", coverage.fraction >= limit, {}, {}};

@@ -118,6 +118,38 @@ TEST(Job, NumbersOfTheEyeRulesReachTheirFields) {
               std::string::npos);
 }
 
+TEST(Job, WishesForPatternsReachTheirFields) {
+    const LayerJob wished = read_job(kCorpus / "valid/pattern_all_keys.json").layers.front();
+    EXPECT_EQ(wished.kind, LayerKind::Helical);
+    ASSERT_TRUE(wished.pattern.has_value());
+    EXPECT_FALSE(wished.lattice.has_value());
+    EXPECT_EQ(wished.pattern->circuits, 42);
+    EXPECT_EQ(wished.pattern->starts, 5);
+    EXPECT_EQ(wished.pattern->lead, BandOrder::Lagging);
+    EXPECT_EQ(wished.pattern->most_overlap, 0.1);
+    EXPECT_EQ(wished.pattern->dwell_deg, 5.5);
+    EXPECT_EQ(wished.pattern->most_dwell_deg, 200.0);
+    EXPECT_EQ(wished.pattern->band_offset_mm, 5.5);
+    const LayerJob any = read_job(kCorpus / "valid/pattern_polar.json").layers.front();
+    EXPECT_FALSE(any.pattern->lead.has_value());
+    EXPECT_FALSE(any.pattern->most_overlap.has_value());
+    EXPECT_FALSE(any.pattern->most_dwell_deg.has_value());
+}
+
+TEST(Job, LatticesReachTheirFields) {
+    const LayerJob plain = read_job(kCorpus / "valid/lattice.json").layers.front();
+    EXPECT_EQ(plain.kind, LayerKind::Lattice);
+    ASSERT_TRUE(plain.lattice.has_value());
+    EXPECT_EQ(plain.lattice->circuits, 6);
+    EXPECT_EQ(plain.lattice->series, 1);
+    EXPECT_EQ(plain.lattice->plies, 1);
+    const LayerJob all = read_job(kCorpus / "valid/lattice_all_keys.json").layers.front();
+    EXPECT_EQ(all.lattice->series, 2);
+    EXPECT_EQ(all.lattice->plies, 3);
+    EXPECT_EQ(all.pattern->band_offset_mm, 7.0);
+    EXPECT_EQ(read_job(kCorpus / "valid/lattice_filled.json").layers.front().lattice->series, 0);
+}
+
 TEST(Job, RedundancyLeftOutIsTheBestThatTheRuleLeaves) {
     EXPECT_EQ(parse_job("{}", "").redundancy, RedundancyRule::Optimal);
     EXPECT_EQ(parse_job(R"({"eye": {"rule": "cylinder", "radius": 250}})", "").redundancy,

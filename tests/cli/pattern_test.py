@@ -1,5 +1,7 @@
 """Layers by pattern: bodies of revolution wound regularly, and what is refused."""
+import csv
 import json
+import math
 import sys
 
 import program
@@ -40,6 +42,7 @@ class Pattern(program.ProgramTest):
                     self.assertNotIn("pattern", plan)
                     continue
                 self.assertLess(plan["pattern"]["closure_deg"], 0.01)
+                self.assertLess(report["checks"]["closure"]["closure_deg"], 0.001)
                 self.assertEqual(plan["courses"], 2 * plan["pattern"]["circuits"])
 
     def test_a_pipe_gets_a_pattern_by_itself(self):
@@ -48,6 +51,73 @@ class Pattern(program.ProgramTest):
         self.assertEqual(report["plan"]["planner"], "pattern")
         self.assertGreater(report["plan"]["coverage"]["fraction"], 0.999)
         self.assertGreater(report["plan"]["pattern"]["dwell_deg"], 0.0)
+
+    def pipe(self):
+        return self.make("cylinder", "--radius", "40", "--length", "200", "--edge", "6")
+
+    def test_wishes_are_kept(self):
+        report = self.wind(self.pipe(), {"kind": "helical", "angle": 50.0, "pattern": {
+            "circuits": 30, "starts": 7, "lead": "lagging", "dwell_deg": 20.0}})
+        pattern = report["plan"]["pattern"]
+        self.assertEqual([pattern[key] for key in ("circuits", "starts", "order")],
+                         [30, 7, "lagging"])
+        self.assertGreaterEqual(pattern["dwell_deg"], 40.0)
+        self.assertEqual(pattern["interlacing"]["diamonds_around"], 7)
+        # Both ways of 30 circuits; the paths themselves say how often they cross.
+        crossings = self.crossings()
+        self.assertEqual(pattern["interlacing"]["crossings"], crossings)
+        self.assertEqual(crossings % 30, 0)
+
+    def crossings(self):
+        """Of the courses of path.csv, each pair of ways: multiples of a turn between their ends."""
+        passes = {}
+        with (self.folder / "out" / "path.csv").open(newline="") as stream:
+            for row in csv.DictReader(stream):
+                if row["kind"] == "course":
+                    passes.setdefault(int(row["course"]), []).append(
+                        math.atan2(float(row["y_mm"]), float(row["x_mm"])))
+        ways = [[], []]
+        for number, azimuths in enumerate(passes[key] for key in sorted(passes)):
+            turn = sum(math.remainder(b - a, 2.0 * math.pi)
+                       for a, b in zip(azimuths, azimuths[1:]))
+            ways[number % 2].append((azimuths[0], azimuths[0] + turn))
+        return sum(math.floor((down[1] - up[0]) / (2.0 * math.pi))
+                   - math.floor((down[0] - up[1]) / (2.0 * math.pi))
+                   for up in ways[0] for down in ways[1])
+
+    def test_says_which_patterns_are_near(self):
+        report = self.wind(self.pipe(), {"kind": "helical", "angle": 50.0, "pattern": {
+            "circuits": 30, "starts": 6}}, code=1)
+        failure = report["plan"]["failure"]
+        self.assertIn("nearest: 30 circuits, 7 starts", failure)
+        self.assertEqual(failure.count(" a circuit;") + 1, 6)  # the wish, then five
+
+    def test_wide_bands_leave_the_gaps_asked_for(self):
+        report = self.wind(self.pipe(), {"kind": "helical", "angle": 50.0, "pattern": {
+            "band_offset_mm": 9.0}})
+        self.assertLess(report["plan"]["pattern"]["overlap"], -0.3)
+        self.assertNotIn("limit", report["checks"]["coverage"])
+
+    def test_lattices(self):
+        pipe = self.pipe()
+        report = self.wind(pipe, {"kind": "lattice", "circuits": 6, "angle": 50.0, "series": 2,
+                                  "plies": 2})
+        lattice = report["plan"]["pattern"]["lattice"]
+        self.assertEqual([lattice[key] for key in ("ribs", "series", "plies", "circuits_in_all")],
+                         [12, 2, 2, 24])
+        self.assertEqual(report["plan"]["courses"], 48)
+        share = 12 * 6.0 / (2.0 * math.pi * 40.0 * math.cos(math.radians(50.0)))
+        coverage = report["checks"]["coverage"]
+        self.assertAlmostEqual(coverage["fraction"], 1.0 - (1.0 - share) ** 2, delta=0.01)
+        self.assertEqual(coverage["ribs"], 12)
+        self.assertTrue(report["ok"])
+        filled = self.wind(pipe, {"kind": "lattice", "circuits": 7, "angle": 50.0,
+                                  "series": "fill"})
+        self.assertGreater(filled["plan"]["coverage"]["fraction"], 0.999)
+        self.assertIn("limit", filled["checks"]["coverage"])
+        wide = self.wind(pipe, {"kind": "lattice", "circuits": 7, "angle": 50.0, "series": 9},
+                         code=1)
+        self.assertIn("close the wall", wide["plan"]["failure"])
 
     def test_says_why_not(self):
         pipe = self.make("cylinder", "--radius", "40", "--length", "200", "--edge", "6")
