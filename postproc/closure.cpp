@@ -62,9 +62,9 @@ Crossed crossed(std::span<const PathPoint> laid, std::span<const double> starts_
     std::vector<std::vector<double>> on;
     for (int k = 0; k < kParallels; ++k) {
         const double share = kLeftOut + (1.0 - 2.0 * kLeftOut) * k / (kParallels - 1);
-        std::vector<double> at = crossings(laid, low_mm + share * (high_mm - low_mm));
-        if (at.size() == 2 * n) {
-            on.push_back(std::move(at));
+        const std::vector<double> at = crossings(laid, low_mm + share * (high_mm - low_mm));
+        if (at.size() >= 2 * n) {  // what comes before has led there
+            on.emplace_back(at.end() - static_cast<std::ptrdiff_t>(2 * n), at.end());
         }
     }
     found.parallels = on.size();
@@ -152,8 +152,8 @@ LaidClosure laid_closure(std::span<const PathPoint> laid, std::span<const double
     Crossed found = crossed(laid, starts_rad, low_mm, high_mm);
     closure.parallels = found.parallels;
     if (found.parallels == 0) {
-        closure.failure = "the laid fibre crosses no parallel as often as its " +
-                          std::to_string(starts_rad.size()) + " circuits do";
+        closure.failure = "the laid fibre crosses no parallel as often as the " +
+                          std::to_string(starts_rad.size()) + " circuits of its pattern do";
         return closure;
     }
     measure_closure(found.off_rad, closure);

@@ -36,7 +36,8 @@ struct LaidClosure {
 /// blocks are alike. `closure` is the slope over all pairs, weighed by that, times the circuits;
 /// `resolution` is what the best single pair gives. The fibre's first pass, which the tie-on still
 /// pulls, does not count. `drift` is of medians over the parallels.
-/// \param laid the pattern, mandrel frame, two passes a circuit; more or fewer are a failure
+/// \param laid mandrel frame, two passes a circuit; passes before them, which lead there, do not
+/// count; of fewer nothing is compared
 /// \param starts_rad n >= 2, per circuit: planned azimuth from the first
 /// \param low_mm, high_mm z between which every pass lies once
 [[nodiscard]] LaidClosure laid_closure(std::span<const PathPoint> laid,

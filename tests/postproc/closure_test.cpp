@@ -107,6 +107,18 @@ TEST(Closure, AJumpInTheMiddleIsSeen) {
     EXPECT_GT(deg_from_rad(closure.closure_rad), 0.04);
 }
 
+TEST(Closure, PassesThatLeadThereDoNotCount) {
+    const auto drift = [](double circuit, int, double) { return rad_from_deg(0.001) * circuit; };
+    const Wound w = wound(20, 21, drift);
+    Wound after;
+    after.starts_rad = w.starts_rad;
+    // Up and down, a circuit of its own.
+    const Wound before = wound(2, 3, [](auto...) { return 0.3; });
+    after.laid.assign(before.laid.begin(), before.laid.begin() + 602);
+    after.laid.insert(after.laid.end(), w.laid.begin(), w.laid.end());
+    EXPECT_NEAR(closure_of(after).closure_rad, closure_of(w).closure_rad, kExact_rad);
+}
+
 TEST(Closure, TooFewCircuitsAreAFailure) {
     Wound w = wound(7, 5, [](auto...) { return 0.0; });
     w.laid.resize(w.laid.size() / 2);
