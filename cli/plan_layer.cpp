@@ -8,6 +8,7 @@
 #include "cli/piece_program.h"
 #include "core/units.h"
 #include "winding/cover.h"
+#include "winding/elbow_plan.h"
 #include "winding/hoop_path.h"
 #include "winding/pattern_plan.h"
 
@@ -64,6 +65,9 @@ public:
             return plan_pattern_asked_for();
         }
         Plan pattern = plan_pattern_that_covers();
+        if (!pattern.failure.empty()) {
+            pattern = plan_elbow_that_covers();
+        }
         if (pattern.failure.empty() && options_.refused(pattern.pieces).empty()) {
             return pattern;
         }
@@ -74,7 +78,9 @@ private:
     [[nodiscard]] Plan plan_pattern_asked_for() const {
         const RevolutionFinding found = find_revolution(setup_.mandrel);
         if (!found.body) {
-            return no_pattern(found);
+            const TubeFinding tube = find_tube(setup_.mandrel);
+            return layer_.kind == LayerKind::Helical && tube.tube ? plan_elbow_on(*tube.tube)
+                                                                  : no_pattern(found);
         }
         return plan_pattern_on(*found.body, pattern_of(layer_.kind),
                                rad_from_deg(layer_.angle_deg.value_or(kFirstAngle_deg)));
@@ -84,8 +90,9 @@ private:
         Plan plan;
         plan.planner = "pattern";
         plan.failure =
-            "patterns are wound on bodies of revolution, and this is none: " + found.why_not +
-            "; use \"cover\"";
+            "patterns are wound on bodies of revolution, helical ones on elbows, too, and this is "
+            "none: " +
+            found.why_not + "; use \"cover\"";
         return plan;
     }
 
@@ -107,13 +114,39 @@ private:
         return plan;
     }
 
-    [[nodiscard]] Plan covering(const BodyOfRevolution& body, PatternKind kind,
-                                double angle_rad) const {
-        Plan plan = plan_pattern_on(body, kind, angle_rad);
+    [[nodiscard]] Plan plan_elbow_that_covers() const {
+        const TubeFinding found = find_tube(setup_.mandrel);
+        Plan plan;
+        plan.failure = found.why_not;
+        return found.tube ? covering(plan_elbow_on(*found.tube)) : plan;
+    }
+
+    [[nodiscard]] Plan plan_elbow_on(const Tube& tube) const {
+        ElbowPlanOptions elbow;
+        if (layer_.angle_deg) {
+            elbow.angle_rad = rad_from_deg(*layer_.angle_deg);
+        }
+        elbow.layers = layer_.target_layers;
+        elbow.tow = planned_tow();
+        elbow.turn.extension_mm = setup_.job.mandrel.extension_mm;
+        elbow.seed = options_.seed;
+        Plan plan = plan_elbow(setup_.mandrel, tube, elbow);
+        if (options_.before != nullptr) {
+            plan.cut_because = "the lines of an elbow are not led on from another layer";
+        }
+        return plan;
+    }
+
+    [[nodiscard]] static Plan covering(Plan plan) {
         if (plan.failure.empty() && plan.coverage.fraction < kCoveredShare) {
             plan.failure = "the pattern covers too little";
         }
         return plan;
+    }
+
+    [[nodiscard]] Plan covering(const BodyOfRevolution& body, PatternKind kind,
+                                double angle_rad) const {
+        return covering(plan_pattern_on(body, kind, angle_rad));
     }
 
     [[nodiscard]] Plan plan_pattern_on(const BodyOfRevolution& body, PatternKind kind,

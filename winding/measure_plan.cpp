@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/parallel.h"
@@ -42,37 +43,51 @@ Coverage coverage_where(const PlanZones::Zone& counts, const CoverageSamples& sa
     return coverage;
 }
 
-// Coefficient of variation of the layers, each taken over a tow width about it: narrower overlaps
-// and gaps flow out.
-double smooth_cv(const PlanZones::Zone& zone, const CoverageSamples& samples,
-                 std::span<const std::int32_t> layers, double tow_width_mm) {
+// The layers where they are regular, each taken over a tow width about it: narrower overlaps and
+// gaps flow out. Coefficient of variation of what they are over what is meant, least and most.
+void measure_regular(const PlanZones& zones, const CoverageSamples& samples,
+                     std::span<const std::int32_t> layers, double tow_width_mm,
+                     Coverage& coverage) {
     const NearestPoints points(samples.position_mm);
     std::vector<double> mean(samples.size(), -1.0);
+    std::vector<double> share(samples.size(), -1.0);  // of what is meant
     parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (!zone(samples.position_mm[i])) {
+            if (!zones.regular(samples.position_mm[i])) {
                 continue;
             }
+            double sum = 0.0;
+            double meant = 0.0;
             const std::vector<std::int32_t> near =
                 points.within(samples.position_mm[i], tow_width_mm);
-            double sum = 0.0;
-            for (const std::int32_t k : near) {
-                sum += layers[static_cast<std::size_t>(k)];
+            for (const std::int32_t n : near) {
+                const auto k = static_cast<std::size_t>(n);
+                sum += layers[k];
+                meant += zones.meant ? zones.meant(samples.position_mm[k]) : 1.0;
             }
             mean[i] = sum / static_cast<double>(near.size());
+            share[i] = sum / meant;
         }
     });
     double n = 0.0;
     double sum = 0.0;
     double squares = 0.0;
-    for (const double layer : mean) {
-        if (layer >= 0.0) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+        if (mean[i] >= 0.0) {
             n += 1.0;
-            sum += layer;
-            squares += layer * layer;
+            sum += share[i];
+            squares += share[i] * share[i];
+            least = std::min(least, mean[i]);
         }
     }
-    return sum > 0.0 ? std::sqrt(std::max(0.0, squares * n - sum * sum)) / sum : 0.0;
+    if (sum > 0.0) {
+        coverage.regular_cv = std::sqrt(std::max(0.0, squares * n - sum * sum)) / sum;
+        coverage.thinnest_layers = least;
+        coverage.thickest_layers = *std::max_element(mean.begin(), mean.end());
+    } else {
+        coverage.regular_cv = 0.0;
+    }
 }
 
 // A course with as much of the turns before and after it as its band still covers wall from.
@@ -141,7 +156,7 @@ void measure_plan(const Surface& surface, const Surface& wall, double tow_width_
     }
     plan.coverage = coverage_where(zones.asked_for, samples, layers);
     if (zones.regular) {
-        plan.coverage.regular_cv = smooth_cv(zones.regular, samples, layers, tow_width_mm);
+        measure_regular(zones, samples, layers, tow_width_mm, plan.coverage);
     }
     plan.face_layers = layers_per_face(surface, samples, layers);
     plan.face_angle_rad = angle_per_face(wall, plan.pieces);

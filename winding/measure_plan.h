@@ -18,6 +18,9 @@ struct PlanZones {
     Zone asked_for{};
     /// Where the winding is regular: Coverage::regular_cv is measured there; none without one.
     Zone regular{};
+    /// Layers that the pattern lays at a place of `regular`: where they vary by geometry, the
+    /// scatter is that of the layers over these. Empty: the same everywhere.
+    std::function<double(const Eigen::Vector3d& position_mm)> meant{};
 };
 
 /// Fills in coverage, layers and angles per face, winding angles and places of a plan's courses.

@@ -410,25 +410,13 @@ private:
     void add(LaidTurn laid) {
         if (laid.rim >= 0) {
             plan_.turns.resize(mandrel_.rims.size());
-            TurnsAtRim& turns = plan_.turns[static_cast<std::size_t>(laid.rim)];
-            turns.turns += laid.asks.turns;
-            turns.dwell_rad += laid.asks.dwell_rad;
-            turns.extension_mm = std::max(turns.extension_mm, laid.asks.extension_mm);
+            add_turn(std::move(laid), plan_);
+        } else {
+            add(std::move(laid.piece));
         }
-        add(std::move(laid.piece));
     }
 
-    void add(Piece piece) {
-        if (!plan_.pieces.empty()) {
-            const Vector3d gap =
-                piece.path.front().position_mm - plan_.pieces.back().path.back().position_mm;
-            plan_.worst_joint_mm = std::max(plan_.worst_joint_mm, gap.norm());
-        }
-        plan_.fibre_length_mm += piece.path.back().s_mm;
-        plan_.worst_slip = std::max(plan_.worst_slip, piece.worst_slip);
-        plan_.worst_bridge_mm = std::max(plan_.worst_bridge_mm, piece.string.worst_gap_mm);
-        plan_.pieces.push_back(std::move(piece));
-    }
+    void add(Piece piece) { add_piece(std::move(piece), plan_); }
 
     void lay_hoops() {
         const CylinderPart asked_for =

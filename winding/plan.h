@@ -64,6 +64,8 @@ struct Coverage {
     double cv = 0.0;  ///< standard deviation of the layers over their mean
     /// The same where a pattern is regular, of the layers averaged over a tow width.
     std::optional<double> regular_cv{};
+    std::optional<double> thinnest_layers{};  ///< so averaged, and where it is regular
+    std::optional<double> thickest_layers{};
 };
 
 /// Bare wall with the rule that keeps it bare.
@@ -102,6 +104,29 @@ struct LaidPattern {
     std::optional<LaidLattice> lattice{};
 };
 
+/// What becomes of the lines on a leg of an elbow, see winding/elbow_lines.h.
+struct LaidElbowLeg {
+    double length_mm = 0.0;
+    double run_mm = 0.0;     ///< over which they are steered, from the bend on
+    double angle_rad = 0.0;  ///< to the leg's axis beyond that
+    double even = 0.0;       ///< 1: one angle and even distances there
+    double slip_ratio = 0.0;
+    double widest_mm = 0.0;  ///< largest distance of neighbours
+    double closed_mm = 0.0;  ///< from the bend on, without gaps
+};
+
+/// The lines of an elbow as they are laid.
+struct LaidElbow {
+    int lines = 0;           ///< of either hand
+    int needed_by_bend = 0;  ///< dimovski_2018_elbows, eq. (18); more are for the legs
+    double angle_rad = 0.0;  ///< to the tube's axis at the outer equator
+    double inner_angle_rad = 0.0;
+    double theta_cycle_rad = 0.0;
+    double thinnest_layers = 0.0;       ///< on the bend, of both hands: at the outer equator
+    double thickest_layers = 0.0;       ///< at the inner one
+    std::array<LaidElbowLeg, 2> leg{};  ///< at the tube's first and second rim
+};
+
 /// What planning took; for reports.
 struct PlanEffort {
     std::uint64_t seed = 0;
@@ -137,6 +162,7 @@ struct Plan {
     WoundAngles angle;                   ///< of the courses
     Places places;                       ///< of junctions and hoops in the winding order
     std::optional<LaidPattern> pattern;  ///< of the pattern planner's circuits
+    std::optional<LaidElbow> elbow;      ///< of the elbow planner's lines
     PlanEffort effort;
     bool goes_on = false;     ///< begins where the fibre of the layer before ends
     std::string cut_because;  ///< in words why it does not, where there is a layer before

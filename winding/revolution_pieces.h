@@ -2,27 +2,16 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "mesh/mandrel.h"
-#include "mesh/nearest.h"
 #include "mesh/revolution.h"
 #include "winding/meridian_path.h"
 #include "winding/plan.h"
 #include "winding/turn.h"
+#include "winding/wall.h"
 
 namespace meshwind {
-
-/// Distance of the stations of a plan, as the other planners have it.
-inline constexpr double kPatternStation_mm = 4.0;
-
-/// A turn over a rim, and what it asks of the rim's extension.
-struct LaidTurn {
-    Piece piece;
-    TurnsAtRim asks;
-    std::int32_t rim = -1;
-};
 
 /// The lower end of a body is 0, the upper 1. Const functions are thread-safe.
 class RevolutionPieces {
@@ -48,13 +37,10 @@ public:
                                           double turn_rad) const;
 
 private:
-    [[nodiscard]] SurfacePath path(const std::vector<MeridianStation>& stations,
-                                   double turn_rad) const;
-
     const Mandrel& mandrel_;
     const BodyOfRevolution& body_;
     const TurnRule& rule_;
-    std::optional<NearestPoints> nearest_;  // of the faces' centres
+    Wall wall_;
 };
 
 }  // namespace meshwind
