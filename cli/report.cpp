@@ -120,6 +120,27 @@ json pattern_report(const LaidPattern& laid) {
     return report;
 }
 
+json elbow_report(const LaidElbow& laid) {
+    json legs = json::array();
+    for (const LaidElbowLeg& leg : laid.leg) {
+        legs.push_back({{"length_mm", report_number(leg.length_mm)},
+                        {"run_mm", report_number(leg.run_mm)},
+                        {"angle_deg", report_number(deg_from_rad(leg.angle_rad))},
+                        {"even", report_number(leg.even)},
+                        {"slip_ratio", report_number(leg.slip_ratio)},
+                        {"widest_mm", report_number(leg.widest_mm)},
+                        {"closed_mm", report_number(leg.closed_mm)}});
+    }
+    return {{"lines", laid.lines},
+            {"needed_by_bend", laid.needed_by_bend},
+            {"angle_deg", report_number(deg_from_rad(laid.angle_rad))},
+            {"inner_angle_deg", report_number(deg_from_rad(laid.inner_angle_rad))},
+            {"theta_cycle_deg", report_number(deg_from_rad(laid.theta_cycle_rad))},
+            {"thinnest_layers", report_number(laid.thinnest_layers)},
+            {"thickest_layers", report_number(laid.thickest_layers)},
+            {"legs", legs}};
+}
+
 json plan_report(const Plan& plan) {
     json uncovered = json::array();
     for (const Uncovered& u : plan.uncovered) {
@@ -168,8 +189,15 @@ json plan_report(const Plan& plan) {
     if (plan.coverage.regular_cv) {
         report["coverage"]["regular_cv"] = report_number(*plan.coverage.regular_cv);
     }
+    if (plan.coverage.thinnest_layers && plan.coverage.thickest_layers) {
+        report["coverage"]["thinnest_layers"] = report_number(*plan.coverage.thinnest_layers);
+        report["coverage"]["thickest_layers"] = report_number(*plan.coverage.thickest_layers);
+    }
     if (plan.pattern) {
         report["pattern"] = pattern_report(*plan.pattern);
+    }
+    if (plan.elbow) {
+        report["elbow"] = elbow_report(*plan.elbow);
     }
     if (!plan.failure.empty()) {
         report["failure"] = plan.failure;
@@ -314,6 +342,20 @@ void print_pattern(std::ostream& out, const LaidPattern& laid) {
     }
 }
 
+void print_elbow(std::ostream& out, const LaidElbow& laid) {
+    out << "elbow: " << laid.lines << " lines of either hand (" << laid.needed_by_bend
+        << " for the bend) at " << fixed(deg_from_rad(laid.angle_rad), 2) << " deg outside, "
+        << fixed(deg_from_rad(laid.inner_angle_rad), 2) << " deg inside, "
+        << fixed(laid.thinnest_layers, 2) << " to " << fixed(laid.thickest_layers, 2)
+        << " layers on the bend\n";
+    for (const LaidElbowLeg& leg : laid.leg) {
+        out << "leg: " << fixed(leg.length_mm, 1) << " mm, closed for " << fixed(leg.closed_mm, 1)
+            << ", steered over " << fixed(leg.run_mm, 1) << " to "
+            << fixed(deg_from_rad(leg.angle_rad), 2) << " deg, slip ratio "
+            << fixed(leg.slip_ratio, 3) << '\n';
+    }
+}
+
 // Bare wall by reason, the largest first, and what looser rules would reach.
 void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
     std::map<std::string, double> area_mm2;
@@ -383,6 +425,9 @@ void print_layer(std::ostream& out, const WoundLayer& layer) {
         << plan.coverage.max_layers << '\n';
     if (plan.pattern) {
         print_pattern(out, *plan.pattern);
+    }
+    if (plan.elbow) {
+        print_elbow(out, *plan.elbow);
     }
     if (layer.import) {
         const ImportFit& fit = *layer.import;

@@ -24,7 +24,7 @@ constexpr int kHalvings = 48;
 constexpr double kSameU = 1e-7;
 
 // Runs and angles that are tried, and places along a leg where distances are looked at.
-constexpr std::array<double, 7> kRuns{0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0};  // of the leg
+constexpr std::array<double, 9> kRuns{0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0};  // of the leg
 constexpr int kAngles = 24;
 constexpr int kShares = 10;
 constexpr int kPlaces = 24;
@@ -121,7 +121,7 @@ public:
         : leg_(leg), width_mm_(width_mm), slip_(slip) {}
 
     // Lines steered, and what they are then.
-    std::pair<ElbowLeg, std::vector<LegLine>> best() const {
+    std::pair<ElbowLeg, std::vector<LegLine>> best() {
         std::pair<ElbowLeg, std::vector<LegLine>> best = kept();
         const auto [least, most] =
             std::minmax_element(leg_.lines.begin(), leg_.lines.end(),
@@ -154,7 +154,7 @@ private:
         return {leg, lines};
     }
 
-    void offer(const Wish& wish, std::pair<ElbowLeg, std::vector<LegLine>>& best) const {
+    void offer(const Wish& wish, std::pair<ElbowLeg, std::vector<LegLine>>& best) {
         const std::optional<double> offset = offset_for(wish);
         if (!offset) {
             return;
@@ -172,9 +172,24 @@ private:
                  leg_.radius_mm * std::abs(lines[i].end_u - lines[i].middle_u) / half});
         }
         look_at(lines, leg);
-        if (best.first.even == 0.0 || leg.widest_mm < best.first.widest_mm) {
+        double fibre = 0.0;
+        for (const LegLine& line : lines) {
+            fibre += state_at(line, leg.run_mm, leg_.length_mm, leg_.radius_mm).s_mm;
+        }
+        if (best.first.even == 0.0 || better(leg, fibre, best.first)) {
+            best_fibre_mm_ = fibre;
             best = {leg, std::move(lines)};
         }
+    }
+
+    // No gaps come first, then the least fibre; where there are gaps, the least of them.
+    [[nodiscard]] bool better(const ElbowLeg& leg, double its_fibre_mm,
+                              const ElbowLeg& best) const {
+        const bool closed = leg.widest_mm <= width_mm_;
+        if (closed != (best.widest_mm <= width_mm_)) {
+            return closed;
+        }
+        return closed ? its_fibre_mm < best_fibre_mm_ : leg.widest_mm < best.widest_mm;
     }
 
     [[nodiscard]] double even_rad(std::size_t i) const {
@@ -253,6 +268,7 @@ private:
     const Leg& leg_;
     double width_mm_;
     double slip_;
+    double best_fibre_mm_ = 0.0;
 };
 
 class Designer {

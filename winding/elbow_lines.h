@@ -77,10 +77,10 @@ struct ElbowLines {
 ///     du/dz = -slip / r,   dphi/dz = 1 / (r sqrt(u^2 - 1))
 ///
 /// so u at half the run decides, and the way around is (acosh(u1) - acosh(u0)) / (u1 - u0) dz / r.
-/// Run, angle and offset are those with the least distances among those that the slip allows. M is
-/// eq. (18), or more where lines on the legs are farther apart than the width; at most half as many
-/// again, and then `closed_mm` says how far the legs are closed.
-/// Accuracy: tests/winding/elbow_lines_test.cpp. \throws InputError pattern.out_of_range
+/// Of the runs and angles that the slip allows those are taken that leave no gap with the least
+/// fibre, or else the least gaps. M is eq. (18), or more where lines on the legs are farther apart
+/// than the width; at most half as many again, and then `closed_mm` says how far the legs are
+/// closed. Accuracy: tests/winding/elbow_lines_test.cpp. \throws InputError pattern.out_of_range
 [[nodiscard]] ElbowLines elbow_lines(const ElbowTube& tube, const ElbowOptions& options);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-"""Layers by pattern: bodies of revolution wound regularly, and what is refused."""
+"""Layers by pattern: bodies of revolution and elbows wound regularly, and what is refused."""
 import csv
 import json
 import math
@@ -125,9 +125,36 @@ class Pattern(program.ProgramTest):
         self.assertIn("mm of extension where there are 100.0", report["plan"]["failure"])
         report = self.wind(pipe, {"kind": "polar"}, code=1)
         self.assertIn("use \"helical\"", report["plan"]["failure"])
-        elbow = self.make("elbow", "--edge", "10")
-        report = self.wind(elbow, {"kind": "helical"}, code=1)
+        tee = self.make("tee", "--edge", "12")
+        report = self.wind(tee, {"kind": "helical"}, code=1)
         self.assertIn("patterns are wound on bodies of revolution", report["plan"]["failure"])
+        elbow = self.make("elbow", "--edge", "10")
+        report = self.wind(elbow, {"kind": "polar"}, code=1)
+        self.assertIn("patterns are wound on bodies of revolution", report["plan"]["failure"])
+        report = self.wind(elbow, {"kind": "helical", "angle": 55}, code=1)
+        self.assertIn("lifts off at the inner one", report["plan"]["failure"])
+
+    def test_an_elbow_is_wound_by_both_hands_without_a_gap(self):
+        elbow = self.make("elbow", "--pipe-radius", "40", "--bend-radius", "120", "--leg1", "150",
+                          "--leg2", "150", "--edge", "6", "--irregular")
+        for kind in ("helical", "auto"):
+            with self.subTest(kind):
+                report = self.wind(elbow, {"kind": kind})
+                plan = report["plan"]
+                self.assertEqual(plan["planner"], "elbow")
+                self.assertEqual(plan["fibres"], 1)
+                self.assertEqual(plan["courses"], 2 * plan["elbow"]["lines"])
+                self.assertGreaterEqual(plan["elbow"]["lines"], plan["elbow"]["needed_by_bend"])
+                coverage = plan["coverage"]
+                self.assertEqual(coverage["reachable"], 1.0)
+                self.assertGreater(coverage["fraction"], 0.995)
+                self.assertLess(coverage["regular_cv"], 0.02)
+                # Bands around phi are as far apart as the geometry has them.
+                self.assertLess(coverage["thickest_layers"], plan["elbow"]["thickest_layers"] + 0.3)
+                self.assertGreater(coverage["thinnest_layers"],
+                                   plan["elbow"]["thinnest_layers"] - 0.3)
+                for name, check in report["checks"].items():
+                    self.assertTrue(check["ok"], name)
 
 
 if __name__ == "__main__":
