@@ -80,6 +80,7 @@ TubePart curve_part(const CentreLine& line) {
 
 Tube free_tube(const Mandrel& mandrel, const std::vector<TubeSection>& sections) {
     std::vector<Vector3d> centres;
+    centres.reserve(sections.size());
     for (const TubeSection& section : sections) {
         centres.push_back(section.centre_mm);
     }

@@ -238,6 +238,7 @@ bool is_lost(const TubeSection& section) {
 
 CentreLine line_of(const std::vector<TubeSection>& sections) {
     std::vector<Vector3d> centres;
+    centres.reserve(sections.size());
     for (const TubeSection& section : sections) {
         centres.push_back(section.centre_mm);
     }

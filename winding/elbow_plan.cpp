@@ -264,13 +264,15 @@ private:
 
     void lay() {
         const std::size_t count = lines_.line.size();
-        const auto [p, q] = shifts();
+        const std::array<std::size_t, 2> shift = shifts();
+        const std::size_t p = shift[0];
+        const std::size_t onward = (shift[1] + count - p) % count;
         const Wall wall(mandrel_.surface);
         std::vector<Piece> courses(2 * count);
         parallel_for(courses.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
                 // The k-th pair: line i = k (q - p), then the mirror image of p - i.
-                const std::size_t i = k / 2 * ((q + count - p) % count) % count;
+                const std::size_t i = k / 2 * onward % count;
                 const bool down = k % 2 == 1;
                 SurfacePath path = path_of(lines_.line[down ? (p + count - i) % count : i], down);
                 wall.put(path);
