@@ -122,6 +122,15 @@ private:
     }
 
     [[nodiscard]] Plan plan_elbow_on(const Tube& tube) const {
+        if (layer_.pattern) {
+            Plan plan;
+            plan.planner = "elbow";
+            plan.failure =
+                "\"pattern\" says how circuits of a body of revolution close; the lines of an "
+                "elbow "
+                "follow from its bend, so leave it out";
+            return plan;
+        }
         ElbowPlanOptions elbow;
         if (layer_.angle_deg) {
             elbow.angle_rad = rad_from_deg(*layer_.angle_deg);

@@ -133,6 +133,8 @@ class Pattern(program.ProgramTest):
         self.assertIn("patterns are wound on bodies of revolution", report["plan"]["failure"])
         report = self.wind(elbow, {"kind": "helical", "angle": 55}, code=1)
         self.assertIn("lifts off at the inner one", report["plan"]["failure"])
+        report = self.wind(elbow, {"kind": "helical", "pattern": {"starts": 3}}, code=1)
+        self.assertIn("leave it out", report["plan"]["failure"])
 
     def test_an_elbow_is_wound_by_both_hands_without_a_gap(self):
         elbow = self.make("elbow", "--pipe-radius", "40", "--bend-radius", "120", "--leg1", "150",
