@@ -91,7 +91,7 @@ private:
         options.in_spite = in_spite;
         options.optimal = wants_least_time(setup_);
         options.through_text = [&](const PieceProgram& made) {
-            return setup_.dialect->read(text_of(made), program.file, setup_.machine);
+            return setup_.dialect->read(text_of(program, made), program.file, setup_.machine);
         };
         options.progress = [this](const char* step, double share) { tell(step, share); };
         options.stage_done = [this](const char* stage) { done(stage); };
@@ -134,7 +134,7 @@ private:
             layer_.checks.push_back(closure_check(layer_.plan, laid.path));
         }
         for (FibreProgram& program : layer_.programs) {
-            program.text = text_of(program.made);  // with what failed, for --force
+            program.text = text_of(program, program.made);  // with what failed, for --force
         }
     }
 
@@ -220,8 +220,11 @@ private:
         return check;
     }
 
-    [[nodiscard]] std::string text_of(const PieceProgram& made) const {
+    [[nodiscard]] std::string text_of(const FibreProgram& program, const PieceProgram& made) const {
         ProgramHeader header = options_.header;
+        if (goes_on(program)) {
+            header.goes_on_from = options_.before->programs.back().file;
+        }
         header.fibre_length_mm = made.eyes.path.back().s_mm;
         header.tie_on_mm = made.eyes.path.front().landing_mm;
         for (const Check& check : layer_.checks) {

@@ -59,7 +59,8 @@ struct NcFlavour {
     // Modes.
     std::string_view first_modes;    ///< lines
     std::string_view absolute;       ///< before the start moves, e.g. "G90 "
-    std::string_view tie_on;         ///< comment before the stop
+    std::string_view message;        ///< before a comment that the operator is shown
+    std::string_view tie_on;         ///< that comment before the stop
     std::string_view winding_modes;  ///< after the stop, without the feed mode
     bool inverse_time = true;        ///< G93 may be written
     bool per_minute = false;         ///< G94, or nothing else, may be written

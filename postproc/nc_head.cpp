@@ -64,6 +64,7 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
         lines.push_back("tie on at X" + fixed(p.x(), 3) + " Y" + fixed(p.y(), 3) + " Z" +
                         fixed(p.z(), 3) + " on the mandrel");
     }
+    append_if(lines, "the fibre goes on, do not cut it: run after ", header.goes_on_from);
     for (const std::string& note : header.notes) {
         lines.push_back("note: " + note);
     }

@@ -91,9 +91,12 @@ public:
         text_ += flavour_.first_modes;
         own_lines(machine_.controller.header);
         comment("approach: rotary axes turn first, then the linear axes move together;");
-        comment("bring the eye clear of the mandrel by hand before the start");
+        const bool goes_on = !header_.goes_on_from.empty();
+        comment(goes_on ? "the eye stands nearly there, the fibre stays on"
+                        : "bring the eye clear of the mandrel by hand before the start");
         start_moves();
-        comment(std::string(flavour_.tie_on));
+        comment(goes_on ? std::string(flavour_.message) + "the fibre is on already, start again"
+                        : std::string(flavour_.message) + std::string(flavour_.tie_on));
         text_ += "M0\n";
         text_ += flavour_.winding_modes;
         text_ += !flavour_.has_feed_modes ? "" : inverse() ? "G93\n" : "G94\n";
