@@ -170,10 +170,15 @@ std::vector<double> build_up_mm(const Surface& surface, std::span<const double> 
     // Variance along a line: twice the time.
     const double spread = spread_mm(surface, tow_width_mm);
     const double time_mm2 = spread * spread / 6.0 / kDiffusionSteps;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const Eigen::Triplet<double>& entry : stiffness) {
+        entries.emplace_back(entry.row(), entry.col(), time_mm2 * entry.value());
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+        entries.emplace_back(i, i, mass[i]);
+    }
     Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(stiffness.begin(), stiffness.end());
-    matrix *= time_mm2;
-    matrix.diagonal() += mass;
+    matrix.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     if (solver.info() != Eigen::Success) {
         throw InputError("thicken.thin", "",
@@ -182,7 +187,8 @@ std::vector<double> build_up_mm(const Surface& surface, std::span<const double> 
     }
     Eigen::VectorXd thickness = laid.cwiseQuotient(mass);
     for (int step = 0; step < kDiffusionSteps; ++step) {
-        thickness = solver.solve(mass.cwiseProduct(thickness));
+        const Eigen::VectorXd held = mass.cwiseProduct(thickness);  // the solver would write over it
+        thickness = solver.solve(held);
     }
     // Obtuse triangles may undershoot by a little beside what is bare.
     std::vector<double> result(static_cast<std::size_t>(n));
