@@ -7,8 +7,10 @@
 #include "core/error.h"
 #include "core/text_number.h"
 #include "core/units.h"
+#include "mesh/crease_rings.h"
 #include "mesh/import.h"
 #include "mesh/repair.h"
+#include "mesh/revolution.h"
 #include "mesh/rims.h"
 #include "mesh/segment.h"
 #include "mesh/spindle_axis.h"
@@ -245,14 +247,18 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
 
     move(mandrel.whole, frame.mandrel_from_file);
     move(kept.soup, frame.mandrel_from_file);
-    mandrel.surface = freeze_surface(
-        kept.soup, {.feature = kept.feature, .region = kept.region, .rim = rims.of_edge});
+    const FreezeInput frozen{.feature = kept.feature, .region = kept.region, .rim = rims.of_edge};
+    mandrel.surface = freeze_surface(kept.soup, frozen);
     mandrel.whole_region = std::move(segmentation.region);
     mandrel.regions = std::move(segmentation.regions);
     mandrel.rims = rims.rims;
     for (Rim& rim : mandrel.rims) {
         rim.centre_mm = frame.mandrel_from_file * rim.centre_mm;
         rim.axis = frame.mandrel_from_file.linear() * rim.axis;
+    }
+    const RevolutionFinding found = find_revolution(mandrel);
+    if (found.body && mark_crease_rings(*found.body, kept.soup, kept.feature)) {
+        mandrel.surface = freeze_surface(kept.soup, frozen);
     }
     mandrel.axis = frame.axis;
     mandrel.file_to_mandrel = frame.mandrel_from_file * Eigen::Scaling(mandrel.unit_mm);
