@@ -31,6 +31,15 @@ Matched between(const PlannedStation& a, const PlannedStation& b, const Vector3d
             place.tangent};
 }
 
+// How many stations from the first on are where that is.
+template <class Station>
+std::size_t stations_at_one_place(Station first, Station last) {
+    const auto apart = std::find_if(first, last, [&](const PathPoint& station) {
+        return !((station.position_mm - first->position_mm).norm() < kSamePlace_mm);
+    });
+    return static_cast<std::size_t>(apart - first);
+}
+
 }  // namespace
 
 PlannedFibre planned_fibre(std::span<const Piece> pieces) {
@@ -63,6 +72,12 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         return end - first > 1 &&
                (planned[first].position_mm - at).norm() <= tolerance.deviation_mm;
     };
+    // Where the fibre begins and ends on the edge of a rim, stations lie on either side of it; the
+    // wall's is that beside the fibre.
+    const std::size_t begin = stations_at_one_place(laid.path.begin(), laid.path.end());
+    const std::size_t end =
+        laid.path.size() - stations_at_one_place(laid.path.rbegin(), laid.path.rend());
+    const auto beyond_end = [&](std::size_t i) { return i + 1 < begin || i > end; };
     for (std::size_t i = 0; i < laid.path.size(); ++i) {
         const PathPoint& station = laid.path[i];
         std::size_t next = next_of(j);
@@ -81,7 +96,7 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         const Matched match = between(planned[next - 1], planned[next], station.position_mm);
         const Vector3d across = match.normal.cross(match.tangent);
         const double sideways = std::abs((station.position_mm - match.position_mm).dot(across));
-        const bool on_the_spot = swings(j, next, station.position_mm) ||
+        const bool on_the_spot = beyond_end(i) || swings(j, next, station.position_mm) ||
                                  swings(next, next_of(next), station.position_mm);
         const double angle = on_the_spot ? 0.0
                                          : std::abs(std::atan2(station.tangent.dot(across),

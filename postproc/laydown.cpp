@@ -342,12 +342,14 @@ private:
     }
 
     void record(const PathPoint& station, double s_mm, bool lifted) {
-        if (!laid_.path.empty() && s_mm - laid_.path.back().s_mm < kStation_mm &&
-            station.normal.dot(laid_.path.back().normal) > kSameNormal) {
+        const bool same_place = !laid_.path.empty() && s_mm - laid_.path.back().s_mm < kStation_mm;
+        if (same_place && station.normal.dot(laid_.path.back().normal) > kSameNormal) {
             return;
         }
+        // The other side of a feature edge is at the same length, or it is not known for one.
+        const double at_mm = same_place ? laid_.path.back().s_mm : s_mm;
         laid_.path.push_back(station);
-        laid_.path.back().s_mm = s_mm;
+        laid_.path.back().s_mm = at_mm;
         laid_.at.push_back({block_, lifted, 0.0});
     }
 

@@ -227,6 +227,22 @@ TEST(Compare, AnyDirectionOnTheSpotOfAKinkAlone) {
     EXPECT_EQ(wrong(1.1 * kTolerance.deviation_mm), (std::vector<std::size_t>{1}));
 }
 
+// Tied on at a rim, and cut there, the fibre has a station on the extension's side of the edge.
+TEST(Compare, BeginsAndEndsOnEitherSideOfARimsEdge) {
+    const std::vector<Flat> plan = straight(kHeading_rad, 4.0, 26);
+    const auto turned = [](Flat flat) {
+        flat.heading_rad += 0.1;
+        return flat;
+    };
+    std::vector<Flat> line = plan;
+    line.insert(line.begin(), turned(line.front()));
+    line.push_back(turned(line.back()));
+    EXPECT_TRUE(compare(laid(line), planned(plan), kTolerance).wrong.empty());
+    // Anywhere else a turned station is wrong.
+    line.insert(line.begin() + 9, turned(line[8]));
+    EXPECT_EQ(compare(laid(line), planned(plan), kTolerance).wrong, (std::vector<std::size_t>{9}));
+}
+
 // Both ways are 10 mm apart: each laid station belongs to its own.
 TEST(Compare, KeepsTheTwoWaysOfAPathThatDoublesBackApart) {
     const PlannedFibre plan = planned(there_and_back(2.0));

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "geodesic/measure.h"
 #include "mesh/make.h"
 #include "tests/geodesic/hourglass.h"
 #include "tests/mesh/shapes.h"
@@ -231,6 +232,15 @@ TEST(LayDown, CrossesACreaseAtTheSameAngle) {
     }
     EXPECT_LT(off_mm, kFineDeviation_mm);
     EXPECT_GE(crossing, 2U);  // a station on either side of the crease
+    // At one length to the last digit, by which a path is known to be unfolded there.
+    for (std::size_t i = 1; i < laid.path.size(); ++i) {
+        if (laid.path[i].normal.dot(laid.path[i - 1].normal) < 0.9) {
+            EXPECT_EQ(laid.path[i].s_mm, laid.path[i - 1].s_mm);
+        }
+    }
+    const SlipMeasure slip = measure_slip(surface, laid.path, taut_string(laid.path),
+                                          {.window_mm = 6.0, .method = TraceMethod::Patches});
+    EXPECT_LT(slip.worst, 0.02);
     EXPECT_LT((laid.path.back().position_mm - after.states.back().position_mm).norm(),
               kFineDeviation_mm);
     EXPECT_NEAR(laid.path.back().s_mm, 64.0, kFineDeviation_mm);
