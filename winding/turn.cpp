@@ -131,7 +131,10 @@ RimCrossing crossing_at(const Rim& rim, const Vector3d& position_mm, const Vecto
     crossing.azimuth_rad = std::atan2(d.dot(y), d.dot(x));
     const Vector3d around = rim.axis.cross(d).normalized();
     const double turning = outward.dot(around);
-    crossing.angle_rad = std::atan2(std::abs(turning), outward.dot(rim.axis));
+    // Onto the extension the fibre runs as over a crease: the angle to the rim stays.
+    const double axial = outward.dot(rim.axis);
+    const double across = std::hypot(axial, outward.dot(d.normalized()));
+    crossing.angle_rad = std::atan2(std::abs(turning), std::copysign(across, axial));
     crossing.sense = turning >= 0.0 ? 1 : -1;
     return crossing;
 }

@@ -27,7 +27,9 @@ struct TurnRule {
 /// Unit vector perpendicular to the rim's axis from which azimuths count.
 [[nodiscard]] Eigen::Vector3d rim_reference(const Rim& rim);
 
-/// \param position_mm on the rim \param outward unit tangent of the course, leaving the mandrel
+/// Where the wall leans at the rim, that is a crease to the extension: the angle is that to the
+/// rim's tangent, which unfolding keeps. \param position_mm on the rim \param outward unit tangent
+/// of the course, leaving the mandrel
 [[nodiscard]] RimCrossing crossing_at(const Rim& rim, const Eigen::Vector3d& position_mm,
                                       const Eigen::Vector3d& outward);
 

@@ -102,6 +102,23 @@ TEST(CrossingAt, GivesBackWhatItWasBuiltFrom) {
     }
 }
 
+// The wall meets its extension in a crease, and unfolding keeps the angle to that.
+TEST(CrossingAt, LeaningWallsKeepTheAngleToTheRim) {
+    const Rim rim = slanted_rim();
+    const RimCrossing built = crossing(30.0, 55.0, 1);
+    const Vector3d radial = radial_at(rim, built.azimuth_rad);
+    const Vector3d position = rim.centre_mm + rim.radius_mm * radial;
+    for (const double lean_deg : {-30.0, 8.5, 45.0}) {
+        const double lean = rad_from_deg(lean_deg);
+        const Vector3d up = std::cos(lean) * rim.axis + std::sin(lean) * radial;
+        const Vector3d outward =
+            std::cos(built.angle_rad) * up + std::sin(built.angle_rad) * rim.axis.cross(radial);
+        const RimCrossing found = crossing_at(rim, position, outward);
+        EXPECT_NEAR(found.angle_rad, built.angle_rad, 1e-12) << lean_deg;
+        EXPECT_EQ(found.sense, 1);
+    }
+}
+
 TEST(TurnRun, IsTheClosedForm) {
     EXPECT_NEAR(turn_run_mm(50.0, rad_from_deg(30.0), 0.2), 250.0, 1e-9);
     EXPECT_NEAR(turn_run_mm(40.0, rad_from_deg(90.0), 0.1), 0.0, 1e-12);
