@@ -28,9 +28,11 @@ double opening_limit(double opening, double otherwise) {
 }
 
 double least_size(const VesselShape& shape) {
-    return opening_limit(shape.opening_radius_mm,
-                         std::min({shape.radius_mm, shape.cylinder_length_mm, shape.dome_height_mm,
-                                   shape.radius_mm - shape.opening_radius_mm}));
+    const double openings = opening_limit(shape.opening_radius_mm,
+                                          opening_limit(shape.upper_opening_mm(), shape.radius_mm));
+    return std::min({openings, shape.cylinder_length_mm, shape.dome_height_mm,
+                     shape.radius_mm - shape.opening_radius_mm,
+                     shape.radius_mm - shape.upper_opening_mm()});
 }
 
 double least_size(const IsotensoidShape& shape) {

@@ -42,6 +42,8 @@ constexpr std::array kVesselTable{
                   "height of the half ellipsoid at each end"},
     MakeParameter{"opening-radius", kLength, kVessel.opening_radius_mm,
                   "radius of the polar openings, 0 for none"},
+    MakeParameter{"upper-opening-radius", kLength, kVessel.upper_opening_radius_mm,
+                  "radius of the upper one where it differs, -1: as the lower"},
 };
 constexpr std::array kIsotensoidTable{
     MakeParameter{"radius", kLength, kIsotensoid.radius_mm, "radius of the cylinder"},
@@ -158,7 +160,7 @@ auto with_shape(std::string_view name, const MakeValues& values, const Use& use)
         return use(ConeShape{v[0], v[1], v[2]});
     }
     if (kind.name == "vessel") {
-        return use(VesselShape{v[0], v[1], v[2], v[3]});
+        return use(VesselShape{v[0], v[1], v[2], v[3], v[4]});
     }
     if (kind.name == "isotensoid") {
         return use(IsotensoidShape{v[0], v[1], v[2], v[3], v[4]});

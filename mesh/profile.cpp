@@ -141,11 +141,12 @@ Profile profile_of(const ConeShape& shape) {
 
 Profile profile_of(const VesselShape& shape) {
     const double half = 0.5 * shape.cylinder_length_mm;
-    const double open = opening_angle(shape.radius_mm, shape.opening_radius_mm);
+    const double below = opening_angle(shape.radius_mm, shape.opening_radius_mm);
+    const double above = opening_angle(shape.radius_mm, shape.upper_opening_mm());
     const Vector2d axes(shape.radius_mm, shape.dome_height_mm);
-    return {dome(-half, axes, -open, 0.0),
+    return {dome(-half, axes, -below, 0.0),
             line(ShapePart::Cylinder, {shape.radius_mm, -half}, {shape.radius_mm, half}),
-            dome(half, axes, 0.0, open)};
+            dome(half, axes, 0.0, above)};
 }
 
 Profile profile_of(const IsotensoidShape& shape) {

@@ -91,6 +91,9 @@ void VesselShape::validate() const {
     require_not_negative("opening-radius", opening_radius_mm);
     require(opening_radius_mm < radius_mm, "make.opening_too_large", "opening-radius",
             opening_radius_mm, "less than the radius", radius_mm);
+    require_not_negative("upper-opening-radius", upper_opening_mm());
+    require(upper_opening_mm() < radius_mm, "make.opening_too_large", "upper-opening-radius",
+            upper_opening_mm(), "less than the radius", radius_mm);
 }
 
 IsotensoidDesign IsotensoidShape::dome() const {

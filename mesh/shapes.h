@@ -31,9 +31,16 @@ struct VesselShape {
     double radius_mm = 75.0;
     double cylinder_length_mm = 200.0;
     double dome_height_mm = 50.0;  ///< of the whole half ellipsoid, from the cylinder to its pole
-    double opening_radius_mm = 15.0;  ///< of both polar openings; 0: closed
+    double opening_radius_mm = 15.0;               ///< of both polar openings; 0: closed
+    double upper_opening_radius_mm = kAsLower_mm;  ///< of the upper one, where it differs
 
-    /// \throws InputError make.not_positive, make.opening_too_large
+    static constexpr double kAsLower_mm = -1.0;  ///< no radius: the upper opening is as the lower
+
+    [[nodiscard]] double upper_opening_mm() const {
+        return upper_opening_radius_mm == kAsLower_mm ? opening_radius_mm : upper_opening_radius_mm;
+    }
+
+    /// \throws InputError make.not_positive, make.negative, make.opening_too_large
     void validate() const;
 };
 

@@ -135,6 +135,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(MakeCase{"cylinder", "cylinder", {}, 0, 2}, MakeCase{"cone", "cone", {}, 0, 2},
                     MakeCase{"widening_cone", "cone", {{"radius2", 90.0}}, 0, 2},
                     MakeCase{"vessel", "vessel", {}, 0, 2},
+                    MakeCase{"uneven_vessel", "vessel", {{"upper-opening-radius", 25.0}}, 0, 2},
+                    MakeCase{"half_closed_vessel", "vessel", {{"upper-opening-radius", 0.0}}, 1, 1},
                     MakeCase{"closed_vessel", "vessel", {{"opening-radius", 0.0}}, 2, 0},
                     MakeCase{"isotensoid", "isotensoid", {}, 0, 2},
                     MakeCase{"netting", "isotensoid", {{"ke", 0.0}, {"design-radius", 24.0}}, 0, 2},
@@ -223,10 +225,13 @@ TEST(MakeMandrel, RefusesEveryNonPositiveParameter) {
         for (const MakeParameter& parameter : kind.parameters) {
             const std::string name(parameter.name);
             const bool may_be_zero = (name == "opening-radius" && kind.name != "isotensoid") ||
-                                     name == "ke" || name == "design-radius" || name == "leg1" ||
-                                     name == "leg2" || name == "lean";
+                                     name == "upper-opening-radius" || name == "ke" ||
+                                     name == "design-radius" || name == "leg1" || name == "leg2" ||
+                                     name == "lean";
             const std::string code = may_be_zero ? "make.negative" : "make.not_positive";
-            for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+            const double negative = name == "upper-opening-radius" ? -2.0 : -1.0;  // -1: as below
+            for (const double bad :
+                 {negative, std::nan(""), std::numeric_limits<double>::infinity()}) {
                 EXPECT_EQ(code_of(std::string(kind.name), {{name, bad}}), code) << name << bad;
             }
             if (!may_be_zero) {
@@ -239,6 +244,7 @@ TEST(MakeMandrel, RefusesEveryNonPositiveParameter) {
 
 TEST(MakeMandrel, RefusesWhatDoesNotFit) {
     EXPECT_EQ(code_of("vessel", {{"opening-radius", 75.0}}), "make.opening_too_large");
+    EXPECT_EQ(code_of("vessel", {{"upper-opening-radius", 75.0}}), "make.opening_too_large");
     EXPECT_EQ(code_of("isotensoid", {{"opening-radius", 75.0}}), "make.opening_too_large");
     EXPECT_EQ(code_of("isotensoid", {{"ke", 0.0}}), "make.opening_too_small");
     EXPECT_EQ(code_of("isotensoid", {{"ke", 1.0}}), "make.stiffness_ratio");
