@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/units.h"
+#include "winding/hollow_edges.h"
 
 namespace meshwind {
 namespace {
@@ -18,6 +19,10 @@ constexpr int kHalvings = 60;
 constexpr double kHoop_rad = 1e-13;
 
 constexpr double kHalf_rad = 0.5 * kPi;
+
+// Beside a bridge stations stand so closely that its ends are known.
+constexpr double kBesideBridge = 2.0;
+constexpr int kStepsBesideBridge = 2;
 
 struct State {
     double arc_mm = 0.0;
@@ -34,7 +39,7 @@ State along(const State& a, double h, const State& rate) {
 class Follower {
 public:
     Follower(const Meridian& meridian, double slip_ratio, double sign)
-        : meridian_(meridian), slip_ratio_(slip_ratio), sign_(sign) {
+        : meridian_(meridian), slip_ratio_(slip_ratio), sign_(sign), hollow_(meridian) {
         ends_.push_back(0.0);
         for (const double crease : meridian.creases_mm()) {
             ends_.push_back(crease);
@@ -77,7 +82,9 @@ public:
                 }
                 stations.push_back(station(state, s_mm));
                 i = 0;
-            } else if (i % kStepsPerStation == 0) {
+            } else if (i % (bridges(state, kBesideBridge) ? kStepsBesideBridge
+                                                          : kStepsPerStation) ==
+                       0) {
                 stations.push_back(station(state, s_mm));
             }
         }
@@ -128,9 +135,13 @@ private:
         const double s = std::sin(state.angle_rad);
         const double kn =
             at.curvature_per_mm * c * c + std::cos(at.slope_rad) * s * s / at.radius_mm;
-        const double kg = slip_ratio_ * std::max(kn, 0.0);
+        const double kg = bridges(state, 1.0) ? 0.0 : slip_ratio_ * std::max(kn, 0.0);
         return {sign_ * c, sign_ * s / at.radius_mm,
                 sign_ * (-std::sin(at.slope_rad) * s / at.radius_mm - kg)};
+    }
+
+    [[nodiscard]] bool bridges(const State& state, double times) const {
+        return hollow_.near_bridge(place(state.arc_mm), state.arc_mm, state.angle_rad, times);
     }
 
     [[nodiscard]] State stepped(const State& from, double h) const {
@@ -163,6 +174,7 @@ private:
     double slip_ratio_;
     double sign_;
     std::vector<double> ends_;  // of the smooth stretches
+    HollowEdges hollow_;
     std::size_t stretch_ = 0;
     double low_mm_ = 0.0;
     double high_mm_ = 0.0;
@@ -171,20 +183,26 @@ private:
 }  // namespace
 
 MeridianPass pass_through(const Meridian& meridian, double arc_mm, double angle_rad,
-                          double slip_ratio, double station_mm, double longest_mm) {
+                          const HalfSlips& slip, double station_mm, double longest_mm) {
     const State start{arc_mm, 0.0, angle_rad};
     std::vector<MeridianStation> down;
     MeridianPass pass;
-    pass.lower = Follower(meridian, slip_ratio, -1.0).follow(start, station_mm, longest_mm, down);
+    pass.lower = Follower(meridian, slip.below, -1.0).follow(start, station_mm, longest_mm, down);
     pass.stations.assign(down.rbegin(), down.rend());
     pass.stations.pop_back();
     pass.upper =
-        Follower(meridian, slip_ratio, 1.0).follow(start, station_mm, longest_mm, pass.stations);
+        Follower(meridian, slip.above, 1.0).follow(start, station_mm, longest_mm, pass.stations);
     const double s0 = pass.stations.front().s_mm;
     for (MeridianStation& station : pass.stations) {
         station.s_mm -= s0;
     }
     return pass;
+}
+
+MeridianPass pass_through(const Meridian& meridian, double arc_mm, double angle_rad,
+                          double slip_ratio, double station_mm, double longest_mm) {
+    return pass_through(meridian, arc_mm, angle_rad, HalfSlips{slip_ratio, slip_ratio}, station_mm,
+                        longest_mm);
 }
 
 MeridianPass pass_from(const Meridian& meridian, double arc_mm, bool upward, double slip_ratio,

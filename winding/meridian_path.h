@@ -34,18 +34,29 @@ struct MeridianPass {
     [[nodiscard]] double length_mm() const { return stations.back().s_mm; }
 };
 
+/// Slip ratios of a path: one below the place that it goes through, one above.
+struct HalfSlips {
+    double below = 0.0;
+    double above = 0.0;
+};
+
 /// The path through a place, followed upward and downward to where it ends. Its law is
-/// kg = slip_ratio kn where kn > 0 and kg = 0 elsewhere, kg > 0 to the left of travel seen from
-/// outside; with the radius r and the meridian's slope psi,
+/// kg = slip kn where kn > 0 and kg = 0 elsewhere and near bridges over hollow edges, kg > 0 to the
+/// left of travel seen from outside; with the radius r and the meridian's slope psi,
 ///
 ///     d arc/ds = cos a,  d azimuth/ds = sin a / r,  da/ds = -sin(psi) sin(a) / r - kg,
 ///     kn = curvature cos(a)^2 + cos(psi) sin(a)^2 / r
 ///
-/// which for slip_ratio = 0 is Clairaut's r sin(a) = const. Fourth order in the step (Runge-Kutta,
+/// which for a slip of 0 is Clairaut's r sin(a) = const. Fourth order in the step (Runge-Kutta,
 /// a sixteenth of `station_mm`); ends are found to rounding. At a crease there are two stations,
 /// one on either side.
 /// \param arc_mm of the place, whose azimuth is 0 \param angle_rad there, 0 <= angle < pi / 2
 /// \param station_mm distance of stations, > 0 \param longest_mm of either half
+[[nodiscard]] MeridianPass pass_through(const Meridian& meridian, double arc_mm, double angle_rad,
+                                        const HalfSlips& slip, double station_mm,
+                                        double longest_mm);
+
+/// The same with one slip ratio all along.
 [[nodiscard]] MeridianPass pass_through(const Meridian& meridian, double arc_mm, double angle_rad,
                                         double slip_ratio, double station_mm, double longest_mm);
 

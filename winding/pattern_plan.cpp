@@ -10,9 +10,12 @@
 #include "core/parallel.h"
 #include "core/text_number.h"
 #include "core/units.h"
+#include "winding/aim_pass.h"
 #include "winding/hoop_path.h"
 #include "winding/measure_plan.h"
+#include "winding/regular_parts.h"
 #include "winding/revolution_pieces.h"
+#include "winding/steered_pass.h"
 
 namespace meshwind {
 namespace {
@@ -31,19 +34,20 @@ constexpr double kSlope_rad = 1e-4;
 constexpr double kClosed_rad = 1e-12;
 constexpr int kSecants = 60;
 
-// Turning radii are found by halving the winding angle, to 1e-9 of the radius: each takes a pass,
-// and two unequal ones the square of it.
-constexpr int kHalvings = 32;
-
 // A turn's dwell is found as an angle of up to 2 pi; this much keeps rounding from making none a
 // whole turn.
 constexpr double kLeastDwell_rad = 1e-9;
 
+// Share of the friction that steering from end to end takes: the rest is for bridges over hollow
+// edges and for jumps of curvature, which the fibre evens out.
+constexpr double kSteering = 0.9;
+
 // Share of the friction with which hoops turn into a helix and back: it is over in a few mm.
 constexpr double kHoopSteering = 0.5;
 
-// Openings that differ by less are turned at without steering.
-constexpr double kSameTurn_mm = 1e-6;
+// Turns at given radii at both ends are met to 1e-6 mm; with that a secant comes so near to the
+// turn of a circuit, and the slip stays as it is for what is left.
+constexpr double kNearlyClosed_rad = 1e-6;
 
 double positive_angle(double angle_rad) {
     const double rest = std::fmod(angle_rad, 2.0 * kPi);
@@ -75,10 +79,9 @@ public:
             lay_hoops();
             return std::move(plan_);
         }
-        if (options_.kind == PatternKind::Polar && !aim_at_openings()) {
+        if (options_.kind == PatternKind::Polar ? !aim_at_openings() : !aim_at_angle()) {
             return std::move(plan_);
         }
-        pass_ = pass(angle_rad_);
         if (!ends_hold() || !choose_pattern()) {
             return std::move(plan_);
         }
@@ -96,68 +99,63 @@ private:
     }
 
     [[nodiscard]] MeridianPass pass(double angle_rad) const {
-        return pass_through(meridian_, widest_mm_, angle_rad, slip_ratio_, kPatternStation_mm,
+        return pass_through(meridian_, widest_mm_, angle_rad, slip_, kPatternStation_mm,
                             kLongest_mm);
     }
 
-    // r sin(angle) where a pass stops: the radius at which it turns, or would.
-    static double turning_mm(const MeridianStation& stop) {
-        return stop.place.radius_mm * std::sin(stop.angle_rad);
+    // Where the band touches the opening of an end, or the pole.
+    [[nodiscard]] double touching_mm(std::size_t end) const {
+        const Rim* const rim = pieces_.rim_of(end);
+        return (rim != nullptr ? rim->radius_mm : 0.0) + 0.5 * options_.tow.width_mm;
     }
 
-    // Winding angle at which the lower end is turned at a radius.
-    [[nodiscard]] double angle_for_lower(double radius_mm) const {
-        double low = 0.0;
-        double high = 0.5 * kPi;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (low + high);
-            (turning_mm(pass(middle).stations.front()) < radius_mm ? low : high) = middle;
-        }
-        return 0.5 * (low + high);
+    // Helical: the steering with which a pass at the angle asked for comes to both ends.
+    bool aim_at_angle() {
+        const PassAim aim = aim_at_ends(body_, {.angle_rad = angle_rad_,
+                                                .most_slip = kSteering * options_.tow.friction,
+                                                .touching_mm = {touching_mm(0), touching_mm(1)}});
+        slip_ = aim.slip;
+        pass_ = pass(angle_rad_);
+        return aim.failure.empty() || fail(aim.failure);
     }
 
     // Polar: winding angle and steering with which the band touches the openings of both ends.
     bool aim_at_openings() {
-        std::array<double, 2> turn_mm{};
         for (std::size_t end = 0; end < 2; ++end) {
-            const Rim* const rim = pieces_.rim_of(end);
-            turn_mm[end] = (rim != nullptr ? rim->radius_mm : 0.0) + 0.5 * options_.tow.width_mm;
-            if (turn_mm[end] >= widest_radius_mm_) {
+            const double turn_mm = touching_mm(end);
+            if (turn_mm >= widest_radius_mm_) {
                 return fail("a polar winding turns round the openings, and the " +
                             std::string(end == 0 ? "lower" : "upper") +
                             " end has none that is smaller than the body: radius " +
-                            fixed(turn_mm[end], 1) + " of " + fixed(widest_radius_mm_, 1) +
+                            fixed(turn_mm, 1) + " of " + fixed(widest_radius_mm_, 1) +
                             " mm; use \"helical\"");
             }
         }
-        const auto upper_for = [&](double slip_ratio) {
-            slip_ratio_ = slip_ratio;
-            angle_rad_ = angle_for_lower(turn_mm[0]);
-            return turning_mm(pass(angle_rad_).stations.back());
-        };
-        const double straight_mm = upper_for(0.0);
-        if (std::abs(straight_mm - turn_mm[1]) < kSameTurn_mm) {
-            return true;
-        }
-        const double rising = upper_for(options_.tow.friction) - straight_mm;
-        double low = 0.0;
-        double high = (turn_mm[1] - straight_mm) * rising > 0.0 ? options_.tow.friction
-                                                                : -options_.tow.friction;
-        const double reached_mm = upper_for(high);
-        if ((reached_mm - straight_mm) * (turn_mm[1] - straight_mm) <
-            (turn_mm[1] - straight_mm) * (turn_mm[1] - straight_mm)) {
+        const SteeringFinding steering = between_openings(0.0);
+        if (!steering.found) {
             return fail("the openings are too different: with the friction of " +
-                        fixed(options_.tow.friction, 3) +
+                        fixed(kSteering * options_.tow.friction, 3) +
                         " a band that touches the lower one turns at radius " +
-                        fixed(reached_mm, 1) + " mm at the upper end, where " +
-                        fixed(turn_mm[1], 1) + " mm would touch it");
+                        fixed(steering.reached_mm, 1) + " mm at the upper end, where " +
+                        fixed(touching_mm(1), 1) + " mm would touch it");
         }
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (low + high);
-            const bool beyond = (upper_for(middle) - turn_mm[1]) * (turn_mm[1] - straight_mm) > 0.0;
-            (beyond ? high : low) = middle;
-        }
+        take(*steering.found);
         return true;
+    }
+
+    // From one opening to the other, each turned at farther off by so much.
+    [[nodiscard]] SteeringFinding between_openings(double off_mm) const {
+        return steer_between(meridian_, {.lower_mm = touching_mm(0) + off_mm,
+                                         .upper_mm = touching_mm(1) + off_mm,
+                                         .most_slip = kSteering * options_.tow.friction,
+                                         .station_mm = kPatternStation_mm,
+                                         .longest_mm = kLongest_mm});
+    }
+
+    void take(const SteeredPass& steered) {
+        slip_ = {steered.slip_ratio, steered.slip_ratio};
+        angle_rad_ = steered.angle_rad;
+        pass_ = steered.pass;
     }
 
     // Whether both ends of the pass can be turned at.
@@ -220,6 +218,15 @@ private:
         return turn;
     }
 
+    // r cos(angle) where bands lie farthest apart: without steering at the widest place.
+    [[nodiscard]] double sparsest_mm() const {
+        double sparsest = widest_radius_mm_ * std::cos(angle_rad_);
+        for (const MeridianStation& at : pass_.stations) {
+            sparsest = std::max(sparsest, at.place.radius_mm * std::cos(at.angle_rad));
+        }
+        return sparsest;
+    }
+
     bool choose_pattern() {
         const bool dwell = dwells(0) || dwells(1);
         CircuitToClose circuit;
@@ -227,7 +234,7 @@ private:
         circuit.most_change_rad = dwell ? 0.0 : most_change_rad();
         circuit.dwelling_ends = static_cast<int>(dwells(0)) + static_cast<int>(dwells(1));
         circuit.band_mm = options_.tow.width_mm;
-        circuit.mm_per_rad = widest_radius_mm_ * std::cos(angle_rad_);
+        circuit.mm_per_rad = sparsest_mm();
         circuit.layers =
             options_.lattice ? 1 : std::max(1, static_cast<int>(std::lround(options_.layers)));
         FoundPattern found;
@@ -246,7 +253,7 @@ private:
             if (!close_by_angle(pattern_.turn_rad)) {
                 return false;
             }
-            circuit.mm_per_rad = widest_radius_mm_ * std::cos(angle_rad_);
+            circuit.mm_per_rad = sparsest_mm();
         }
         if (options_.lattice) {
             lattice_ = laid_lattice(pattern_, circuit, *options_.lattice, options_.wish);
@@ -266,34 +273,54 @@ private:
         return std::min(kPi, 2.0 * std::abs(more - less) / (2.0 * kSlope_rad) * kMostAngle_rad);
     }
 
-    // The winding angle whose circuits turn the mandrel by just so much.
-    bool close_by_angle(double turn_rad) {
-        const auto excess = [&](double angle) {
-            pass_ = pass(angle);
-            return 2.0 * pass_.turn_rad() - turn_rad;
-        };
-        const double wanted = angle_rad_;
-        double a = wanted;
+    // Where `excess` is 0, from 0 on; it is left at what was asked last.
+    template <class Excess>
+    static bool find_root(const Excess& excess, double first, double most, double within) {
+        double a = 0.0;
         double fa = excess(a);
-        double b = wanted + (fa > 0.0 ? -1e-4 : 1e-4);
+        double b = fa > 0.0 ? -first : first;
         double fb = excess(b);
-        for (int i = 0; i < kSecants && std::abs(fb) > kClosed_rad && fb != fa; ++i) {
-            const double c = std::clamp(b - fb * (b - a) / (fb - fa), wanted - kMostAngle_rad,
-                                        wanted + kMostAngle_rad);
+        for (int i = 0; i < kSecants && std::abs(fb) > within && fb != fa; ++i) {
+            const double c = std::clamp(b - fb * (b - a) / (fb - fa), -most, most);
             a = b;
             fa = fb;
             b = c;
             fb = excess(b);
         }
-        if (std::abs(fb) > 1e3 * kClosed_rad || pass_.lower != MeridianStop::Hoop ||
-            pass_.upper != MeridianStop::Hoop) {
+        return std::abs(fb) <= within;
+    }
+
+    // The winding angle whose circuits turn the mandrel by just so much. Where a polar winding is
+    // steered, both turns give way by the same length first, and the slip with them.
+    bool close_by_angle(double turn_rad) {
+        const auto not_closed = [&, wanted = angle_rad_] {
             return fail("no winding angle within " + degrees(kMostAngle_rad) + " of " +
                         degrees(wanted) + " closes a pattern of " +
                         std::to_string(pattern_.circuits) +
                         " circuits; another angle or tow width would");
+        };
+        if (options_.kind == PatternKind::Polar && slip_.above != 0.0) {
+            const double most_mm = kMostAngle_rad * widest_radius_mm_ * std::cos(angle_rad_);
+            const auto by_turns = [&](double off_mm) {
+                const SteeringFinding steering = between_openings(off_mm);
+                if (steering.found) {
+                    take(*steering.found);
+                }
+                return 2.0 * pass_.turn_rad() - turn_rad;
+            };
+            if (!find_root(by_turns, kSlope_rad * widest_radius_mm_, most_mm, kNearlyClosed_rad)) {
+                return not_closed();
+            }
         }
-        angle_rad_ = b;
-        return true;
+        const double wanted = angle_rad_;
+        const auto by_angle = [&](double off_rad) {
+            angle_rad_ = wanted + off_rad;
+            pass_ = pass(angle_rad_);
+            return 2.0 * pass_.turn_rad() - turn_rad;
+        };
+        const bool closed = find_root(by_angle, kSlope_rad, kMostAngle_rad, 1e3 * kClosed_rad);
+        const bool turns = pass_.lower == MeridianStop::Hoop && pass_.upper == MeridianStop::Hoop;
+        return (closed && turns) || not_closed();
     }
 
     // Where the pattern may begin at an end.
@@ -369,9 +396,9 @@ private:
         LaidPattern& laid = plan_.pattern.emplace();
         laid.pattern = pattern_;
         laid.angle_rad = angle_rad_;
-        laid.slip_ratio = slip_ratio_;
+        laid.slip_ratio = std::abs(slip_.below) > std::abs(slip_.above) ? slip_.below : slip_.above;
         laid.closure_rad = closure_rad(plan_.pieces[connecting], turn[start], starts);
-        laid.band_offset_mm = pattern_.step_rad * widest_radius_mm_ * std::cos(angle_rad_);
+        laid.band_offset_mm = pattern_.step_rad * sparsest_mm();
         laid.interlacing = interlacing_of(pattern_, pass_.turn_rad(), turn[1 - start]);
         laid.starts_rad = starts;
         laid.lattice = lattice_;
@@ -463,14 +490,8 @@ private:
                 return at >= from_mm && at <= to_mm;
             };
         };
-        PlanZones zones{between(low_mm, high_mm), {}};
-        // A cylinder, but for where the band turns or ends.
-        const CylinderPart part = cylinder_at(meridian_, widest_mm_);
-        const double from_mm = std::max(part.from_mm, low_mm) + 2.0 * options_.tow.width_mm;
-        const double to_mm = std::min(part.to_mm, high_mm) - 2.0 * options_.tow.width_mm;
-        if (from_mm < to_mm) {
-            zones.regular = between(from_mm, to_mm);
-        }
+        PlanZones zones{between(low_mm, high_mm), {}, {}};
+        regular_parts(body_, pass_, {low_mm, high_mm}, options_.tow.width_mm, zones);
         measure_plan(mandrel_.surface, mandrel_.surface, options_.tow.width_mm, options_.seed,
                      zones, plan_);
     }
@@ -483,8 +504,8 @@ private:
     RevolutionPieces pieces_;
     double widest_mm_ = 0.0;
     double widest_radius_mm_ = 0.0;
-    double angle_rad_ = 0.0;   // at the widest place
-    double slip_ratio_ = 0.0;  // of the passes
+    double angle_rad_ = 0.0;  // at the widest place
+    HalfSlips slip_;          // of the passes
     MeridianPass pass_;
     Pattern pattern_;
     PatternBegin begin_;  // where the first circuit or ply begins

@@ -38,7 +38,7 @@ struct CircuitToClose {
     double most_change_rad = 0.0;  ///< by which the circuit itself may give way
     int dwelling_ends = 0;         ///< 0 .. 2: ends at which the fibre can dwell
     double band_mm = 6.0;          ///< > 0: width of the tow
-    double mm_per_rad = 1.0;       ///< > 0: across the bands, R cos(alpha) at the widest place
+    double mm_per_rad = 1.0;       ///< > 0: across the bands, R cos(alpha) where it is most
     int layers = 1;                ///< >= 1
 };
 

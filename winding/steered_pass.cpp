@@ -6,6 +6,8 @@
 
 #include <boost/math/tools/roots.hpp>
 
+#include "winding/hollow_edges.h"
+
 namespace meshwind {
 namespace {
 
@@ -32,8 +34,13 @@ constexpr std::uintmax_t kRootSteps = 100;
 // A path between two nodes of the meridian.
 class Stretch {
 public:
-    Stretch(const Meridian& meridian, double from_mm, double to_mm, double slip_ratio)
-        : meridian_(meridian), from_mm_(from_mm), to_mm_(to_mm), slip_ratio_(slip_ratio) {}
+    Stretch(const Meridian& meridian, const HollowEdges& hollow, double from_mm, double to_mm,
+            double slip_ratio)
+        : meridian_(meridian),
+          hollow_(hollow),
+          from_mm_(from_mm),
+          to_mm_(to_mm),
+          slip_ratio_(slip_ratio) {}
 
     [[nodiscard]] MeridianPlace place(double arc_mm) const {
         // At a crease the meridian answers for the piece behind it.
@@ -59,12 +66,16 @@ private:
         const MeridianPlace at = place(arc_mm);
         const double c = std::min(c_mm, at.radius_mm);
         const double sine = at.radius_mm > 0.0 ? c / at.radius_mm : 1.0;
+        if (hollow_.near_bridge(at, arc_mm, std::asin(sine), 1.0)) {
+            return 0.0;
+        }
         const double bent = at.curvature_per_mm * (1.0 - sine * sine) * at.radius_mm;
         const double round = std::cos(at.slope_rad) * sine * sine;
         return -slip_ratio_ * std::max(bent + round, 0.0);
     }
 
     const Meridian& meridian_;
+    const HollowEdges& hollow_;
     double from_mm_;
     double to_mm_;
     double slip_ratio_;
@@ -199,8 +210,9 @@ SteeredEnd steer_from(const Meridian& meridian, double arc_mm, double turning_mm
     if (arc_mm == to_arc_mm) {
         return at;
     }
+    const HollowEdges hollow(meridian);
     for (const double to_mm : ways(meridian, arc_mm, to_arc_mm)) {
-        if (follow(Stretch(meridian, at.arc_mm, to_mm, slip_ratio), to_mm, at)) {
+        if (follow(Stretch(meridian, hollow, at.arc_mm, to_mm, slip_ratio), to_mm, at)) {
             break;
         }
     }

@@ -119,6 +119,53 @@ class Pattern(program.ProgramTest):
                          code=1)
         self.assertIn("close the wall", wide["plan"]["failure"])
 
+    def expect_even(self, report):
+        plan = report["plan"]
+        self.assertEqual(plan["planner"], "pattern")
+        self.assertEqual(plan["fibres"], 1)
+        coverage = plan["coverage"]
+        self.assertGreater(coverage["fraction"], 0.995 * coverage["reachable"])
+        self.assertLess(coverage["regular_cv"], 0.02)
+        self.assertLess(plan["pattern"]["closure_deg"], 0.01)
+        for name, check in report["checks"].items():
+            self.assertTrue(check["ok"], name)
+
+    # A geodesic would turn on the cone: it is steered to the narrow rim.
+    def test_a_cone(self):
+        report = self.wind(self.make("cone"), {"kind": "auto"})
+        self.expect_even(report)
+        self.assertGreater(report["plan"]["coverage"]["fraction"], 0.999)
+        self.assertGreater(abs(report["plan"]["pattern"]["slip_ratio"]), 0.0)
+
+    # Over a sharp edge and over a hollow one, a rim at one end and a dome at the other.
+    def test_combinations(self):
+        other = ("--radius1", "50", "--length1", "100", "--cone-length", "50", "--radius2", "35",
+                 "--length2", "60", "--dome-height", "25", "--opening-radius", "12")
+        for shape in ((), other):
+            with self.subTest(shape):
+                report = self.wind(self.make("combination", *shape), {"kind": "auto"})
+                self.expect_even(report)
+                self.assertGreater(report["plan"]["coverage"]["fraction"], 0.98)
+                self.assertEqual(report["plan"]["turns"][1]["turns"], 0)
+
+    # The band touches both openings, by a constant slip from one to the other.
+    def test_a_vessel_with_unequal_openings(self):
+        vessel = self.make("vessel", "--opening-radius", "15", "--upper-opening-radius", "25")
+        report = self.wind(vessel, {"kind": "polar"})
+        self.expect_even(report)
+        self.assertGreater(report["plan"]["coverage"]["fraction"], 0.99)
+        slip = abs(report["plan"]["pattern"]["slip_ratio"])
+        self.assertGreater(slip, 0.03)
+        self.assertLess(slip, 0.9 * 0.96 * 0.2)
+
+    def test_says_how_far_friction_leads(self):
+        report = self.wind(self.make("cone"), {"kind": "helical", "angle": 55.0}, code=1,
+                           tow={"friction": 0.1})
+        self.assertIn("a friction of 0.136 would do", report["plan"]["failure"])
+        vessel = self.make("vessel", "--opening-radius", "15", "--upper-opening-radius", "60")
+        report = self.wind(vessel, {"kind": "polar"}, code=1)
+        self.assertIn("the openings are too different", report["plan"]["failure"])
+
     def test_says_why_not(self):
         pipe = self.make("cylinder", "--radius", "40", "--length", "200", "--edge", "6")
         report = self.wind(pipe, {"kind": "helical", "angle": 20.0}, code=1)

@@ -97,6 +97,27 @@ TEST(SteerFrom, AGeodesicOnAConeTurnsWhereTheStraightLineIsNearestToTheTip) {
     EXPECT_NEAR(meridian.at(end.arc_mm).radius_mm, c, 1e-7);
 }
 
+// A taut string over the edge of a cone on a narrower cylinder has no friction to be steered by.
+TEST(SteerFrom, BesideAHollowEdgeNothingIsSteered) {
+    const Meridian meridian({{.radius_mm = 60.0, .z_mm = 0.0, .straight = true},
+                             {.radius_mm = 40.0, .z_mm = 60.0, .straight = true},
+                             {.radius_mm = 40.0, .z_mm = 140.0}});
+    ASSERT_EQ(meridian.creases_mm().size(), 1U);
+    const double crease = meridian.creases_mm()[0];
+    const double sine = std::sin(rad_from_deg(60.0));
+    const double kink = std::atan2(20.0, 60.0);
+    // Along the meridian: on the cylinder kink cos(a)^2 / (2 kn).
+    const double half = 0.5 * kink * (1.0 - sine * sine) * 40.0 / (sine * sine);
+    const double c = 40.0 * sine;
+    const auto after = [&](double arc_mm) {
+        return steer_from(meridian, crease, c, 0.15, crease + arc_mm).turning_mm;
+    };
+    EXPECT_EQ(after(half), c);
+    EXPECT_LT(after(2.0 * half), c);
+    EXPECT_NEAR(40.0 / after(60.0), 1.0 / sine + 0.15 * (60.0 - 1.5 * half) / 40.0,
+                0.15 * 0.25 / 40.0);
+}
+
 TEST(NarrowPlace, IsTheNearestToTheWidest) {
     const Meridian sphere = capsule(0.0);
     const auto low = narrow_place_mm(sphere, 25.0, false);
