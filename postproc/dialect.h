@@ -25,8 +25,8 @@ struct ProgramHeader {
     std::string job_digest{};
     double fibre_length_mm = 0.0;
     std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
-    /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is where
-    /// it lies already.
+    /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is
+    /// where it lies already.
     std::string goes_on_from{};
     std::vector<std::string> notes{};  ///< a line each, e.g. that a failed check was overruled
 };

@@ -187,7 +187,8 @@ std::vector<double> build_up_mm(const Surface& surface, std::span<const double> 
     }
     Eigen::VectorXd thickness = laid.cwiseQuotient(mass);
     for (int step = 0; step < kDiffusionSteps; ++step) {
-        const Eigen::VectorXd held = mass.cwiseProduct(thickness);  // the solver would write over it
+        const Eigen::VectorXd held =
+            mass.cwiseProduct(thickness);  // the solver would write over it
         thickness = solver.solve(held);
     }
     // Obtuse triangles may undershoot by a little beside what is bare.

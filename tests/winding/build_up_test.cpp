@@ -33,6 +33,10 @@ Wound wound(const char* kind, const MakeValues& values, PatternOptions options) 
     return {std::move(mandrel), std::move(body), std::move(plan)};
 }
 
+double circuits_of(const Wound& wound) {
+    return static_cast<double>(wound.plan.pattern->pattern.circuits);
+}
+
 double volume_mm3(const Surface& surface, const std::vector<double>& thickness_mm) {
     double sum = 0.0;
     for (const auto& [a, b, c] : surface.face) {
@@ -50,7 +54,7 @@ double volume_mm3(const Surface& surface, const std::vector<double>& thickness_m
 // 2 N bands of w / cos(angle) of the circumference, everywhere.
 TEST(BuildUp, IsEvenOnACylinder) {
     const Wound w = wound("cylinder", {{"radius", 40.0}, {"length", 150.0}}, {});
-    const double expected = kThickness_mm * 2.0 * w.plan.pattern->pattern.circuits * kTow.width_mm /
+    const double expected = kThickness_mm * 2.0 * circuits_of(w) * kTow.width_mm /
                             (2.0 * kPi * 40.0 * std::cos(w.plan.pattern->angle_rad));
     for (const double t : regular_build_up_mm(w.mandrel.surface, w.body, w.plan.pieces,
                                               kTow.width_mm, kThickness_mm)) {
@@ -77,8 +81,7 @@ TEST(BuildUp, FollowsClairautOnADome) {
         if (r < 2.5 * clairaut) {
             continue;
         }
-        const double expected = kThickness_mm * 2.0 * w.plan.pattern->pattern.circuits *
-                                kTow.width_mm /
+        const double expected = kThickness_mm * 2.0 * circuits_of(w) * kTow.width_mm /
                                 (2.0 * kPi * std::sqrt(r * r - clairaut * clairaut));
         EXPECT_NEAR(thickness[v], expected, 0.01 * expected);
         ++compared;
