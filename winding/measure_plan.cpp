@@ -49,6 +49,14 @@ void measure_regular(const PlanZones& zones, const CoverageSamples& samples,
                      std::span<const std::int32_t> layers, double tow_width_mm,
                      Coverage& coverage) {
     const NearestPoints points(samples.position_mm);
+    std::vector<double> meant(samples.size(), 1.0);  // each is asked for many times
+    if (zones.meant) {
+        parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                meant[i] = zones.meant(samples.position_mm[i]);
+            }
+        });
+    }
     std::vector<double> mean(samples.size(), -1.0);
     std::vector<double> share(samples.size(), -1.0);  // of what is meant
     parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
@@ -57,16 +65,16 @@ void measure_regular(const PlanZones& zones, const CoverageSamples& samples,
                 continue;
             }
             double sum = 0.0;
-            double meant = 0.0;
+            double meant_sum = 0.0;
             const std::vector<std::int32_t> near =
                 points.within(samples.position_mm[i], tow_width_mm);
             for (const std::int32_t n : near) {
                 const auto k = static_cast<std::size_t>(n);
                 sum += layers[k];
-                meant += zones.meant ? zones.meant(samples.position_mm[k]) : 1.0;
+                meant_sum += meant[k];
             }
             mean[i] = sum / static_cast<double>(near.size());
-            share[i] = sum / meant;
+            share[i] = sum / meant_sum;
         }
     });
     double n = 0.0;
