@@ -223,11 +223,7 @@ private:
         };
         cover.refused = options_.refused;
         cover.progress = [this](const char* step, double share) { options_.progress(step, share); };
-        Plan plan = plan_cover(setup_.mandrel, *setup_.obstacles, cover);
-        if (options_.before != nullptr) {
-            plan.cut_because = "courses that cover are not led on from another layer";
-        }
-        return plan;
+        return plan_cover(setup_.mandrel, *setup_.obstacles, cover);
     }
 
     const Setup& setup_;
