@@ -171,6 +171,7 @@ std::vector<double> build_up_mm(const Surface& surface, std::span<const double> 
     const double spread = spread_mm(surface, tow_width_mm);
     const double time_mm2 = spread * spread / 6.0 / kDiffusionSteps;
     std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(stiffness.size() + static_cast<std::size_t>(n));
     for (const Eigen::Triplet<double>& entry : stiffness) {
         entries.emplace_back(entry.row(), entry.col(), time_mm2 * entry.value());
     }
