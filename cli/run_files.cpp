@@ -13,21 +13,21 @@ std::string layer_suffix(std::size_t layer) {
 }
 
 std::string suffix_of(const std::filesystem::path& program) {
-    static const std::regex suffix("(-layer-[0-9]+)?(-[0-9]+)?$");
+    static const std::regex kSuffix("(-layer-[0-9]+)?(-[0-9]+)?$");
     const std::string stem = program.stem().string();
     std::smatch found;
-    return std::regex_search(stem, found, suffix) ? found.str() : "";
+    return std::regex_search(stem, found, kSuffix) ? found.str() : "";
 }
 
 bool is_run_file(const std::filesystem::path& name, std::string_view program_extension) {
-    static const std::regex table("(path|motion)(-layer-[0-9]+)?(-[0-9]+)?\\.csv");
-    static const std::regex program("program(-layer-[0-9]+)?(-[0-9]+)?");
-    static const std::regex mandrel("mandrel-layer-[0-9]+\\.obj");
+    static const std::regex kTable("(path|motion)(-layer-[0-9]+)?(-[0-9]+)?\\.csv");
+    static const std::regex kProgram("program(-layer-[0-9]+)?(-[0-9]+)?");
+    static const std::regex kMandrel("mandrel-layer-[0-9]+\\.obj");
     const std::string text = name.filename().string();
-    return text == "layup.vtu" || std::regex_match(text, table) ||
-           std::regex_match(text, mandrel) ||
+    return text == "layup.vtu" || std::regex_match(text, kTable) ||
+           std::regex_match(text, kMandrel) ||
            (name.extension() == program_extension &&
-            std::regex_match(name.stem().string(), program));
+            std::regex_match(name.stem().string(), kProgram));
 }
 
 }  // namespace meshwind
