@@ -106,4 +106,7 @@ struct Job {
 /// give equal text. Reads back as the same job.
 [[nodiscard]] std::string job_text(const Job& job);
 
+/// As the job file says it.
+[[nodiscard]] std::string_view name_of(LayerKind kind);
+
 }  // namespace meshwind

@@ -450,7 +450,7 @@ std::string layers_text(std::span<const LayerJob> layers) {
     std::string text = "[";
     for (const LayerJob& layer : layers) {
         text += text.size() > 1 ? ",\n             {" : "{";
-        append_member(text, "kind", json_string(word_of(layer.kind, kLayerWords)));
+        append_member(text, "kind", json_string(name_of(layer.kind)));
         if (layer.angle_deg) {
             append_member(text, "angle", *layer.angle_deg);
         }
@@ -518,6 +518,10 @@ Job parse_job(std::string_view text, const std::string& name) {
 
 Job read_job(const std::filesystem::path& file) {
     return job_of(JsonDocument::load(file.string()));
+}
+
+std::string_view name_of(LayerKind kind) {
+    return word_of(kind, kLayerWords);
 }
 
 std::string job_text(const Job& job) {

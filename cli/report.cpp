@@ -302,10 +302,6 @@ json import_report(const ImportFit& fit) {
             {"limit_mm", report_number(fit.limit_mm)}};
 }
 
-std::string percent(double share) {
-    return fixed(100.0 * share, 2) + " %";
-}
-
 // Where the motion of least time is asked for and could not be had.
 void print_first_motions(std::ostream& out, const WoundLayer& layer) {
     const std::vector<FibreProgram>& programs = layer.programs;

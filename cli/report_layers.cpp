@@ -1,7 +1,6 @@
 #include "cli/report_layers.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <string>
@@ -21,20 +20,6 @@ using nlohmann::json;
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kMm3PerCm3 = 1000.0;
-
-const char* word_of(LayerKind kind) {
-    constexpr std::array<const char*, 7> kWords = {"auto",  "helical",  "hoop",   "polar",
-                                                   "cover", "imported", "lattice"};
-    return kWords[static_cast<std::size_t>(kind)];
-}
-
-double area_mm2(const Surface& surface, std::size_t f) {
-    const auto& [a, b, c] = surface.face[f];
-    const Eigen::Vector3d& p = surface.position_mm[static_cast<std::size_t>(a)];
-    const Eigen::Vector3d& q = surface.position_mm[static_cast<std::size_t>(b)];
-    const Eigen::Vector3d& r = surface.position_mm[static_cast<std::size_t>(c)];
-    return 0.5 * (q - p).cross(r - p).norm();
-}
 
 // The layers of all plans per face of the first surface, whose triangles the others keep.
 std::vector<double> all_layers(const WindResult& result) {
@@ -56,7 +41,7 @@ json coverage_report(const WindResult& result) {
     double squares = 0.0;
     double most = 0.0;
     for (std::size_t f = 0; f < layers.size(); ++f) {
-        const double face = area_mm2(surface, f);
+        const double face = area_mm2(surface.position_mm, surface.face[f]);
         area += face;
         covered += face * std::min(1.0, layers[f]);
         sum += face * layers[f];
@@ -117,7 +102,7 @@ LayerFigures figures_of(const WoundLayer& layer) {
     figures.angle_rad = plan.pattern ? plan.pattern->angle_rad : plan.angle.mean_rad;
     double area = 0.0;
     for (std::size_t f = 0; f < surface.face.size() && !layer.build_up_mm.empty(); ++f) {
-        const double third = area_mm2(surface, f) / 3.0;
+        const double third = area_mm2(surface.position_mm, surface.face[f]) / 3.0;
         for (const std::int32_t v : surface.face[f]) {
             area += third;
             figures.mean_thickness_mm += third * layer.build_up_mm[static_cast<std::size_t>(v)];
@@ -154,7 +139,7 @@ void add_laminate_report(json& report, const WindResult& result) {
         }
         json row = {
             {"layer", i + 1},
-            {"kind", word_of(layer.job.kind)},
+            {"kind", name_of(layer.job.kind)},
             {"mandrel", i == 0 ? layer.setup.mandrel.file : "mandrel" + layer_suffix(i) + ".obj"},
             {"goes_on", layer.plan.goes_on}};
         if (!layer.plan.cut_because.empty()) {
@@ -188,7 +173,7 @@ void print_laminate(std::ostream& out, const WindResult& result) {
     for (std::size_t i = 0; i < result.layers.size(); ++i) {
         const WoundLayer& layer = result.layers[i];
         const LayerFigures figures = figures_of(layer);
-        print_row(out, std::to_string(i + 1) + " " + word_of(layer.job.kind),
+        print_row(out, std::to_string(i + 1) + " " + std::string(name_of(layer.job.kind)),
                   fixed(deg_from_rad(figures.angle_rad), 2), figures);
     }
     print_row(out, "all", "", figures_of_all(result));

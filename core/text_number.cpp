@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/units.h"
+
 namespace meshwind {
 
 void append_fixed(std::string& text, double value, int decimals) {
@@ -36,6 +38,14 @@ std::string fixed(double value, int decimals) {
     std::string text;
     append_fixed(text, value, decimals);
     return text;
+}
+
+std::string degrees(double angle_rad, int decimals) {
+    return fixed(deg_from_rad(angle_rad), decimals) + " deg";
+}
+
+std::string percent(double share, int decimals) {
+    return fixed(100.0 * share, decimals) + " %";
 }
 
 }  // namespace meshwind

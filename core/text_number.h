@@ -15,4 +15,10 @@ void append_shortest(std::string& text, double value);
 /// `append_fixed` on an empty string.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
+/// "54.74 deg". \pre angle_rad is finite
+[[nodiscard]] std::string degrees(double angle_rad, int decimals = 2);
+
+/// "12.50 %" of a share of 0.125. \pre share is finite
+[[nodiscard]] std::string percent(double share, int decimals = 2);
+
 }  // namespace meshwind

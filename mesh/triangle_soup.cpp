@@ -4,13 +4,18 @@
 
 namespace meshwind {
 
+double area_mm2(const std::vector<Eigen::Vector3d>& points_mm,
+                const std::array<std::int32_t, 3>& face) {
+    const Eigen::Vector3d& origin = points_mm[static_cast<std::size_t>(face[0])];
+    return 0.5 * (points_mm[static_cast<std::size_t>(face[1])] - origin)
+                     .cross(points_mm[static_cast<std::size_t>(face[2])] - origin)
+                     .norm();
+}
+
 double area_mm2(const TriangleSoup& soup) {
     double area = 0.0;
-    for (const auto& [a, b, c] : soup.faces) {
-        const Eigen::Vector3d& origin = soup.points_mm[static_cast<std::size_t>(a)];
-        area += 0.5 * (soup.points_mm[static_cast<std::size_t>(b)] - origin)
-                          .cross(soup.points_mm[static_cast<std::size_t>(c)] - origin)
-                          .norm();
+    for (const auto& face : soup.faces) {
+        area += area_mm2(soup.points_mm, face);
     }
     return area;
 }

@@ -14,6 +14,10 @@ struct TriangleSoup {
     std::vector<std::array<std::int32_t, 3>> faces;  ///< m x 3, counter-clockwise seen from outside
 };
 
+/// Area in mm^2 of one face.
+[[nodiscard]] double area_mm2(const std::vector<Eigen::Vector3d>& points_mm,
+                              const std::array<std::int32_t, 3>& face);
+
 /// Area in mm^2 of all faces.
 [[nodiscard]] double area_mm2(const TriangleSoup& soup);
 

@@ -43,14 +43,6 @@ StudyMandrel made_study(const std::string& kind, const MakeValues& values, doubl
     return study;
 }
 
-double area_mm2(const TriangleSoup& soup, std::size_t face) {
-    const auto& [a, b, c] = soup.faces[face];
-    const Vector3d& p = soup.points_mm[static_cast<std::size_t>(a)];
-    return 0.5 * (soup.points_mm[static_cast<std::size_t>(b)] - p)
-                     .cross(soup.points_mm[static_cast<std::size_t>(c)] - p)
-                     .norm();
-}
-
 }  // namespace
 
 StudyMandrel cylinder_study(double radius_mm) {
@@ -126,7 +118,7 @@ std::vector<CurveState> random_starts(const StudyMandrel& mandrel, int count, st
     std::vector<double> total_mm2(soup.faces.size());
     double sum = 0.0;
     for (std::size_t f = 0; f < soup.faces.size(); ++f) {
-        sum += area_mm2(soup, f);
+        sum += area_mm2(soup.points_mm, soup.faces[f]);
         total_mm2[f] = sum;
     }
     std::vector<CurveState> starts;

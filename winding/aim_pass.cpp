@@ -25,10 +25,6 @@ constexpr double kNoFriction = 1.0;
 // Relative: a slip is in proportion to this much of the room that is left.
 constexpr double kSameRadius_mm = 1e-9;
 
-std::string degrees(double angle_rad) {
-    return fixed(deg_from_rad(angle_rad), 1) + " deg";
-}
-
 // From the widest place to one end.
 class Half {
 public:
@@ -96,7 +92,7 @@ public:
         if (reached(at)) {
             return {};
         }
-        const std::string how = "a fibre at " + degrees(task_.angle_rad) +
+        const std::string how = "a fibre at " + degrees(task_.angle_rad, 1) +
                                 ", steered with all of the friction of " +
                                 fixed(task_.most_slip, 3) + ", ";
         const MeridianPlace place = meridian_.at(at.arc_mm);
@@ -106,7 +102,7 @@ public:
                       fixed(place.z_mm, 1) + " mm, before the " + name() + (rim_ ? " rim" : " end")
                 : "comes to the " + name() + " rim at " +
                       degrees(std::asin(std::min(1.0, at.turning_mm / place.radius_mm))) +
-                      ", more than " + degrees(std::max(kRim_rad, task_.angle_rad));
+                      ", more than " + degrees(std::max(kRim_rad, task_.angle_rad), 1);
         return how + where + "; " + what_would();
     }
 
@@ -125,7 +121,7 @@ private:
                 const double middle = 0.5 * (good + bad);
                 (reaches(task_.most_slip, middle) ? good : bad) = middle;
             }
-            words += (words.empty() ? "an angle of " : ", or an angle of ") + degrees(good) +
+            words += (words.empty() ? "an angle of " : ", or an angle of ") + degrees(good, 1) +
                      (words.empty() ? " would do" : "");
         }
         return words.empty() ? "no angle and no friction would do" : words;

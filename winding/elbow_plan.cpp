@@ -32,10 +32,6 @@ constexpr double kLastAngle_deg = 82.0;
 // Rims that lean by more than this are no ends of a leg: turns are laid on a coaxial cylinder.
 constexpr double kMostLean_rad = rad_from_deg(1.0);
 
-std::string degrees(double angle_rad) {
-    return fixed(deg_from_rad(angle_rad), 2) + " deg";
-}
-
 class ElbowPlanner {
 public:
     ElbowPlanner(const Mandrel& mandrel, const Tube& tube, const ElbowPlanOptions& options)
@@ -192,16 +188,8 @@ private:
             for (std::size_t end = 0; end < 2; ++end) {
                 const RimCrossing over = crossing(line, end, false);
                 if (!can_turn(rim_at(end), over, rule_)) {
-                    return "over rim " + std::to_string(tube_.rim[end]) + " the fibre runs at " +
-                           degrees(over.angle_rad) +
-                           " to the axis, and to turn it by a friction of " +
-                           fixed(rule_.friction, 3) + " takes " +
-                           fixed(
-                               turn_run_mm(rim_at(end).radius_mm, over.angle_rad, rule_.friction) +
-                                   rule_.band_mm,
-                               1) +
-                           " mm of extension where there are " + fixed(rule_.extension_mm, 1) +
-                           "; a larger angle, more friction or a longer extension would do";
+                    return why_no_turn("rim " + std::to_string(tube_.rim[end]), rim_at(end), over,
+                                       rule_);
                 }
             }
         }

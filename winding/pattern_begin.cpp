@@ -19,10 +19,6 @@ constexpr double kConnecting = 0.7;
 // A fibre along a parallel: the sine of its angle to the meridian.
 constexpr double kAlong = 1.0 - 1e-5;
 
-// A turn's dwell is found as an angle of up to 2 pi; this much keeps rounding from making none a
-// whole turn.
-constexpr double kLeastDwell_rad = 1e-9;
-
 class Beginner {
 public:
     Beginner(const Meridian& meridian, const RevolutionPieces& pieces,

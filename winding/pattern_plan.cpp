@@ -34,10 +34,6 @@ constexpr double kSlope_rad = 1e-4;
 constexpr double kClosed_rad = 1e-12;
 constexpr int kSecants = 60;
 
-// A turn's dwell is found as an angle of up to 2 pi; this much keeps rounding from making none a
-// whole turn.
-constexpr double kLeastDwell_rad = 1e-9;
-
 // Share of the friction that steering from end to end takes: the rest is for bridges over hollow
 // edges and for jumps of curvature, which the fibre evens out.
 constexpr double kSteering = 0.9;
@@ -52,10 +48,6 @@ constexpr double kNearlyClosed_rad = 1e-6;
 double positive_angle(double angle_rad) {
     const double rest = std::fmod(angle_rad, 2.0 * kPi);
     return rest < 0.0 ? rest + 2.0 * kPi : rest;
-}
-
-std::string degrees(double angle_rad) {
-    return fixed(deg_from_rad(angle_rad), 2) + " deg";
 }
 
 class PatternPlanner {
@@ -177,15 +169,7 @@ private:
             }
             const RimCrossing crossing = crossing_of(end);
             if (!can_turn(*rim, crossing, rule_)) {
-                const double run_mm =
-                    turn_run_mm(rim->radius_mm, crossing.angle_rad, options_.tow.friction) +
-                    options_.tow.width_mm;
-                return fail("over the " + name + " rim the fibre runs at " +
-                            degrees(crossing.angle_rad) +
-                            " to the axis, and to turn it by a friction of " +
-                            fixed(options_.tow.friction, 3) + " takes " + fixed(run_mm, 1) +
-                            " mm of extension where there are " + fixed(rule_.extension_mm, 1) +
-                            "; a larger angle, more friction or a longer extension would do");
+                return fail(why_no_turn("the " + name + " rim", *rim, crossing, rule_));
             }
         }
         return true;

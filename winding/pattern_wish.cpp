@@ -25,14 +25,6 @@ constexpr std::size_t kTold = 5;
 // Share of a band that is no gap, and of a step that is no crossing: rounding.
 constexpr double kNothing = 1e-9;
 
-std::string degrees(double angle_rad) {
-    return fixed(deg_from_rad(angle_rad), 2) + " deg";
-}
-
-std::string percent(double share) {
-    return fixed(100.0 * share, 1) + " %";
-}
-
 const char* word_of(BandOrder order) {
     return order == BandOrder::Leading ? "leading" : "lagging";
 }
@@ -249,7 +241,7 @@ private:
             const Pattern p = as_laid(patterns[i]);
             words += (i == 0 ? " " : "; ") + std::to_string(p.circuits) + " circuits, " +
                      std::to_string(p.starts) + " starts " + word_of(p.order) + ", overlap " +
-                     percent(p.overlap) + ", dwell " + degrees(p.dwell_rad) + " a circuit";
+                     percent(p.overlap, 1) + ", dwell " + degrees(p.dwell_rad) + " a circuit";
         }
         return words;
     }
@@ -266,7 +258,7 @@ private:
             words += std::string(", ") + word_of(*asked.order);
         }
         if (asked.circuits == 0 || wish_.most_overlap) {
-            words += ", overlap up to " + percent(asked.most_overlap);
+            words += ", overlap up to " + percent(asked.most_overlap, 1);
         }
         if (circuit_.dwelling_ends > 0) {
             words += ", dwell of " + degrees(asked.least_dwell_rad) + " to " +

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/text_number.h"
 #include "core/units.h"
 
 namespace meshwind {
@@ -151,6 +152,21 @@ bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule)
     return crossing.angle_rad > 0.0 && crossing.angle_rad <= kMaxTurnAngle_rad &&
            turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) <=
                usable_run_mm(rule);
+}
+
+std::string why_no_turn(const std::string& rim_words, const Rim& rim, const RimCrossing& crossing,
+                        const TurnRule& rule) {
+    const std::string begin = "over " + rim_words + " the fibre runs at " +
+                              degrees(crossing.angle_rad) + " to the axis, ";
+    if (crossing.angle_rad <= 0.0 || crossing.angle_rad > kMaxTurnAngle_rad) {
+        return begin + "and a turn begins between 0 and " + degrees(kMaxTurnAngle_rad);
+    }
+    const double needed_mm =
+        turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) +
+        0.5 * rule.band_mm;
+    return begin + "and to turn it by a friction of " + fixed(rule.friction, 3) + " takes " +
+           fixed(needed_mm, 1) + " mm of extension where there are " + fixed(rule.extension_mm, 1) +
+           "; a larger angle, more friction or a longer extension would do";
 }
 
 double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "geodesic/surface_path.h"
@@ -17,6 +18,10 @@ struct RimCrossing {
     double angle_rad = 0.0;    ///< beta between fibre and axis, 0 = axial, pi/2 = hoop
     int sense = 0;             ///< +1 when the fibre leaves the mandrel counter-clockwise, else -1
 };
+
+/// A dwell is found as an angle of up to 2 pi; so much of it keeps rounding from making no dwell a
+/// whole turn.
+inline constexpr double kLeastDwell_rad = 1e-9;
 
 struct TurnRule {
     double friction = 0.2;        ///< |slip ratio| that holds
@@ -44,6 +49,11 @@ struct TurnRule {
 
 /// True when the fibre can be turned by friction within the extension.
 [[nodiscard]] bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule);
+
+/// In words what a turn takes that is not there. \param rim_words "the upper rim"
+/// \pre can_turn is false
+[[nodiscard]] std::string why_no_turn(const std::string& rim_words, const Rim& rim,
+                                      const RimCrossing& crossing, const TurnRule& rule);
 
 /// A turn from one course's end to another's start at the same rim.
 struct Turn {
