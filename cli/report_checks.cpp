@@ -48,6 +48,23 @@ double report_number(double value) {
     return result == 0.0 ? 0.0 : result;
 }
 
+namespace {
+
+json place_report(const CheckPlace& place) {
+    json position = json::array();
+    for (const double x : place.position_mm) {
+        position.push_back(report_number(x));
+    }
+    json report = {
+        {"position_mm", position}, {"fibre", place.fibre + 1}, {"layer", place.layer + 1}};
+    if (place.block) {
+        report["block"] = *place.block;
+    }
+    return report;
+}
+
+}  // namespace
+
 json checks_report(const std::vector<Check>& checks) {
     json report = json::object();
     for (const Check& check : checks) {
@@ -59,6 +76,9 @@ json checks_report(const std::vector<Check>& checks) {
         }
         if (!check.ok) {
             entry["words"] = check.words;
+        }
+        if (check.place) {
+            entry["place"] = place_report(*check.place);
         }
         report[check.name] = entry;
     }

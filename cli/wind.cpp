@@ -5,13 +5,15 @@
 #include <utility>
 
 #include "cli/digest.h"
+#include "cli/layup_totals.h"
 #include "cli/layup_vtu.h"
 #include "cli/output_files.h"
+#include "cli/page_data.h"
 #include "cli/report.h"
+#include "cli/report_page.h"
 #include "cli/run_files.h"
 #include "core/error.h"
 #include "core/text_file.h"
-#include "core/units.h"
 #include "machines/eye_inverse.h"
 #include "mesh/export.h"
 #include "mesh/revolution.h"
@@ -104,29 +106,17 @@ std::string layer_words(std::size_t layer) {
 
 // The first layer's surface with what all of them put there, and the thickness of each.
 std::string layup_of(const std::vector<WoundLayer>& layers) {
-    const Setup& setup = layers.front().setup;
-    const Surface& surface = setup.mandrel.surface;
-    const std::size_t faces = surface.face.size();
-    std::vector<double> sum(faces, 0.0);
-    std::vector<double> thickness(faces, 0.0);
-    std::vector<double> angle_deg(faces, 0.0);
-    std::vector<std::vector<double>> each(layers.size(), std::vector<double>(faces, 0.0));
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Plan& plan = layers[i].plan;
-        for (std::size_t f = 0; f < plan.face_layers.size(); ++f) {
-            each[i][f] = plan.face_layers[f] * setup.job.tow.thickness_mm;
-            sum[f] += plan.face_layers[f];
-            thickness[f] += each[i][f];
-            angle_deg[f] += plan.face_layers[f] * deg_from_rad(plan.face_angle_rad[f]);
-        }
+    const Surface& surface = layers.front().setup.mandrel.surface;
+    const LayupTotals all = layup_totals(layers);
+    std::vector<std::vector<double>> each;
+    for (const WoundLayer& layer : layers) {
+        each.push_back(layup_totals({&layer, 1}).thickness_mm);
     }
-    for (std::size_t f = 0; f < faces; ++f) {
-        angle_deg[f] /= sum[f] > 0.0 ? sum[f] : 1.0;
-    }
-    std::vector<CellArray> cells{{"layers", std::span<const double>(sum)},
-                                 {"thickness_mm", std::span<const double>(thickness)},
-                                 {"fibre_angle_to_spindle_deg", std::span<const double>(angle_deg)},
-                                 {"region", std::span<const std::int32_t>(surface.region)}};
+    std::vector<CellArray> cells{
+        {"layers", std::span<const double>(all.layers)},
+        {"thickness_mm", std::span<const double>(all.thickness_mm)},
+        {"fibre_angle_to_spindle_deg", std::span<const double>(all.angle_deg)},
+        {"region", std::span<const std::int32_t>(surface.region)}};
     for (std::size_t i = 0; layers.size() > 1 && i < layers.size(); ++i) {
         cells.push_back({"thickness_of_layer_" + std::to_string(i + 1) + "_mm",
                          std::span<const double>(each[i])});
@@ -197,6 +187,9 @@ private:
         wind_layer(layer, options);
         for (Check check : layer.checks) {
             check.name += options.suffix;
+            if (check.place) {
+                check.place->layer = number;
+            }
             result_.checks.push_back(std::move(check));
         }
         if (!layer.plan.failure.empty() || request_.import || jobs.size() == 1) {
@@ -259,7 +252,11 @@ private:
             folder.add("layup.vtu", layup_of(result_.layers));
         }
         watch_.stage("write");
-        folder.add("report.json", report_json(result_));
+        const std::string report = report_json(result_);
+        folder.add("report.json", report);
+        if (result_.planned() && !page_template().empty()) {
+            folder.add("report.html", report_page(page_data(result_, report)));
+        }
         folder.publish();
     }
 

@@ -130,6 +130,9 @@ private:
             std::vector<Check> found = checks_of(layer_.programs[fibre].made);
             for (Check& check : found) {
                 check.name += fibre_suffix(fibre);
+                if (check.place) {
+                    check.place->fibre = fibre;
+                }
                 layer_.checks.push_back(std::move(check));
             }
         }
@@ -181,6 +184,23 @@ private:
                                                " cm2 are bare for this: " + largest->first;
     }
 
+    // On the face that misses the most.
+    [[nodiscard]] CheckPlace barest_place() const {
+        const Surface& surface = setup_.mandrel.surface;
+        const std::vector<double>& layers = layer_.plan.face_layers;
+        std::size_t barest = 0;
+        double most_mm2 = -1.0;
+        for (std::size_t f = 0; f < layers.size(); ++f) {
+            const double bare_mm2 =
+                area_mm2(surface.position_mm, surface.face[f]) * (1.0 - std::min(1.0, layers[f]));
+            if (bare_mm2 > most_mm2) {
+                most_mm2 = bare_mm2;
+                barest = f;
+            }
+        }
+        return {.position_mm = position_mm(surface, {.face = static_cast<std::int32_t>(barest)})};
+    }
+
     void check_coverage() {
         if (is_open(layer_.plan)) {
             layer_.checks.push_back(open_coverage_check(layer_.plan));
@@ -190,6 +210,7 @@ private:
         const double limit = kCoveredShare * coverage.reachable;
         Check check{"coverage", coverage.fraction >= limit, {}, {}};
         check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
+        check.place = barest_place();
         if (!check.ok) {
             check.words = "only " + fixed(100.0 * coverage.fraction, 1) +
                           " % of the wall is covered although single courses reach " +
@@ -211,6 +232,7 @@ private:
         check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
         if (!check.ok) {
             check.words = made.eyes.words + " at " + place_of(made.eyes.path[blocked.front()]);
+            check.place = {.position_mm = made.eyes.path[blocked.front()].landing_mm};
         }
         return check;
     }

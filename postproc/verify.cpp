@@ -78,6 +78,28 @@ private:
         }
     }
 
+    void put_at_station(Check& check, std::size_t station) const {
+        const LaidPath& laid = found_.laid;
+        check.place = {.position_mm = laid.path[station].position_mm,
+                       .block = laid.at[station].block};
+    }
+
+    void put_at_sample(Check& check, std::size_t sample) const {
+        const LaidPath& laid = found_.laid;
+        check.place = {.position_mm = laid.samples[sample].landing_mm, .block = laid.block[sample]};
+    }
+
+    // Where the fibre lands while a block runs; samples end where the fibre cannot be followed.
+    void put_at_block(Check& check, std::size_t block) const {
+        const std::vector<std::size_t>& blocks = found_.laid.block;
+        if (!blocks.empty()) {
+            const auto at = std::lower_bound(blocks.begin(), blocks.end(), block);
+            const auto sample = static_cast<std::size_t>(at - blocks.begin());
+            put_at_sample(check, std::min(sample, blocks.size() - 1));
+            check.place->block = block;
+        }
+    }
+
     // Blocks in which finer ones may help.
     void note_coarse(std::size_t block) {
         found_.wrong_blocks.push_back(block);
@@ -115,12 +137,14 @@ private:
                                    kPulledShare * rules_.collision.free_fibre.preferred_mm);
             }
             const std::size_t last = task_.program.blocks.size() - 1;
+            put_at_station(check, off.wrong.empty() ? off.max_at : off.wrong.front());
             if (!off.wrong.empty()) {
                 fail(check, laid.at[off.wrong.front()].block,
                      "the laid fibre leaves the plan in " + station_words(off.wrong.front()) +
                          ", by up to " + fixed(off.max_mm, 3) + " mm and " +
                          fixed(deg_from_rad(off.max_angle_rad), 3) + " deg");
             } else if (laid.failure.empty() && off.end_gap_mm > kEndGap_mm) {
+                put_at_block(check, last);
                 fail(check, last,
                      "the program ends " + fixed(off.end_gap_mm, 1) +
                          " mm from the end of the plan");
@@ -128,6 +152,7 @@ private:
         }
         if (!laid.failure.empty()) {
             note_coarse(laid.failed_block);
+            put_at_block(check, laid.failed_block);
             fail(check, laid.failed_block, laid.failure + " in " + words_of(laid.failed_block));
         }
         found_.checks.push_back(check);
@@ -172,6 +197,7 @@ private:
         }
         Check check{"slip", true, {}, {}};
         check.numbers = {{"limit", rules_.friction}, {"worst", found_.slip[worst]}};
+        put_at_station(check, first.value_or(worst));
         if (first) {
             fail(check, laid.at[*first].block,
                  "the laid fibre slips: ratio " + fixed(found_.slip[worst], 4) +
@@ -183,20 +209,22 @@ private:
 
     void check_bridging() {
         const LaidPath& laid = found_.laid;
-        double worst = 0.0;
+        std::size_t worst = 0;
         std::optional<std::size_t> first;
         for (std::size_t i = 0; i < laid.at.size(); ++i) {
-            worst = std::max(worst, laid.at[i].gap_mm);
+            worst = laid.at[i].gap_mm > laid.at[worst].gap_mm ? i : worst;
             if (laid.at[i].gap_mm > rules_.bridging_tolerance_mm) {
                 first = first.value_or(i);
                 note_coarse(laid.at[i].block);
             }
         }
         Check check{"bridging", true, {}, {}};
-        check.numbers = {{"limit_mm", rules_.bridging_tolerance_mm}, {"worst_mm", worst}};
+        const double worst_mm = laid.at[worst].gap_mm;
+        check.numbers = {{"limit_mm", rules_.bridging_tolerance_mm}, {"worst_mm", worst_mm}};
+        put_at_station(check, first.value_or(worst));
         if (first) {
             fail(check, laid.at[*first].block,
-                 "the laid fibre bridges by " + fixed(worst, 3) + " mm, more than " +
+                 "the laid fibre bridges by " + fixed(worst_mm, 3) + " mm, more than " +
                      fixed(rules_.bridging_tolerance_mm, 3) + " mm, first in " +
                      station_words(*first));
         }
@@ -215,6 +243,7 @@ private:
         const auto say = [&](const std::vector<std::size_t>& hits, const std::string& words) {
             if (!hits.empty() && check.ok) {
                 const std::size_t sample = hits.front();
+                put_at_sample(check, sample);
                 fail(check, laid.block[sample],
                      words + " in " + words_of(laid.block[sample]) +
                          place_words(laid.samples[sample].landing_mm));
@@ -242,10 +271,14 @@ private:
         const FreeFibreRule& rule = rules_.collision.free_fibre;
         Check check{"free_length", true, {}, {}};
         found_.shortest_free_mm = std::numeric_limits<double>::infinity();
+        std::size_t shortest = 0;
         std::optional<std::size_t> first;
         for (std::size_t i = 0; i < laid.samples.size(); ++i) {
             const double length = laid.samples[i].free_length_mm;
-            found_.shortest_free_mm = std::min(found_.shortest_free_mm, length);
+            if (length < found_.shortest_free_mm) {
+                found_.shortest_free_mm = length;
+                shortest = i;
+            }
             found_.longest_free_mm = std::max(found_.longest_free_mm, length);
             const bool within = length >= rule.min_mm - kFreeLengthSlack_mm &&
                                 length <= rule.max_mm + task_.wall.bridge_reach_mm();
@@ -258,6 +291,7 @@ private:
                          {"max_mm", found_.longest_free_mm},
                          {"limit_min_mm", rule.min_mm},
                          {"limit_max_mm", rule.max_mm}};
+        put_at_sample(check, first.value_or(shortest));
         if (first) {
             fail(check, laid.block[*first],
                  "the free length is " + fixed(laid.samples[*first].free_length_mm, 1) + " mm in " +
@@ -283,6 +317,9 @@ private:
         }
         find_travel_violations(task_.machine, joints);
         const AxisLoads loads = axis_loads(task_.machine, joints, step_s);
+        put_at_block(check, loads.acceleration.ratio > loads.velocity.ratio
+                                ? loads.acceleration.step
+                                : loads.velocity.step);
         check.numbers = {{"violations", static_cast<double>(joints.violations.size())},
                          {"velocity_ratio", loads.velocity.ratio},
                          {"acceleration_ratio", loads.acceleration.ratio},
@@ -296,6 +333,7 @@ private:
                 joints.violations.begin(), joints.violations.end(),
                 [](const LimitViolation& a, const LimitViolation& b) { return a.first < b.first; });
             const std::size_t joint = task_.machine.joint_of(first.axis).value_or(0);
+            put_at_block(check, first.first);
             fail(check, first.first,
                  std::string("axis ") + first.axis + " goes to " + shown(joint, first.value) +
                      ", past its end at " + shown(joint, first.limit) + ", from " +
@@ -305,6 +343,7 @@ private:
         say_load(check, loads.acceleration, "acceleration");
         const CornerCut& corner = loads.linear.mm > loads.eye.mm ? loads.linear : loads.eye;
         if (corner.mm > rules_.corner_mm * (1.0 + kLimitSlack) && check.ok) {
+            put_at_block(check, corner.step);
             fail(check, corner.step,
                  "rounding the corner after " + words_of(corner.step) + " takes " +
                      fixed(corner.mm, 3) + " mm, more than the controller's " +
@@ -315,6 +354,7 @@ private:
 
     void say_load(Check& check, const AxisLoad& load, const std::string& what) {
         if (load.ratio > 1.0 + kLimitSlack && check.ok) {
+            put_at_block(check, load.step);
             fail(check, load.step,
                  std::string("axis ") + task_.machine.axis(load.joint).letter + " needs " +
                      fixed(load.ratio, 3) + " times its " + what + " in " + words_of(load.step));
@@ -330,6 +370,7 @@ private:
         double paid_most = -std::numeric_limits<double>::infinity();
         std::optional<std::size_t> too_fast;
         std::optional<std::size_t> slack;
+        std::size_t furthest_back = 0;
         double before = 0.0;
         for (std::size_t i = 0; i < laid.samples.size(); ++i) {
             const double paid = laid.samples[i].s_mm + laid.samples[i].free_length_mm;
@@ -342,7 +383,10 @@ private:
                 }
             }
             paid_most = std::max(paid_most, paid);
-            back = std::max(back, paid_most - paid);
+            if (paid_most - paid > back) {
+                back = paid_most - paid;
+                furthest_back = i;
+            }
             if (!slack && paid_most - paid > fibre.take_up_mm) {
                 slack = i;
             }
@@ -352,6 +396,7 @@ private:
                          {"worst_mm", back},
                          {"max_speed_mm_s", fastest},
                          {"limit_mm_s", fibre.max_speed_mm_s}};
+        put_at_sample(check, slack ? *slack : too_fast.value_or(furthest_back));
         if (slack) {
             fail(check, laid.block[*slack],
                  "the fibre goes slack: " + fixed(back, 1) +

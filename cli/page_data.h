@@ -1,0 +1,24 @@
+/// What report.html shows, in one binary text.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "cli/wind.h"
+
+namespace meshwind {
+
+/// Mandrel, fibre, motion, machine, programs and report of a run, for the page (viewer/src/data.ts
+/// reads it). A header in JSON says what the arrays behind it are:
+///
+///     u32           length of the header, which is padded so that the arrays begin at a multiple
+///                   of 8 bytes
+///     header        "report", "machine", "tow", "extension", "layers" with their "fibres" and
+///                   these with their "pieces", "arrays": name -> type, width, count, offset
+///     arrays        little endian, each at a multiple of 8 bytes from the first
+///
+/// Positions are in the mandrel's frame, mm; angles deg. \param report text of report.json
+/// \pre result.planned()
+[[nodiscard]] std::string page_data(const WindResult& result, std::string_view report);
+
+}  // namespace meshwind
