@@ -1,0 +1,45 @@
+// Bundles the page into one HTML file: node build.mjs OUT.html
+// The program puts its data in the place of <!--MESHWIND-DATA-->.
+import { readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { build, transform } from 'esbuild';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const output = process.argv[2];
+if (!output || process.argv.length > 3) {
+    console.error('usage: node build.mjs OUT.html');
+    process.exit(2);
+}
+
+const marker = '<!--MESHWIND-DATA-->';
+const bundle = await build({
+    entryPoints: [join(here, 'src', 'main.ts')],
+    bundle: true,
+    minify: true,
+    write: false,
+    format: 'iife',
+    target: ['es2021'],
+    charset: 'ascii',
+    legalComments: 'none',
+});
+const style = await transform(readFileSync(join(here, 'src', 'style.css'), 'utf8'), {
+    loader: 'css',
+    minify: true,
+});
+const licence = readFileSync(join(here, 'node_modules', 'three', 'LICENSE'), 'utf8').trim();
+
+// A closing tag or the marker inside a string of the bundle would end the script, or be taken for
+// the place of the data.
+const script = bundle.outputFiles[0].text
+    .replace(/<\/(script)/gi, '<\\/$1')
+    .replace(/<!--/g, '\\x3C!--')
+    .trim();
+const page = readFileSync(join(here, 'src', 'index.html'), 'utf8')
+    .replace('/*STYLE*/', () => style.code.trim())
+    .replace('/*SCRIPT*/', () => script)
+    .replace('<!--LICENCE-->', () => `<!--\nthree.js: ${licence}\n-->`);
+if (page.split(marker).length !== 2) {
+    throw new Error(`the page must have ${marker} exactly once`);
+}
+writeFileSync(output, page);

@@ -1,0 +1,207 @@
+/** The checks of the report: values beside limits, words where one failed, a way to the place. */
+import { escapeHtml, keyInWords, percent, sentence, valueInWords } from './format';
+import type { Check, Place, Report } from './types';
+
+interface Measure {
+    key: string;
+    limit?: string | number; // key of the check, or a number that is always the limit
+    least?: boolean; // the value must not be below
+    label?: string;
+}
+
+interface Kind {
+    title: string;
+    measures: Measure[];
+}
+
+/** What is known of the checks by name; others are shown with all their numbers. */
+const kKinds: Record<string, Kind> = {
+    slip: { title: 'Slip', measures: [{ key: 'worst', limit: 'limit', label: 'Slip ratio' }] },
+    bridging: { title: 'Bridging', measures: [{ key: 'worst_mm', limit: 'limit_mm', label: 'Gap' }] },
+    coverage: {
+        title: 'Coverage',
+        measures: [{ key: 'fraction', limit: 'limit', least: true, label: 'Wall covered' }],
+    },
+    collision: {
+        title: 'Collision',
+        measures: [
+            { key: 'min_clearance_mm', label: 'Least clearance' },
+            { key: 'head_hits', limit: 0, label: 'Places where the head touches' },
+            { key: 'fibre_hits', limit: 0, label: 'Places where the fibre touches' },
+        ],
+    },
+    continuity: {
+        title: 'Continuity',
+        measures: [
+            { key: 'fibres', limit: 'limit', label: 'Fibres' },
+            { key: 'worst_joint_mm', label: 'Widest joint' },
+        ],
+    },
+    eye: { title: 'Eye', measures: [{ key: 'blocked_points', limit: 0, label: 'Blocked points' }] },
+    free_length: {
+        title: 'Free length',
+        measures: [
+            { key: 'min_mm', limit: 'limit_min_mm', least: true, label: 'Shortest' },
+            { key: 'max_mm', limit: 'limit_max_mm', label: 'Longest' },
+        ],
+    },
+    laydown: {
+        title: 'Laid as planned',
+        measures: [
+            { key: 'max_deviation_mm', limit: 'limit_mm', label: 'Beside the plan' },
+            { key: 'max_angle_deg', limit: 'limit_deg', label: 'Off its direction' },
+            { key: 'end_gap_mm', label: 'Gap at the end' },
+        ],
+    },
+    limits: {
+        title: 'Axis limits',
+        measures: [
+            { key: 'velocity_ratio', limit: 1, label: 'Speed of its limit' },
+            { key: 'acceleration_ratio', limit: 1, label: 'Acceleration of its limit' },
+            { key: 'corner_mm', limit: 'limit_corner_mm', label: 'Corner cut' },
+        ],
+    },
+    payout: {
+        title: 'Pay-out',
+        measures: [
+            { key: 'worst_mm', limit: 'limit_mm', label: 'Taken back' },
+            { key: 'max_speed_mm_s', limit: 'limit_mm_s', label: 'Fibre speed' },
+        ],
+    },
+    rounding: { title: 'Rounding', measures: [{ key: 'blocks', label: 'Blocks read back' }] },
+    closure: {
+        title: 'Closure',
+        measures: [
+            { key: 'closure_deg', limit: 'limit_deg', label: 'Pattern closes within' },
+            { key: 'drift_deg', label: 'Drift over the program' },
+        ],
+    },
+};
+
+export interface NamedCheck {
+    name: string; // as in the report
+    base: string; // without layer and fibre
+    layer: number | null; // from 1
+    fibre: number | null; // from 1
+    check: Check;
+}
+
+export function namedChecks(report: Report): NamedCheck[] {
+    return Object.entries(report.checks ?? {}).map(([name, check]) => {
+        const parts = /^(.*?)(?:-layer-(\d+))?(?:-(\d+))?$/.exec(name) as RegExpExecArray;
+        return {
+            name,
+            base: parts[1],
+            layer: parts[2] ? Number(parts[2]) : null,
+            fibre: parts[3] ? Number(parts[3]) : null,
+            check,
+        };
+    });
+}
+
+function measuresOf({ base, check }: NamedCheck): Measure[] {
+    const known = kKinds[base]?.measures.filter((m) => typeof numberOf(check, m.key) === 'number');
+    if (known?.length) return known;
+    const keys = Object.keys(check).filter((k) => typeof numberOf(check, k) === 'number');
+    return keys
+        .filter((k) => !/(^|_)limit(_|$)/.test(k))
+        .map((key) => {
+            const unit = /(_mm_s|_mm|_deg|_s)$/.exec(key)?.[0] ?? '';
+            const limit = keys.find((k) => k === `limit${unit}`);
+            return limit ? { key, limit } : { key };
+        });
+}
+
+function numberOf(check: Check, key: string): number | undefined {
+    const value = (check as unknown as Record<string, unknown>)[key];
+    return typeof value === 'number' ? value : undefined;
+}
+
+function measureHtml(check: Check, measure: Measure): string {
+    const value = numberOf(check, measure.key) as number;
+    const { words, unit } = keyInWords(measure.key);
+    const limit =
+        typeof measure.limit === 'number'
+            ? measure.limit
+            : measure.limit === undefined
+              ? undefined
+              : numberOf(check, measure.limit);
+    const show = (v: number) => (unit === '×' ? percent(v) : valueInWords(v, unit));
+    let gauge = '';
+    if (limit !== undefined && limit > 0) {
+        const share = Math.min(value / limit, 1.25) / 1.25;
+        const over = measure.least ? value < limit : value > limit * 1.0001;
+        gauge = `<span class="gauge${over ? ' over' : ''}" aria-hidden="true"><i style="width:${(100 * share).toFixed(1)}%"></i></span>`;
+    }
+    const bound =
+        limit === undefined ? '' : `${measure.least ? '\u2265' : '\u2264'}\u202f${show(limit)}`;
+    return (
+        `<tr><th scope="row">${escapeHtml(measure.label ?? words)}</th><td class="num">${show(value)}</td>` +
+        `<td class="num muted">${bound}</td><td class="gauge-cell">${gauge}</td></tr>`
+    );
+}
+
+export class Checks {
+    onPlace: (place: Place) => void = () => {};
+    private readonly all: NamedCheck[];
+
+    constructor(
+        private readonly host: HTMLElement,
+        report: Report,
+        private readonly layers: number,
+    ) {
+        this.all = namedChecks(report);
+        host.addEventListener('click', (event) => {
+            const row = (event.target as HTMLElement).closest<HTMLElement>('[data-check]');
+            const check = this.all.find((c) => c.name === row?.dataset.check)?.check;
+            if (check?.place) this.onPlace(check.place);
+        });
+    }
+
+    failed(): NamedCheck[] {
+        return this.all.filter((c) => !c.check.ok);
+    }
+
+    count(): number {
+        return this.all.length;
+    }
+
+    /** \param layer index, or null for all */
+    show(layer: number | null): void {
+        const layerOf = (c: NamedCheck) => (c.layer ?? 1) - 1;
+        const shown = this.all.filter((c) => layer === null || layerOf(c) === layer);
+        const failed = shown.filter((c) => !c.check.ok);
+        let html = failed.map((c) => this.checkHtml(c)).join('');
+        const passed = shown.filter((c) => c.check.ok);
+        if (this.layers > 1 && layer === null) {
+            for (let l = 0; l < this.layers; ++l) {
+                const of = passed.filter((c) => layerOf(c) === l);
+                if (of.length) html += `<h3>Layer ${l + 1}</h3>${of.map((c) => this.checkHtml(c)).join('')}`;
+            }
+        } else html += passed.map((c) => this.checkHtml(c)).join('');
+        this.host.innerHTML = html || '<p class="muted">The report has no checks.</p>';
+    }
+
+    private checkHtml(item: NamedCheck): string {
+        const { check } = item;
+        const title = kKinds[item.base]?.title ?? sentence(item.base.replace(/[_-]/g, ' '));
+        const suffix = [
+            item.layer !== null && !check.ok ? `layer ${item.layer}` : '',
+            item.fibre !== null ? `fibre ${item.fibre}` : '',
+        ].filter(Boolean);
+        const name = escapeHtml([title, ...suffix].join(', '));
+        const place = check.place
+            ? `<button type="button" class="plain" aria-label="Show the place of ${name}">Show place</button>`
+            : '';
+        const mark = check.ok
+            ? '<span class="mark ok" role="img" aria-label="passed">\u2713</span>'
+            : '<span class="mark bad" role="img" aria-label="failed">\u2715</span>';
+        const words = check.words ? `<p class="words">${escapeHtml(sentence(check.words))}</p>` : '';
+        const rows = measuresOf(item).map((m) => measureHtml(check, m));
+        return (
+            `<article class="check${check.ok ? '' : ' failed'}${check.place ? ' placed' : ''}" ` +
+            `data-check="${escapeHtml(item.name)}"><header>${mark}<h4>${name}</h4>${place}</header>` +
+            `${words}<table class="measures"><tbody>${rows.join('')}</tbody></table></article>`
+        );
+    }
+}

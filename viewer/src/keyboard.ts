@@ -1,0 +1,86 @@
+/** Keys of the page and the list of them in the help. */
+
+export interface KeyActions {
+    playOrPause: () => void;
+    stepBlock: (by: 1 | -1) => void;
+    stepCourse: (by: 1 | -1) => void;
+    toStart: () => void;
+    toEnd: () => void;
+    colouring: (number: number) => void;
+    camera: () => void;
+    fit: () => void;
+    help: () => void;
+}
+
+const kKeys: [string, string][] = [
+    ['Space', 'play or pause'],
+    ['\u2190 \u2192', 'a block back or on'],
+    ['\u2191 \u2193', 'a course back or on'],
+    ['Home End', 'to the start or the end'],
+    ['1 \u2026 7', 'course, family, slip, bridging, layers, thickness, angle'],
+    ['M', 'camera with the machine or on the mandrel'],
+    ['F', 'see all of it'],
+    ['?', 'this list'],
+];
+
+export function helpHtml(): string {
+    return kKeys
+        .map(([keys, words]) => {
+            const caps = keys.split(' ').map((k) => `<kbd>${k}</kbd>`);
+            return `<dt>${caps.join(' ')}</dt><dd>${words}</dd>`;
+        })
+        .join('');
+}
+
+export function listenToKeys(actions: KeyActions): void {
+    window.addEventListener('keydown', (event) => {
+        if (event.ctrlKey || event.metaKey || event.altKey) return;
+        if (document.querySelector('dialog[open]')) return;
+        const target = event.target as HTMLElement;
+        if (target.matches('select, input[type=text]')) return;
+        const scrolls = target.closest('.listing, .panel') !== null;
+        const action = actionOf(event, actions, scrolls, target);
+        if (!action) return;
+        event.preventDefault();
+        event.stopPropagation();
+        action();
+    }, { capture: true });
+}
+
+function actionOf(
+    event: KeyboardEvent,
+    actions: KeyActions,
+    scrolls: boolean,
+    target: HTMLElement,
+): (() => void) | null {
+    const { key, shiftKey } = event;
+    if (/^[1-7]$/.test(key)) return () => actions.colouring(Number(key));
+    if (target.getAttribute('role') === 'tab' && key.startsWith('Arrow')) return null;
+    switch (key) {
+        case ' ':
+            // Buttons and boxes keep their own meaning of the space bar.
+            return target.matches('button, input[type=checkbox]') ? null : actions.playOrPause;
+        case 'ArrowLeft':
+            return () => (shiftKey ? actions.stepCourse(-1) : actions.stepBlock(-1));
+        case 'ArrowRight':
+            return () => (shiftKey ? actions.stepCourse(1) : actions.stepBlock(1));
+        case 'ArrowUp':
+            return scrolls ? null : () => actions.stepCourse(-1);
+        case 'ArrowDown':
+            return scrolls ? null : () => actions.stepCourse(1);
+        case 'Home':
+            return scrolls ? null : actions.toStart;
+        case 'End':
+            return scrolls ? null : actions.toEnd;
+        case 'm':
+        case 'M':
+            return actions.camera;
+        case 'f':
+        case 'F':
+            return actions.fit;
+        case '?':
+            return actions.help;
+        default:
+            return null;
+    }
+}

@@ -1,0 +1,92 @@
+/** Key figures, bare wall with its reasons, and the layers of a laminate. */
+import { clock, escapeHtml, number, percent, sentence, withUnit } from './format';
+import type { LayerReport, Plan, Report, Uncovered } from './types';
+
+export function figuresHtml(report: Report, duration: number): string {
+    const plan = report.plan;
+    const laminate = report.laminate;
+    const metres = laminate?.fibre_m ?? (plan?.fibre_length_mm ?? NaN) / 1000;
+    const figures: [string, string][] = [
+        ['Machine', escapeHtml(report.machine ?? '\u2013')],
+        ['Fibre', withUnit(metres, 'm', 4)],
+        ['Time', clock(duration)],
+    ];
+    if (laminate?.mass_g) figures.push(['Mass', withUnit(laminate.mass_g, 'g')]);
+    if (plan?.courses !== undefined) figures.push(['Courses', number(plan.courses)]);
+    const covered = plan?.coverage?.fraction;
+    if (covered !== undefined) figures.push(['Covered', percent(covered)]);
+    return figures.map(([k, v]) => `<div><dt>${k}</dt><dd>${v}</dd></div>`).join('');
+}
+
+function wallArea(report: Report): number {
+    const kept = report.mandrel?.regions?.filter((r) => r.kept) ?? [];
+    return kept.length
+        ? kept.reduce((sum, r) => sum + r.area_mm2, 0)
+        : (report.mandrel?.area_mm2 ?? NaN);
+}
+
+function coverageHtml(plan: Plan | undefined): string {
+    const c = plan?.coverage;
+    if (!c) return '';
+    const rows: [string, string][] = [];
+    if (c.fraction !== undefined) rows.push(['Wall covered', percent(c.fraction)]);
+    if (c.mean_layers !== undefined) rows.push(['Bands over a place, mean', number(c.mean_layers)]);
+    if (c.max_layers !== undefined) rows.push(['Bands over a place, most', number(c.max_layers)]);
+    return `<table class="measures"><tbody>${rows
+        .map(([k, v]) => `<tr><th scope="row">${k}</th><td class="num">${v}</td></tr>`)
+        .join('')}</tbody></table>`;
+}
+
+function uncoveredHtml(list: Uncovered[], wall: number): string {
+    if (!list.length) return '<p class="muted">No bare wall was found.</p>';
+    const regions = new Set(list.map((u) => u.region)).size > 1;
+    const rows = [...list]
+        .sort((a, b) => b.area_mm2 - a.area_mm2)
+        .map(
+            (u) =>
+                `<tr><td class="num">${withUnit(u.area_mm2 / 100, '', 3)}</td><td class="num">${percent(u.area_mm2 / wall)}</td>` +
+                `${regions ? `<td class="num">${u.region}</td>` : ''}<td>${escapeHtml(sentence(u.reason))}</td></tr>`,
+        );
+    return (
+        `<table class="grid"><thead><tr><th scope="col" class="num">Area cm²</th><th scope="col" class="num">Share</th>` +
+        `${regions ? '<th scope="col" class="num">Region</th>' : ''}<th scope="col">Why it stays bare</th></tr></thead>` +
+        `<tbody>${rows.join('')}</tbody></table>`
+    );
+}
+
+/** \param layer index, or null for all together */
+export function bareHtml(report: Report, layer: number | null): string {
+    const plan = layer === null ? report.plan : (report.layers?.[layer]?.plan ?? report.plan);
+    return (
+        coverageHtml(plan) + uncoveredHtml(plan?.uncovered ?? [], wallArea(report))
+    );
+}
+
+function angleText(layer: LayerReport): string {
+    return typeof layer.angle_deg === 'number' ? `${layer.angle_deg.toFixed(1)}°` : '\u2013';
+}
+
+export function layersHtml(report: Report): string {
+    const layers = report.layers ?? [];
+    const row = (l: LayerReport, i: number) =>
+        `<tr tabindex="0" data-layer="${i}"><td class="num">${l.layer ?? i + 1}</td><td>${escapeHtml(l.kind)}</td>` +
+        `<td class="num">${angleText(l)}</td><td class="num">${number(l.thickness_mm?.mean)}</td>` +
+        `<td class="num">${number(l.thickness_mm?.max)}</td><td class="num">${number(l.fibre_m)}</td>` +
+        `<td class="num">${number(l.mass_g)}</td><td class="num">${clock(l.time_s ?? NaN)}</td></tr>` +
+        (l.cut_because
+            ? `<tr class="note"><td></td><td colspan="7">A new fibre: ${escapeHtml(l.cut_because)}</td></tr>`
+            : '');
+    const sum = report.laminate;
+    const foot = sum
+        ? `<tfoot><tr><td></td><td>All</td><td></td><td class="num">${number(sum.thickness_mm?.mean)}</td>` +
+          `<td class="num">${number(sum.thickness_mm?.max)}</td><td class="num">${number(sum.fibre_m)}</td>` +
+          `<td class="num">${number(sum.mass_g)}</td><td class="num">${clock(sum.time_s ?? NaN)}</td></tr></tfoot>`
+        : '';
+    return (
+        `<p class="muted sum">From the mandrel outward. Choose one to see it alone.</p>` +
+        `<table class="grid layers"><thead><tr><th scope="col" class="num">#</th><th scope="col">Kind</th>` +
+        `<th scope="col" class="num">Angle</th><th scope="col" class="num">Mean mm</th><th scope="col" class="num">Max mm</th>` +
+        `<th scope="col" class="num">Fibre m</th><th scope="col" class="num">Mass g</th><th scope="col" class="num">Time</th></tr></thead>` +
+        `<tbody>${layers.map(row).join('')}</tbody>${foot}</table>`
+    );
+}
