@@ -17,7 +17,8 @@ build_tests() {
     local folder=$1 target=$2
     shift 2
     install_packages build test
-    configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON "$@"
+    [[ $folder == asan ]] || prepare_page
+    configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON "-DMESHWIND_VIEWER=$page" "$@"
     echo "building the tests in build/$folder ..." >&2
     run_logged "$root/build/$folder/build.log" ninja -C "$root/build/$folder" "$target"
 }

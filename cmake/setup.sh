@@ -70,6 +70,23 @@ install_packages() {
     run_logged "$root/build/apt.log" apt_install "${root_runs[@]}"
 }
 
+# prepare_page: npm and the packages of the report page, `page` for CMake; where they cannot be had it says so, and the
+# page is left out.
+# shellcheck disable=SC2034
+page=OFF
+prepare_page() {
+    command -v npm >/dev/null || install_packages page
+    local log=$root/build/npm.log
+    # shellcheck disable=SC2034
+    if [[ $root/viewer/node_modules/.package-lock.json -nt $root/viewer/package-lock.json ]] ||
+        (cd "$root/viewer" && npm ci --ignore-scripts --no-audit --no-fund && touch node_modules/.package-lock.json) \
+            >"$log" 2>&1 </dev/null; then
+        page=ON
+    else
+        echo "${0##*/}: report.html is left out: npm cannot fetch its packages (see $log)" >&2
+    fi
+}
+
 # configure FOLDER OPTION...: CMake with Ninja; a folder configured for another place is made anew.
 configure() {
     local folder=$root/build/$1
