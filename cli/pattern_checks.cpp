@@ -1,8 +1,10 @@
 #include "cli/pattern_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/text_number.h"
 #include "core/units.h"
@@ -13,6 +15,38 @@ namespace {
 
 // Share of a band that is no gap: rounding.
 constexpr double kNoGap = 1e-6;
+
+Check check_of(const LaidClosure& closure, std::size_t circuits) {
+    Check check{"closure", closure.holds(), {}, {}};
+    check.numbers = {{"limit_deg", deg_from_rad(kClosureLimit_rad)},
+                     {"closure_deg", deg_from_rad(closure.closure_rad)},
+                     {"resolution_deg", deg_from_rad(closure.resolution_rad)},
+                     {"drift_deg", deg_from_rad(closure.drift_rad)}};
+    if (!closure.failure.empty()) {
+        check.words = closure.failure;
+    } else if (!check.ok) {
+        check.words = "the pattern does not close: after " + std::to_string(circuits) +
+                      " circuits the laid fibre is " + fixed(deg_from_rad(closure.closure_rad), 4) +
+                      " deg from where it began, and circuit " +
+                      std::to_string(closure.drift_circuit) + " is " +
+                      fixed(deg_from_rad(closure.drift_rad), 4) + " deg off its place";
+    }
+    return check;
+}
+
+// Evenly over stretches of a tube, a tow width from their ends.
+std::vector<double> sections_on(std::span<const std::array<double, 2>> stretches,
+                                double margin_mm) {
+    constexpr int kSections = 21;  // as many as parallels of a body of revolution
+    std::vector<double> sections_mm;
+    for (const auto& [from, to] : stretches) {
+        for (int k = 0; k < kSections && to - from > 2.0 * margin_mm; ++k) {
+            const double share = static_cast<double>(k) / (kSections - 1);
+            sections_mm.push_back(from + margin_mm + share * (to - from - 2.0 * margin_mm));
+        }
+    }
+    return sections_mm;
+}
 
 }  // namespace
 
@@ -45,22 +79,23 @@ Check closure_check(const Plan& plan, std::span<const PathPoint> laid) {
         }
     }
     const std::vector<double>& starts_rad = plan.pattern->starts_rad;
-    const LaidClosure closure = laid_closure(laid, starts_rad, low_mm, high_mm);
-    Check check{"closure", closure.holds(), {}, {}};
-    check.numbers = {{"limit_deg", deg_from_rad(kClosureLimit_rad)},
-                     {"closure_deg", deg_from_rad(closure.closure_rad)},
-                     {"resolution_deg", deg_from_rad(closure.resolution_rad)},
-                     {"drift_deg", deg_from_rad(closure.drift_rad)}};
-    if (!closure.failure.empty()) {
-        check.words = closure.failure;
-    } else if (!check.ok) {
-        check.words = "the pattern does not close: after " + std::to_string(starts_rad.size()) +
-                      " circuits the laid fibre is " + fixed(deg_from_rad(closure.closure_rad), 4) +
-                      " deg from where it began, and circuit " +
-                      std::to_string(closure.drift_circuit) + " is " +
-                      fixed(deg_from_rad(closure.drift_rad), 4) + " deg off its place";
+    return check_of(laid_closure(laid, starts_rad, low_mm, high_mm), starts_rad.size());
+}
+
+Check elbow_closure_check(const Plan& plan, double tow_width_mm, std::span<const PathPoint> laid,
+                          std::span<const PathPoint> meant) {
+    const LaidElbow& elbow = *plan.elbow;
+    const CentreLine& line = *elbow.line;
+    const std::array<std::array<double, 2>, 2> even{
+        {{0.0, elbow.leg[0].length_mm - elbow.leg[0].run_mm},
+         {line.length_mm() - elbow.leg[1].length_mm + elbow.leg[1].run_mm, line.length_mm()}}};
+    std::vector<double> sections_mm = sections_on(even, tow_width_mm);
+    if (sections_mm.empty()) {
+        const std::array<std::array<double, 2>, 1> all{{{0.0, line.length_mm()}}};
+        sections_mm = sections_on(all, tow_width_mm);
     }
-    return check;
+    const auto circuits = static_cast<std::size_t>(elbow.lines);
+    return check_of(laid_tube_closure(laid, meant, circuits, line, sections_mm), circuits);
 }
 
 }  // namespace meshwind

@@ -21,4 +21,11 @@ namespace meshwind {
 /// \pre plan.pattern has two circuits at least
 [[nodiscard]] Check closure_check(const Plan& plan, std::span<const PathPoint> laid);
 
+/// The same of the elbow planner's lines, on the straight stretches of the tube where they run
+/// evenly; on all of it where these are shorter than two tow widths. \param meant what the program
+/// would lay were its positions not rounded \pre plan.elbow has two lines at least
+[[nodiscard]] Check elbow_closure_check(const Plan& plan, double tow_width_mm,
+                                        std::span<const PathPoint> laid,
+                                        std::span<const PathPoint> meant);
+
 }  // namespace meshwind

@@ -427,6 +427,25 @@ private:
         FoldedProgram folded = setup_.dialect->fold(std::move(prepared));
         found_.blocks = std::move(folded.list);
         found_.layout = std::move(folded.layout);
+        found_.exact = exact_blocks(ends);
+    }
+
+    // Those that blocks are chosen to end at. What moves no axis by a step ends no block of the
+    // program.
+    [[nodiscard]] BlockList exact_blocks(std::span<const std::size_t> ends) const {
+        BlockList list;
+        list.axes = found_.blocks.axes;
+        list.tie_on_mm = found_.eyes.path.front().landing_mm;
+        for (const std::size_t point : ends) {
+            list.blocks.push_back({1.0, path_[point].piece, path_[point].point, 0});
+            const std::span<const double> joints = joints_.row(point);
+            for (std::size_t a = 0; a < joints.size(); ++a) {
+                const double value =
+                    list.axes[a].type == AxisType::Rotary ? deg_from_rad(joints[a]) : joints[a];
+                list.nano.push_back(std::llround(value * static_cast<double>(kNanoPerUnit)));
+            }
+        }
+        return list;
     }
 
     [[nodiscard]] BlockList as_run() const {

@@ -25,6 +25,7 @@ struct PieceProgram {
     std::size_t path_points = 0;  ///< points that blocks were chosen from
     BlockChoice choice;
     BlockList blocks;      ///< what the program runs, one by one
+    BlockList exact;       ///< the ends of these as planned, rounded to nothing but 1e-9 mm or deg
     ProgramLayout layout;  ///< how they are written
     bool optimal = false;  ///< no other free lengths and turns that are known save 1 % of the time
     double duration_s = 0.0;

@@ -8,6 +8,7 @@
 #include "cli/plan_layer.h"
 #include "cli/run_files.h"
 #include "core/text_number.h"
+#include "postproc/laydown.h"
 
 namespace meshwind {
 namespace {
@@ -136,12 +137,24 @@ private:
                 layer_.checks.push_back(std::move(check));
             }
         }
-        if (layer_.plan.pattern && layer_.plan.pattern->starts_rad.size() > 1) {
-            const LaidPath& laid = layer_.programs.front().made.verification.laid;
-            layer_.checks.push_back(closure_check(layer_.plan, laid.path));
-        }
+        check_closure();
         for (FibreProgram& program : layer_.programs) {
             program.text = text_of(program, program.made);  // with what failed, for --force
+        }
+    }
+
+    void check_closure() {
+        const Plan& plan = layer_.plan;
+        const PieceProgram& made = layer_.programs.front().made;
+        const std::span<const PathPoint> laid = made.verification.laid.path;
+        if (plan.pattern && plan.pattern->starts_rad.size() > 1) {
+            layer_.checks.push_back(closure_check(plan, laid));
+        }
+        if (plan.elbow && plan.elbow->lines > 1) {
+            const LaidPath meant =
+                lay_down(*setup_.wall, setup_.machine, made.exact, *made.exact.tie_on_mm);
+            layer_.checks.push_back(
+                elbow_closure_check(plan, setup_.job.tow.width_mm, laid, meant.path));
         }
     }
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.h"
+
 namespace meshwind {
 namespace {
 
@@ -19,6 +21,11 @@ constexpr std::size_t kPairs = 200'000;
 
 // Azimuths are known no better: the laid path is made of chords (postproc/laydown.h).
 constexpr double kKnown_rad = 1e-6;
+
+// Corrections of a crossing from the chord to the cubic: each leaves a small share of the last.
+constexpr int kSecants = 3;
+
+constexpr std::size_t kChunk = 256;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -144,6 +151,55 @@ void measure_drift(std::vector<std::vector<double>> off_rad, LaidClosure& closur
     }
 }
 
+// A path seen from a tube's line: how far along it its points are.
+struct AlongTube {
+    std::span<const PathPoint> path;
+    std::vector<double> along_mm;
+};
+
+AlongTube along_tube(std::span<const PathPoint> path, const CentreLine& line) {
+    AlongTube seen{path, std::vector<double>(path.size())};
+    parallel_for(path.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            seen.along_mm[i] = line.foot(path[i].position_mm).arc_mm;
+        }
+    });
+    return seen;
+}
+
+// Between two stations, by the cubic that their directions give.
+Eigen::Vector3d between(const PathPoint& a, const PathPoint& b, double share) {
+    const double length = (b.position_mm - a.position_mm).norm();
+    const double r = 1.0 - share;
+    return r * r * (1.0 + 2.0 * share) * a.position_mm +
+           share * share * (3.0 - 2.0 * share) * b.position_mm +
+           share * r * length * (r * a.tangent - share * b.tangent);
+}
+
+// Angles about the line at which a path crosses the section there, in order.
+std::vector<double> crossings(const AlongTube& seen, const CentreLine& line, double along_mm) {
+    const CentrePlace section = line.at(along_mm);
+    std::vector<double> found;
+    for (std::size_t i = 1; i < seen.path.size(); ++i) {
+        const double before = seen.along_mm[i - 1] - along_mm;
+        const double after = seen.along_mm[i] - along_mm;
+        if ((before < 0.0) == (after < 0.0)) {
+            continue;
+        }
+        const PathPoint& a = seen.path[i - 1];
+        const PathPoint& b = seen.path[i];
+        double share = before / (before - after);
+        for (int step = 0; step < kSecants; ++step) {
+            // The chord's slope will do for corrections as small as the bulge.
+            const double off = line.foot(between(a, b, share)).arc_mm - along_mm;
+            share = std::clamp(share + off / (before - after), 0.0, 1.0);
+        }
+        const Eigen::Vector3d out = between(a, b, share) - section.position_mm;
+        found.push_back(std::atan2(out.dot(section.across()), out.dot(section.reference)));
+    }
+    return found;
+}
+
 }  // namespace
 
 LaidClosure laid_closure(std::span<const PathPoint> laid, std::span<const double> starts_rad,
@@ -158,6 +214,39 @@ LaidClosure laid_closure(std::span<const PathPoint> laid, std::span<const double
     }
     measure_closure(found.off_rad, closure);
     measure_drift(std::move(found.off_rad), closure);
+    return closure;
+}
+
+LaidClosure laid_tube_closure(std::span<const PathPoint> laid, std::span<const PathPoint> meant,
+                              std::size_t circuits, const CentreLine& line,
+                              std::span<const double> sections_mm) {
+    const AlongTube of_laid = along_tube(laid, line);
+    const AlongTube of_meant = along_tube(meant, line);
+    const std::size_t passes = 2 * circuits;
+    LaidClosure closure;
+    std::vector<std::vector<double>> off_rad(circuits);
+    for (const double section : sections_mm) {
+        const std::vector<double> is = crossings(of_laid, line, section);
+        const std::vector<double> was = crossings(of_meant, line, section);
+        if (is.size() < passes || was.size() < passes) {
+            continue;
+        }
+        ++closure.parallels;
+        const auto off = [&](std::size_t pass) {
+            return std::remainder(is[is.size() - passes + pass] - was[was.size() - passes + pass],
+                                  2.0 * kPi);
+        };
+        for (std::size_t i = 0; i < circuits; ++i) {
+            off_rad[i].push_back(0.5 * (off(2 * i) + off(2 * i + 1)));
+        }
+    }
+    if (closure.parallels == 0) {
+        closure.failure = "the laid fibre crosses no section of the tube as often as its " +
+                          std::to_string(circuits) + " circuits do";
+        return closure;
+    }
+    measure_closure(off_rad, closure);
+    measure_drift(off_rad, closure);
     return closure;
 }
 

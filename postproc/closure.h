@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "geodesic/surface_path.h"
+#include "mesh/centre_line.h"
 
 namespace meshwind {
 
@@ -43,5 +44,18 @@ struct LaidClosure {
 [[nodiscard]] LaidClosure laid_closure(std::span<const PathPoint> laid,
                                        std::span<const double> starts_rad, double low_mm,
                                        double high_mm);
+
+/// The same of a tube that bends. Its circuits are not alike, nor are their blocks, so following
+/// differs from one to the next by more than the limit; what is laid is held against what the same
+/// blocks would lay with positions that are not rounded, to which following is common. Sections
+/// square to the tube's line stand for the parallels and angles about the line for azimuths; of
+/// each circuit's two passes the mean counts, in which moves along the tube cancel.
+/// \param meant mandrel frame, of the blocks as planned \param circuits >= 2, of two passes each:
+/// the last ones of both paths
+/// \param sections_mm along the line; not all need be crossed
+[[nodiscard]] LaidClosure laid_tube_closure(std::span<const PathPoint> laid,
+                                            std::span<const PathPoint> meant, std::size_t circuits,
+                                            const CentreLine& line,
+                                            std::span<const double> sections_mm);
 
 }  // namespace meshwind

@@ -293,6 +293,7 @@ private:
 
     [[nodiscard]] LaidElbow laid() const {
         LaidElbow laid;
+        laid.line = tube_.line;
         laid.lines = lines_.count();
         laid.needed_by_bend = lines_.needed;
         laid.angle_rad = angle_rad_;

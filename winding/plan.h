@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geodesic/measure.h"
+#include "mesh/centre_line.h"
 #include "winding/arrange.h"
 #include "winding/library.h"
 #include "winding/pattern.h"
@@ -125,6 +126,7 @@ struct LaidElbow {
     double thinnest_layers = 0.0;       ///< on the bend, of both hands: at the outer equator
     double thickest_layers = 0.0;       ///< at the inner one
     std::array<LaidElbowLeg, 2> leg{};  ///< at the tube's first and second rim
+    std::optional<CentreLine> line{};   ///< of the tube, from the first rim to the second
 };
 
 /// What planning took; for reports.

@@ -127,5 +127,110 @@ TEST(Closure, TooFewCircuitsAreAFailure) {
     EXPECT_NE(closure.failure.find("7 circuits"), std::string::npos) << closure.failure;
 }
 
+// A tube with a leg of 150 mm on either side of a bend of 90 degrees.
+CentreLine bent_line() {
+    const double bend_mm = 120.0 * 0.5 * kPi;
+    return {CentrePlace{},
+            {{150.0, Eigen::Vector2d::Zero()},
+             {bend_mm, Eigen::Vector2d(-1.0 / 120.0, 0.0)},
+             {150.0, Eigen::Vector2d::Zero()}}};
+}
+
+// Both hands of helices on it, n circuits up and down and a little beyond its ends. `phi` moves a
+// place of the fibre about the line and `along_mm` along it, by circuit, pass and share of the way.
+struct Moved {
+    double phi_rad = 0.0;
+    double along_mm = 0.0;
+};
+
+SurfacePath wound_on_tube(const CentreLine& line, int n,
+                          const std::function<Moved(double circuit, int pass, double along)>& off) {
+    constexpr int kStations = 400;
+    constexpr double kTubeRadius_mm = 40.0;
+    constexpr double kBeyond_mm = 20.0;
+    const double length_mm = line.length_mm() + 2.0 * kBeyond_mm;
+    SurfacePath path;
+    for (int i = 0; i < n; ++i) {
+        for (int pass = 0; pass < 2; ++pass) {
+            const auto place = [&](double share) {
+                const double up = pass == 0 ? share : 1.0 - share;
+                const Moved moved = off(i + 0.5 * pass, pass, up);
+                const CentrePlace at = line.at(length_mm * up - kBeyond_mm + moved.along_mm);
+                const double phi = 5.0 * i + 2.0 * pass + 9.0 * share + moved.phi_rad;
+                return Eigen::Vector3d(
+                    at.position_mm +
+                    kTubeRadius_mm * (std::cos(phi) * at.reference + std::sin(phi) * at.across()));
+            };
+            for (int s = 0; s <= kStations; ++s) {
+                constexpr double kDelta = 1e-6;
+                const double share = static_cast<double>(s) / kStations;
+                PathPoint point;
+                point.position_mm = place(share);
+                point.tangent = (place(share + kDelta) - place(share - kDelta)).normalized();
+                point.normal = Eigen::Vector3d::UnitX();  // not looked at
+                path.push_back(point);
+            }
+        }
+    }
+    return path;
+}
+
+std::vector<double> sections_of(const CentreLine& line) {
+    std::vector<double> sections;
+    for (int k = 1; k < 20; ++k) {
+        sections.push_back(line.length_mm() * k / 20.0);
+    }
+    return sections;
+}
+
+// Stations are a rotation by 9 / 400 rad apart: cubics of such chords are off by (9 / 400)^4 / 384,
+// 7e-10 of the radius, and slopes taken over 2e-6 of the way are known to 1e-9.
+constexpr double kCubic_rad = 1e-8;
+
+TEST(TubeClosure, FollowingAndMovesAlongTheTubeAreNoDrift) {
+    const CentreLine line = bent_line();
+    const auto badly = [](double circuit, int pass, double along) {
+        return Moved{rad_from_deg(0.3) * std::sin(7.0 * circuit + 20.0 * along + pass), 0.0};
+    };
+    const SurfacePath meant = wound_on_tube(line, 7, badly);
+    LaidClosure closure = laid_tube_closure(meant, meant, 7, line, sections_of(line));
+    EXPECT_TRUE(closure.holds());
+    EXPECT_EQ(closure.closure_rad, 0.0);
+    EXPECT_EQ(closure.parallels, 19U);
+    // 0.1 mm further up after each pass: one hand moves on by what the other moves back.
+    const SurfacePath even = wound_on_tube(line, 7, [](auto...) { return Moved{}; });
+    const SurfacePath further = wound_on_tube(line, 7, [](double, int, double) {
+        return Moved{0.0, 0.1};
+    });
+    closure = laid_tube_closure(further, even, 7, line, sections_of(line));
+    EXPECT_TRUE(closure.holds());
+    EXPECT_LT(closure.closure_rad, kCubic_rad);
+    EXPECT_LT(closure.drift_rad, kCubic_rad);
+}
+
+TEST(TubeClosure, DriftOfEachCircuitAddsUp) {
+    const CentreLine line = bent_line();
+    for (const int n : {5, 23}) {
+        const double per_circuit = rad_from_deg(0.001);
+        const SurfacePath meant = wound_on_tube(line, n, [](auto...) { return Moved{}; });
+        const SurfacePath laid = wound_on_tube(line, n, [&](double circuit, int, double) {
+            return Moved{per_circuit * circuit, 0.0};
+        });
+        const LaidClosure closure =
+            laid_tube_closure(laid, meant, static_cast<std::size_t>(n), line, sections_of(line));
+        EXPECT_NEAR(closure.closure_rad, n * per_circuit, n * kCubic_rad);
+        EXPECT_EQ(closure.holds(), n < 10);
+        EXPECT_NEAR(closure.drift_rad, 0.5 * (n - 1) * per_circuit, kCubic_rad);
+    }
+}
+
+TEST(TubeClosure, SaysWhereThereIsNothingToCompare) {
+    const CentreLine line = bent_line();
+    const SurfacePath meant = wound_on_tube(line, 4, [](auto...) { return Moved{}; });
+    const LaidClosure closure = laid_tube_closure(meant, meant, 5, line, sections_of(line));
+    EXPECT_FALSE(closure.holds());
+    EXPECT_NE(closure.failure.find("as often as its 5 circuits"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace meshwind
