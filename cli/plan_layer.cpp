@@ -7,6 +7,7 @@
 
 #include "cli/piece_program.h"
 #include "core/units.h"
+#include "mesh/grown_tube.h"
 #include "winding/cover.h"
 #include "winding/elbow_plan.h"
 #include "winding/hoop_path.h"
@@ -78,7 +79,7 @@ private:
     [[nodiscard]] Plan plan_pattern_asked_for() const {
         const RevolutionFinding found = find_revolution(setup_.mandrel);
         if (!found.body) {
-            const TubeFinding tube = find_tube(setup_.mandrel);
+            const TubeFinding tube = tube_of_wall();
             return layer_.kind == LayerKind::Helical && tube.tube ? plan_elbow_on(*tube.tube)
                                                                   : no_pattern(found);
         }
@@ -114,8 +115,17 @@ private:
         return plan;
     }
 
+    // Layers follow the bare tube's line, whatever shape they have.
+    [[nodiscard]] TubeFinding tube_of_wall() const {
+        if (options_.bare == nullptr) {
+            return find_tube(setup_.mandrel);
+        }
+        TubeFinding bare = find_tube(*options_.bare);
+        return bare.tube ? grown_tube(*bare.tube, setup_.mandrel, options_.build_up_mm) : bare;
+    }
+
     [[nodiscard]] Plan plan_elbow_that_covers() const {
-        const TubeFinding found = find_tube(setup_.mandrel);
+        const TubeFinding found = tube_of_wall();
         Plan plan;
         plan.failure = found.why_not;
         return found.tube ? covering(plan_elbow_on(*found.tube)) : plan;
@@ -139,6 +149,7 @@ private:
         elbow.tow = planned_tow();
         elbow.turn.extension_mm = setup_.job.mandrel.extension_mm;
         elbow.seed = options_.seed;
+        elbow.on_layers = options_.bare != nullptr;
         Plan plan = plan_elbow(setup_.mandrel, tube, elbow);
         if (options_.before != nullptr) {
             plan.cut_because = "the lines of an elbow are not led on from another layer";

@@ -19,8 +19,9 @@ inline constexpr double kCoveredShare = 0.9;
 struct LayerPlanOptions {
     std::uint64_t seed = 1;
     int effort = 1;  ///< how long the plan is improved, as a multiple
-    /// What the layers before lie on: hoops lie on its cylinder.
+    /// What the layers before lie on: hoops lie on its cylinder, elbows keep its line.
     const Mandrel* bare = nullptr;
+    double build_up_mm = 0.0;      ///< of the layers before at most
     const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
     /// Winds pieces and winds their program again; returns those that it does not lay as planned.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;

@@ -1,5 +1,6 @@
 #include "cli/wind.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <utility>
@@ -177,6 +178,12 @@ private:
         if (number > 0) {
             options.before = &result_.layers[number - 1];
             options.bare = &result_.layers.front().setup.mandrel;
+            for (const WoundLayer& before : result_.layers) {
+                options.build_up_mm +=
+                    before.build_up_mm.empty()
+                        ? 0.0
+                        : *std::max_element(before.build_up_mm.begin(), before.build_up_mm.end());
+            }
         }
         options.seed = request_.seed;
         options.effort = request_.effort;

@@ -53,6 +53,7 @@ private:
             plan.seed = options_.seed;
             plan.effort = options_.effort;
             plan.bare = options_.bare;
+            plan.build_up_mm = options_.build_up_mm;
             plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;
             plan.refused = [this](std::span<const Piece> pieces) {
                 return wind_whole(pieces, false);

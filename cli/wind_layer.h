@@ -47,6 +47,7 @@ struct WindLayerOptions {
     std::optional<ImportRequest> import;
     const WoundLayer* before = nullptr;  ///< none for the first
     const Mandrel* bare = nullptr;       ///< under all layers; none for the first
+    double build_up_mm = 0.0;            ///< of the layers before at most
     std::uint64_t seed = 1;
     int effort = 1;
     std::function<void(const std::string& step, double share)> progress;

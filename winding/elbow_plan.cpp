@@ -164,6 +164,31 @@ private:
         return down ? reversed(path) : path;
     }
 
+    // The same over the mesh. Where layers lie on the tube, the angle to its line changes as much
+    // as both parts of the way do that are gone further out.
+    [[nodiscard]] SurfacePath path_on(const Wall& wall, const std::vector<ElbowStation>& line,
+                                      bool down) const {
+        SurfacePath path = path_of(line, down);
+        if (!options_.on_layers) {
+            wall.put(path);
+            return path;
+        }
+        const SurfacePath on_tube = path;
+        wall.settle(path, [&](std::size_t i, const Vector3d& position) {
+            const CentrePlace foot = tube_.line.foot(position);
+            const Vector3d out = position - foot.position_mm;
+            const double radius = out.norm();
+            const Vector3d& tangent = on_tube[i].tangent;
+            const double along = tangent.dot(foot.tangent);
+            const Vector3d around = tangent - along * foot.tangent;
+            const double bend = foot.curvature_per_mm.dot(out) / radius;
+            const double further = (1.0 - bend * radius) / (1.0 - bend * shape_.tube_radius_mm);
+            return Vector3d(further * along * foot.tangent +
+                            radius / shape_.tube_radius_mm * around);
+        });
+        return path;
+    }
+
     [[nodiscard]] const Rim& rim_at(std::size_t end) const {
         return mandrel_.rims[static_cast<std::size_t>(tube_.rim[end])];
     }
@@ -262,8 +287,8 @@ private:
                 // The k-th pair: line i = k (q - p), then the mirror image of p - i.
                 const std::size_t i = k / 2 * onward % count;
                 const bool down = k % 2 == 1;
-                SurfacePath path = path_of(lines_.line[down ? (p + count - i) % count : i], down);
-                wall.put(path);
+                SurfacePath path =
+                    path_on(wall, lines_.line[down ? (p + count - i) % count : i], down);
                 courses[k] = course_along(mandrel_.surface, std::move(path), options_.tow.friction);
                 courses[k].start_rim = tube_.rim[down ? 1 : 0];
                 courses[k].end_rim = tube_.rim[down ? 0 : 1];

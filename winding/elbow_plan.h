@@ -21,6 +21,8 @@ struct ElbowPlanOptions {
     Tow tow{};
     TurnRule turn{};         ///< friction and band are taken from `tow`
     std::uint64_t seed = 1;  ///< of the samples that coverage is measured on
+    /// The mandrel has layers on the tube (mesh/grown_tube.h): stations are moved onto the mesh.
+    bool on_layers = false;
 };
 
 /// M lines of either hand (elbow_lines.h), the one the mirror image of the other in the plane of
@@ -28,9 +30,10 @@ struct ElbowPlanOptions {
 /// on. Line i arrives at the upper rim and leaves by the mirror image of line (p - i) mod M, which
 /// at the lower rim is followed by line i + q - p: for gcd(q - p, M) = 1 that is one fibre through
 /// all lines. Of all p and q the ones with the least dwell are taken; each turn dwells by as much
-/// as its two lines are apart. Source: the lines on the bend are dimovski_2018_elbows; that they
-/// are joined, and the legs, are not. \return a plan; where nothing can be wound `failure` says
-/// why, with numbers
+/// as its two lines are apart. On layers lines are those of the tube with their mean radius, moved
+/// out to the mesh square to the tube's line. Source: the lines on the bend are
+/// dimovski_2018_elbows; that they are joined, and the legs, are not. \return a plan; where nothing
+/// can be wound `failure` says why, with numbers
 [[nodiscard]] Plan plan_elbow(const Mandrel& mandrel, const Tube& tube,
                               const ElbowPlanOptions& options);
 

@@ -1,8 +1,11 @@
 /// From paths over the ideal body to paths over the mesh.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 
+#include "geodesic/field_walk.h"
 #include "geodesic/surface_path.h"
 #include "mesh/nearest.h"
 #include "mesh/surface.h"
@@ -24,7 +27,18 @@ public:
     /// Sets `at` of every station by its position. \pre neighbours lie a few edges apart at most
     void put(SurfacePath& path) const;
 
+    /// Moves every station onto the mesh, to the place under it: position, normal, tangent and kn
+    /// become those of the patches, and arc lengths are counted anew. \pre as put()
+    /// \param direction of travel of station i at its new position; its part in the tangent plane
+    /// counts
+    void settle(
+        SurfacePath& path,
+        const std::function<Eigen::Vector3d(std::size_t i, const Eigen::Vector3d& position)>&
+            direction) const;
+
 private:
+    void move_under(const Eigen::Vector3d& place_mm, std::optional<FieldWalker>& walker) const;
+
     const Surface& surface_;
     std::optional<NearestPoints> nearest_;
 };

@@ -82,6 +82,30 @@ class Layers(program.ProgramTest):
                                   "--plan", str(self.folder / "out"))
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
+    # Layers are thicker inside a bend than outside, but follow the line of the bare tube.
+    def test_an_elbow_is_wound_twice(self):
+        elbow = self.make("elbow", "--pipe-radius", "40", "--bend-radius", "120", "--leg1", "150",
+                          "--leg2", "150", "--edge", "7")
+        for angles in ((78, 74), (78, 78)):
+            with self.subTest(angles):
+                report = self.wind(elbow, [{"kind": "helical", "angle": angle} for angle in angles],
+                                   redundancy="central-angle")
+                first, second = report["layers"]
+                self.assertFalse(second["goes_on"])
+                self.assertGreater(first["thickness_mm"]["max"],
+                                   1.5 * first["thickness_mm"]["mean"])
+                for layer, suffix in ((first, ""), (second, "-layer-2")):
+                    plan = layer["plan"]
+                    self.assertEqual(plan["planner"], "elbow")
+                    self.assertGreater(plan["coverage"]["fraction"], 0.995)
+                    self.assertLess(plan["coverage"]["regular_cv"], 0.025)
+                    self.assertLess(report["checks"]["closure" + suffix]["closure_deg"], 0.001)
+                    # Rims are round only to what the layer before left uneven.
+                    self.assertLess(report["checks"]["continuity" + suffix]["worst_joint_mm"], 0.1)
+                for name, check in report["checks"].items():
+                    self.assertTrue(check["ok"], name)
+                self.assertTrue((self.folder / "out" / "program-layer-2.ngc").exists())
+
     # What a run with fewer layers leaves behind is its own.
     def test_fewer_layers_remove_the_files_of_more(self):
         pipe = self.make("cylinder", "--radius", "40", "--length", "160", "--edge", "8")
