@@ -22,7 +22,7 @@ namespace meshwind {
 /// Where a check found what it tells: what fails, or else its worst.
 struct CheckPlace {
     Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  ///< on the mandrel, its frame
-    std::optional<std::size_t> block;                       ///< of the program
+    std::optional<std::size_t> block{};                     ///< of the program
     std::size_t fibre = 0;                                  ///< which program, from 0
     std::size_t layer = 0;                                  ///< from 0
 };

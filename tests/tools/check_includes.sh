@@ -27,9 +27,11 @@ nlohmann/               */*_json.cpp
 nlohmann/               cli/report*.cpp
 nlohmann/               cli/report*.h
 nlohmann/               cli/commands.cpp
+nlohmann/               cli/page_data.cpp
 CLI/                    cli/main.cpp
 tbb/                    core/parallel.cpp
 nettle/                 cli/digest.cpp
+nettle/                 cli/report_page.cpp
 sys/                    *.cpp
 '
 
