@@ -7,13 +7,15 @@ import sys
 import program
 
 MACHINE = "six_axis.json"
+PLANNING_S = 600  # two covers; 10 s on an idle core, more with checks built in
 
 
 class Layers(program.ProgramTest):
-    def wind(self, mandrel, layers, code=0, **job):
+    def wind(self, mandrel, layers, code=0, timeout_s=program.TIMEOUT_S, **job):
         job["layers"] = layers
         text = self.write("job.json", json.dumps(job))
-        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out")
+        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out",
+                                  timeout_s=timeout_s)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return json.loads((self.folder / "out" / "report.json").read_text())
 
@@ -105,6 +107,20 @@ class Layers(program.ProgramTest):
                 for name, check in report["checks"].items():
                     self.assertTrue(check["ok"], name)
                 self.assertTrue((self.folder / "out" / "program-layer-2.ngc").exists())
+
+    # Rims stay circles under courses that cross, and what is wound on them holds all checks.
+    def test_a_cover_is_covered(self):
+        pipe = self.make("cylinder", "--radius", "25", "--length", "100", "--edge", "4")
+        report = self.wind(pipe, [{"kind": "cover"}, {"kind": "cover"}], timeout_s=PLANNING_S)
+        self.assertTrue(report["ok"])
+        first, second = (layer["plan"]["coverage"]["fraction"] for layer in report["layers"])
+        self.assertGreater(second, first - 0.02)
+        thickness = report["layers"][0]["thickness_mm"]
+        self.assertGreater(thickness["max"], thickness["mean"] + 0.1)
+        grown = str(self.folder / "out" / "mandrel-layer-2.obj")
+        inspected = json.loads(self.run_program("inspect", grown, "--json").stdout)
+        for rim in inspected["mandrel"]["rims"]:
+            self.assertLess(rim["circularity_mm"], 1e-4)
 
     # What a run with fewer layers leaves behind is its own.
     def test_fewer_layers_remove_the_files_of_more(self):

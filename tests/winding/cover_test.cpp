@@ -8,7 +8,9 @@
 
 #include "core/parallel.h"
 #include "core/units.h"
+#include "mesh/thicken.h"
 #include "tests/winding/fixtures.h"
+#include "winding/build_up.h"
 
 namespace meshwind {
 namespace {
@@ -250,6 +252,26 @@ TEST(PlanCover, LeavesOutWhatIsRefusedAgainAndAgain) {
         return refused;
     };
     expect_no_course_steeper(cover_cylinder(options), limit, Rejection::InItsPlace);
+}
+
+// On what a cover has left, rims and all, the next one joins and covers as well, within what plans
+// of one mandrel differ by.
+TEST(PlanCover, CoversASecondTime) {
+    constexpr double kEdge_mm = 4.0;
+    const Mandrel pipe = test::made_cylinder(30.0, 160.0, kEdge_mm);
+    const Plan first = cover(pipe, 2000);
+    ASSERT_EQ(first.failure, "");
+    const auto thickness = build_up_mm(pipe.surface, first.face_layers, 12.0, 0.25);
+    const auto [least, most] = std::minmax_element(thickness.begin(), thickness.end());
+    EXPECT_GT(*most - *least, 0.15);  // more than half a ply
+    const Mandrel grown = thicken(pipe, thickness);
+    const Plan second = cover(grown, 2000);
+    ASSERT_EQ(second.failure, "");
+    EXPECT_EQ(second.fibres, 1);
+    EXPECT_GT(second.coverage.fraction, first.coverage.fraction - 0.02);
+    EXPECT_LT(second.worst_joint_mm, kEdge_mm * kEdge_mm / (8.0 * 30.0));  // the sagitta
+    expect_continuous(second);
+    expect_books_to_balance(grown, second);
 }
 
 // A cylinder that goes over into a cone at a sharp convex edge and back at a sharp concave one:
