@@ -50,7 +50,8 @@ constexpr int kMoreClearanceRounds = 2;
 // A better motion is chosen so many times at most.
 constexpr int kMotionRounds = 12;
 
-// And so many times after a program has been wound again.
+// And so many times after a program has been wound again, as long as each leaves fewer pieces wrong
+// than the one before.
 constexpr int kMendedPrograms = 3;
 
 // The first motion is kept where it takes hardly longer: its blocks are fewer, and repeat where the
@@ -119,6 +120,7 @@ public:
             }
         }
         std::map<std::size_t, Rejection> wrong;
+        std::size_t wrong_before = std::numeric_limits<std::size_t>::max();
         std::optional<PieceProgram> hardly_faster;
         for (int mendings = 0;; ++mendings) {
             if (options.optimal && !improver) {
@@ -141,8 +143,9 @@ public:
             if (wrong.empty() || !improver) {
                 break;
             }
-            const bool mended = mendings < kMendedPrograms && improver->give_up(wrong_stations()) &&
-                                make_clear(*improver, rule);
+            const bool mended = mendings < kMendedPrograms && wrong.size() < wrong_before &&
+                                improver->give_up(wrong_stations()) && make_clear(*improver, rule);
+            wrong_before = wrong.size();
             if (!mended) {
                 improver.reset();
             }

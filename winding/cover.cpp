@@ -63,9 +63,6 @@ constexpr double kWorthPlanning = 0.5;
 // fits when every station is tried.
 constexpr double kHeadMargin_mm = 0.3;
 
-// Plans that are tried until the machine can wind the whole.
-constexpr int kMaxAttempts = 8;
-
 // Attempts that refuse as many courses as before, or more, before no others are put there.
 constexpr int kMostInVain = 2;
 
@@ -437,7 +434,7 @@ private:
         std::vector<PlacedCourse> best;
         std::size_t least = 0;
         int in_vain = 0;
-        for (int attempt = 0; attempt < kMaxAttempts && !courses_.empty(); ++attempt) {
+        for (int attempt = 0; attempt < kMostAttempts && !courses_.empty(); ++attempt) {
             join_to_fibres();
             lay_out(rules_, members_, order_, plan_);
             const auto refused = refused_courses();

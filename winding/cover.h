@@ -11,6 +11,10 @@
 
 namespace meshwind {
 
+/// The whole plan is shown to the machine so many times at most. Of 14 plans of five tees one
+/// needed a second attempt and none more; of those that need more than a few, each costs minutes.
+inline constexpr int kMostAttempts = 5;
+
 struct CoverOptions {
     Tow tow;
     TurnRule turn;  ///< friction and band are taken from `tow`
@@ -27,7 +31,8 @@ struct CoverOptions {
     AskMachine accept;  ///< asked of every course, between half turns, before it enters the plan
     AskMachine wind;    ///< asked of every course that is to stay: its own program, wound again
     /// Asked of the whole plan: which of its pieces the machine cannot wind in their place. Those
-    /// are replaced and the plan is made again, a few times.
+    /// are replaced and the plan is made again, until it was asked kMostAttempts times; then the
+    /// plan with the fewest of them stands.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;
     std::function<void(const char* step, double share)> progress;
 };

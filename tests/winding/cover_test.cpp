@@ -254,6 +254,30 @@ TEST(PlanCover, LeavesOutWhatIsRefusedAgainAndAgain) {
     expect_no_course_steeper(cover_cylinder(options), limit, Rejection::InItsPlace);
 }
 
+// Whatever is put in their place, courses are refused: the plan with the fewest of them stands.
+TEST(PlanCover, EndsWhereEveryPlanIsRefused) {
+    CoverOptions options = wide_tow();
+    int asked = 0;
+    options.refused = [&asked](std::span<const Piece> pieces) {
+        // Other courses each time, and as many but for the third.
+        std::vector<std::size_t> refused;
+        const std::size_t many = ++asked == 3 ? 1 : 5;
+        for (std::size_t i = 0; i < pieces.size() && refused.size() < many; ++i) {
+            if (pieces[i].kind == PieceKind::Course) {
+                refused.push_back(i);
+            }
+        }
+        return refused;
+    };
+    const Plan plan = cover_cylinder(options);
+    EXPECT_EQ(asked, kMostAttempts);
+    EXPECT_EQ(plan.failure, "");
+    EXPECT_EQ(plan.effort.rejections[static_cast<std::size_t>(Rejection::InItsPlace)],
+              5 * (kMostAttempts - 1) + 1);
+    EXPECT_GT(plan.coverage.fraction, 0.9);
+    expect_continuous(plan);
+}
+
 // On what a cover has left, rims and all, the next one joins and covers as well, within what plans
 // of one mandrel differ by.
 TEST(PlanCover, CoversASecondTime) {
