@@ -12,7 +12,6 @@
 #include "winding/coverage.h"
 #include "winding/families.h"
 #include "winding/random.h"
-#include "winding/samples.h"
 
 namespace meshwind {
 namespace {
@@ -98,8 +97,16 @@ void measure_regular(const PlanZones& zones, const CoverageSamples& samples,
     }
 }
 
-// A course with as much of the turns before and after it as its band still covers wall from.
-SurfacePath with_ends(std::span<const Piece> pieces, std::size_t i, double tow_width_mm) {
+}  // namespace
+
+CoverageSamples plan_samples(const Surface& surface, double tow_width_mm, std::uint64_t seed) {
+    const double area = area_mm2({surface.position_mm, surface.face});
+    const double spacing_mm =
+        std::max(tow_width_mm / kSamplesPerTow, std::sqrt(area / kMaxSamples));
+    return sample_surface(surface, spacing_mm, seed_of(Stream::Sampling, seed));
+}
+
+SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i, double tow_width_mm) {
     SurfacePath path = pieces[i].path;
     const auto over_rim = [&](std::size_t k) {
         return k < pieces.size() && pieces[k].kind == PieceKind::Transition &&
@@ -132,15 +139,9 @@ SurfacePath with_ends(std::span<const Piece> pieces, std::size_t i, double tow_w
     return path;
 }
 
-}  // namespace
-
 void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
                   std::uint64_t seed, const PlanZones& zones, Plan& plan) {
-    const double area = area_mm2({surface.position_mm, surface.face});
-    const double spacing_mm =
-        std::max(tow_width_mm / kSamplesPerTow, std::sqrt(area / kMaxSamples));
-    const CoverageSamples samples =
-        sample_surface(surface, spacing_mm, seed_of(Stream::Sampling, seed));
+    const CoverageSamples samples = plan_samples(surface, tow_width_mm, seed);
     const FootprintFinder footprints(wall, samples, tow_width_mm);
     std::vector<std::vector<std::int32_t>> footprint(plan.pieces.size());
     parallel_for(plan.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -148,7 +149,7 @@ void measure_plan(const Surface& surface, const Surface& wall, double tow_width_
         for (std::size_t i = begin; i < end; ++i) {
             if (plan.pieces[i].kind == PieceKind::Course) {
                 footprint[i] =
-                    footprints.footprint(with_ends(plan.pieces, i, tow_width_mm), scratch);
+                    footprints.footprint(course_with_ends(plan.pieces, i, tow_width_mm), scratch);
             }
         }
     });

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "winding/library.h"
 #include "winding/plan.h"
+#include "winding/samples.h"
 
 namespace meshwind {
 
@@ -22,6 +24,16 @@ struct PlanZones {
     /// scatter is that of the layers over these. Empty: the same everywhere.
     std::function<double(const Eigen::Vector3d& position_mm)> meant{};
 };
+
+/// The samples that a plan's coverage is measured on: four to a tow width each way.
+/// \param seed of the plan
+[[nodiscard]] CoverageSamples plan_samples(const Surface& surface, double tow_width_mm,
+                                           std::uint64_t seed);
+
+/// The path of course `i` with as much of the turns before and after it as its band still covers
+/// wall from.
+[[nodiscard]] SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i,
+                                           double tow_width_mm);
 
 /// Fills in coverage, layers and angles per face, winding angles and places of a plan's courses.
 /// \param surface what is to be covered \param wall what the stations' faces are of: the surface,
