@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "cli/digest.h"
-#include "cli/layup_totals.h"
-#include "cli/layup_vtu.h"
+#include "cli/layup_files.h"
 #include "cli/output_files.h"
 #include "cli/page_data.h"
 #include "cli/report.h"
@@ -103,26 +102,6 @@ void refuse_turns_not_free(const Job& job, const fs::path& file, const Machine& 
 
 std::string layer_words(std::size_t layer) {
     return "layer " + std::to_string(layer + 1);
-}
-
-// The first layer's surface with what all of them put there, and the thickness of each.
-std::string layup_of(const std::vector<WoundLayer>& layers) {
-    const Surface& surface = layers.front().setup.mandrel.surface;
-    const LayupTotals all = layup_totals(layers);
-    std::vector<std::vector<double>> each;
-    for (const WoundLayer& layer : layers) {
-        each.push_back(layup_totals({&layer, 1}).thickness_mm);
-    }
-    std::vector<CellArray> cells{
-        {"layers", std::span<const double>(all.layers)},
-        {"thickness_mm", std::span<const double>(all.thickness_mm)},
-        {"fibre_angle_to_spindle_deg", std::span<const double>(all.angle_deg)},
-        {"region", std::span<const std::int32_t>(surface.region)}};
-    for (std::size_t i = 0; layers.size() > 1 && i < layers.size(); ++i) {
-        cells.push_back({"thickness_of_layer_" + std::to_string(i + 1) + "_mm",
-                         std::span<const double>(each[i])});
-    }
-    return layup_vtu(surface.position_mm, surface.face, cells);
 }
 
 class Winder {
@@ -256,7 +235,9 @@ private:
             for (std::size_t i = 0; i < result_.layers.size(); ++i) {
                 add_layer(i);
             }
-            folder.add("layup.vtu", layup_of(result_.layers));
+            for (const MadeFile& file : layup_files(result_, request_.seed)) {
+                folder.add(file.name, file.bytes);
+            }
         }
         watch_.stage("write");
         const std::string report = report_json(result_);

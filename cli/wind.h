@@ -50,10 +50,11 @@ struct WindResult {
     }
 };
 
-/// Runs the job and writes the output folder, whole or not at all: path.csv, motion.csv, layup.vtu,
-/// report.json, and the program if every check passed or `force` is set. Each further layer and
-/// fibre has program, path and motion of its own, each further layer its mandrel (run_files.h).
-/// \throws InputError, IoError for input that cannot be used; nothing is written then
+/// Runs the job and writes the output folder, whole or not at all: path.csv, motion.csv,
+/// report.json, lay-up and fibre (layup_files.h), and the program if every check passed or `force`
+/// is set. Each further layer and fibre has program, path, motion and fibre of its own, each
+/// further layer its mandrel (run_files.h). \throws InputError, IoError for input that cannot be
+/// used; nothing is written then
 [[nodiscard]] WindResult wind(const WindRequest& request);
 
 }  // namespace meshwind

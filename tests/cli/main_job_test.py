@@ -36,6 +36,11 @@ def axis_words(line):
             for letter, number in re.findall(r"([A-Z])\s*([-+]?[\d.]+)", line)]
 
 
+def pieces_of(out):
+    with open(out / "path.csv", newline="") as file:
+        return {(row["kind"], row["course"]) for row in csv.DictReader(file)}
+
+
 class MainJob(program.ProgramTest):
     def wind(self, out):
         mandrel = self.folder / "tee.stl"
@@ -73,6 +78,19 @@ class MainJob(program.ProgramTest):
         for axis in "CZYXAB":
             self.assertLessEqual({"min", "max", "max_rounding_error"}, set(part["axes"][axis]))
         self.assertLessEqual(TIMES, set(report["timing_s"]))
+
+    def check_layup(self, out, report):
+        """A cover counts its layers at closer stations than the plies are taken from."""
+        triangles = json.loads((out / "layup.json").read_text())["triangles"]
+        self.assertEqual(len(triangles), report["mandrel"]["triangles"])
+        area = sum(t["area_mm2"] for t in triangles)
+        self.assertAlmostEqual(area / report["mandrel"]["area_mm2"], 1.0, 6)
+        plies = sum(t["area_mm2"] * ply[4] for t in triangles for ply in t["plies"])
+        layers = plies / area / 0.25
+        self.assertAlmostEqual(layers / report["plan"]["coverage"]["mean_layers"], 1.0, delta=0.03)
+        names = re.findall("^o (.*)$", (out / "fibre.obj").read_text(), re.MULTILINE)
+        self.assertEqual(len(names), report["plan"]["courses"] + report["plan"]["transitions"])
+        self.assertEqual(set(names), {f"{kind}_{course}" for kind, course in pieces_of(out)})
 
     def check_program(self, out):
         """From the first position on, the increments add up to motion.csv exactly."""
@@ -187,6 +205,7 @@ class MainJob(program.ProgramTest):
         self.assertEqual((out / "path.csv").read_text().split("\n", 1)[0], PATH_HEADER)
         self.assertEqual((out / "motion.csv").read_text().split("\n", 1)[0], MOTION_HEADER)
         self.assertIn("VTKFile", (out / "layup.vtu").read_text()[:200])
+        self.check_layup(out, report)
         self.check_program(out)
         self.check_verify(out)
         self.check_broken_programs(out)
@@ -209,8 +228,8 @@ class MainJob(program.ProgramTest):
         machine = json.loads((program.SOURCE / "machines/six_axis.json").read_text())
         machine["fibre"]["min_free_length"] = 160
         self.write("machine.json", json.dumps(machine))
-        files = {"program.ngc", "path.csv", "motion.csv"}
-        more = {"program-2.ngc", "path-2.csv", "motion-2.csv"}
+        files = {"program.ngc", "path.csv", "motion.csv", "fibre.obj", "fibre.step"}
+        more = {"program-2.ngc", "path-2.csv", "motion-2.csv", "fibre-2.obj", "fibre-2.step"}
         covered = []
         for fibres in 2, 1:
             job = json.loads(JOB) | {"fibres": fibres}

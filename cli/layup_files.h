@@ -1,0 +1,24 @@
+/// The lay-up and the fibre of a run for those who go on with them: layup.vtu, layup.json,
+/// fibre.obj, fibre.step (docs/files.md, "Lay-up").
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/wind.h"
+
+namespace meshwind {
+
+/// A file of the output folder, in memory.
+struct MadeFile {
+    std::string name;
+    std::string bytes;
+};
+
+/// The lay-up on the bare mandrel's triangles and the polylines of every fibre. The same run gives
+/// the same bytes. \param seed of the run: the plies are measured on its coverage samples
+/// \pre result.planned()
+[[nodiscard]] std::vector<MadeFile> layup_files(const WindResult& result, std::uint64_t seed);
+
+}  // namespace meshwind
