@@ -13,6 +13,7 @@
 #include "winding/aim_pass.h"
 #include "winding/hoop_path.h"
 #include "winding/measure_plan.h"
+#include "winding/pin_pattern.h"
 #include "winding/regular_parts.h"
 #include "winding/revolution_pieces.h"
 #include "winding/steered_pass.h"
@@ -74,7 +75,7 @@ public:
         if (options_.kind == PatternKind::Polar ? !aim_at_openings() : !aim_at_angle()) {
             return std::move(plan_);
         }
-        if (!ends_hold() || !choose_pattern()) {
+        if (!ends_hold() || !choose_pattern() || !place_pins()) {
             return std::move(plan_);
         }
         begin_at({goal(0), goal(1)}, {pass_.stations.front(), way_back(pass_).front()});
@@ -168,11 +169,60 @@ private:
                             " pole; a larger angle turns before it");
             }
             const RimCrossing crossing = crossing_of(end);
-            if (!can_turn(*rim, crossing, rule_)) {
+            if (!options_.pins && !can_turn(*rim, crossing, rule_)) {
                 return fail(why_no_turn("the " + name + " rim", *rim, crossing, rule_));
             }
         }
+        if (options_.pins && !count_on_pins()) {
+            return fail("pins stand on the extension of a rim that the fibre runs over, and at " +
+                        degrees(angle_rad_) +
+                        " it turns by itself at both ends; use \"friction\", or give the body a "
+                        "straight end");
+        }
         return true;
+    }
+
+    // Turns over rims are on pins. False where there are none.
+    bool count_on_pins() {
+        pins_.emplace(*options_.pins, options_.tow.width_mm, options_.tow.thickness_mm,
+                      rule_.extension_mm);
+        for (std::size_t end = 0; end < 2; ++end) {
+            if (dwells(end)) {
+                pins_->add(end, pieces_.rim_of(end)->radius_mm, crossing_of(end).angle_rad);
+            }
+        }
+        return dwells(0) || dwells(1);
+    }
+
+    // For the pattern that was chosen.
+    bool place_pins() {
+        if (!pins_) {
+            return true;
+        }
+        if (lattice_ && lattice_->series > 1) {
+            return fail(
+                "the bands of a rib are set side by side by dwelling at a rim, and on pins the "
+                "fibre dwells by whole pins; ask for one series");
+        }
+        const std::string why = pins_->place(pattern_);
+        return why.empty() || fail(why);
+    }
+
+    // A turn over a rim; on pins with the ring that the first one needs.
+    LaidTurn turn_between(std::size_t end, const PathPoint& from, const PathPoint& to) {
+        if (!pins_) {
+            return pieces_.turn(end, from, to);
+        }
+        const Rim& rim = *pieces_.rim_of(end);
+        const RimCrossing crossing = crossing_at(rim, from.position_mm, from.tangent);
+        PinTurnShape shape = pins_->shape(end);
+        shape.angle_rad = crossing.angle_rad;
+        if (std::none_of(plan_.pins.begin(), plan_.pins.end(),
+                         [&](const PinRing& ring) { return ring.rim == rim.id; })) {
+            plan_.pins.push_back(ring_for(rim, crossing, shape));
+            plan_.pins.back().height_mm = pins_->height_mm(end);
+        }
+        return turn_on_pins(rim, crossing, shape, options_.tow.width_mm);
     }
 
     // How the pass crosses the rim of an end on its way out, or begins there (seen backwards).
@@ -183,6 +233,9 @@ private:
 
     // About +Z, of a turn over a rim without dwell.
     [[nodiscard]] double steered_rad(std::size_t end) const {
+        if (options_.pins) {
+            return pins_->shortest_rad(end);
+        }
         const RimCrossing crossing = crossing_of(end);
         RimCrossing back = crossing;
         back.sense = -crossing.sense;
@@ -223,9 +276,11 @@ private:
             options_.lattice ? 1 : std::max(1, static_cast<int>(std::lround(options_.layers)));
         FoundPattern found;
         try {
-            found = options_.lattice
-                        ? find_wished_lattice(circuit, *options_.lattice, options_.wish)
-                        : find_wished_pattern(circuit, options_.wish);
+            const auto find = [&](const PatternWish& wish) {
+                return options_.lattice ? find_wished_lattice(circuit, *options_.lattice, wish)
+                                        : find_wished_pattern(circuit, wish);
+            };
+            found = pins_ ? pins_->find(options_.wish, find) : find(options_.wish);
         } catch (const InputError& error) {
             return fail(std::string("no pattern can be looked for: ") + error.what());
         }
@@ -367,7 +422,7 @@ private:
             const SurfacePath& from = passes[i].path;
             std::optional<LaidTurn> between;
             if (turns) {
-                between = pieces_.turn(end, from.back(), passes[i + 1].path.front());
+                between = turn_between(end, from.back(), passes[i + 1].path.front());
             }
             add(std::move(passes[i]));
             if (between) {
@@ -411,8 +466,8 @@ private:
         std::array<double, 2> turn{};
         for (std::size_t end = 0; end < 2; ++end) {
             if (dwells(end)) {
-                turn[end] =
-                    steered_rad(end) + std::max(kLeastDwell_rad, share * pattern_.dwell_rad);
+                const double least = pins_ ? 0.0 : kLeastDwell_rad;
+                turn[end] = steered_rad(end) + std::max(least, share * pattern_.dwell_rad);
             }
         }
         return turn;
@@ -491,6 +546,7 @@ private:
     double angle_rad_ = 0.0;  // at the widest place
     HalfSlips slip_;          // of the passes
     MeridianPass pass_;
+    std::optional<PinnedEnds> pins_;
     Pattern pattern_;
     PatternBegin begin_;  // where the first circuit or ply begins
     std::optional<LaidLattice> lattice_;

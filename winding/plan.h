@@ -14,11 +14,20 @@
 #include "winding/library.h"
 #include "winding/pattern.h"
 #include "winding/pattern_wish.h"
+#include "winding/pin.h"
 #include "winding/wound_angle.h"
 
 namespace meshwind {
 
 enum class PieceKind { Course, Transition };
+
+/// Where the straight free fibre begins that leads to the eye, when that is not where the fibre is
+/// laid: on the flank of a pin ahead (pin_turn.h).
+struct FreeStart {
+    Eigen::Vector3d from_mm = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+    bool held = false;  ///< a pin says where the fibre is laid, not the eye
+};
 
 /// A stretch of the fibre in winding order. Stations are in the direction of travel, mandrel frame.
 struct Piece {
@@ -28,6 +37,7 @@ struct Piece {
     std::vector<double>
         slip;  ///< per station, |kg / kn|: measured on courses, exact on transitions
     double worst_slip = 0.0;
+    std::vector<FreeStart> free_start{};  ///< per station of a turn on pins; else empty
     std::int32_t start_rim = -1;
     std::int32_t end_rim = -1;
     bool starts_fibre = false;  ///< tied on before this piece
@@ -160,6 +170,7 @@ struct Plan {
     std::vector<double> face_angle_rad;  ///< mean angle between fibre and spindle axis, 0..pi/2
     std::vector<WhatIf> what_if;         ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;       ///< per rim
+    std::vector<PinRing> pins{};         ///< that the turns need, at most one ring per rim
     std::vector<std::int32_t> family;    ///< per course in winding order (families.h)
     WoundAngles angle;                   ///< of the courses
     Places places;                       ///< of junctions and hoops in the winding order
