@@ -104,7 +104,14 @@ public:
                        lambda * task_.joints.row(last)[a];
             }
             const Isometry3d pose = mandrel_from_eye(machine_, q);
-            lay(pose.translation(), last, landing, worst);
+            if (path_[nearest.step].held) {
+                // Laid about a pin, wherever the eye is beside the plan.
+                landing = {nearest, frame(nearest, last)};
+                worst.offset_mm = 0.0;
+                worst.tilt_rad = 0.0;
+            } else {
+                lay(pose.translation(), last, landing, worst);
+            }
             compare(pose, last, nearest, worst);
             if (!task_.share.empty()) {
                 worst.share = std::min(worst.share, task_.share[nearest.step]);

@@ -96,7 +96,9 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         const Matched match = between(planned[next - 1], planned[next], station.position_mm);
         const Vector3d across = match.normal.cross(match.tangent);
         const double sideways = std::abs((station.position_mm - match.position_mm).dot(across));
-        const bool on_the_spot = beyond_end(i) || swings(j, next, station.position_mm) ||
+        // About a pin the fibre has the pin's direction, wherever it came from.
+        const bool on_the_spot = laid.at[i].held || beyond_end(i) ||
+                                 swings(j, next, station.position_mm) ||
                                  swings(next, next_of(next), station.position_mm);
         const double angle = on_the_spot ? 0.0
                                          : std::abs(std::atan2(station.tangent.dot(across),

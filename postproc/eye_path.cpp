@@ -102,6 +102,14 @@ LandingPoints landing_points(std::span<const Piece> pieces) {
             point.landing_mm = station.position_mm;
             point.tangent = station.tangent;
             point.binormal = station.normal.cross(station.tangent);
+            if (!piece.free_start.empty()) {
+                const FreeStart& start = piece.free_start[i];
+                point.landing_mm = start.from_mm;
+                point.tangent = start.direction;
+                point.binormal = station.normal.cross(start.direction).normalized();
+                point.on_pins = true;
+                point.held = start.held;
+            }
             path.push_back(point);
         }
         points.ahead_mm.resize(path.size(), 0.0);

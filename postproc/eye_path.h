@@ -30,6 +30,12 @@ struct EyePoint {
     /// Polar angle about the spindle axis at which the eye stands in the machine; not 0 only where
     /// the rule says it (eye_rules.h), and the mandrel then turns for it.
     double azimuth_rad = 0.0;
+    /// Of a turn on pins: `landing_mm` is where the free fibre begins, on a pin or on the way
+    /// there, and does not move in its direction from point to point.
+    bool on_pins = false;
+    /// A pin says where the fibre is laid, and what the eye is off the plan does not move the laid
+    /// fibre.
+    bool held = false;
 };
 
 using EyePath = std::vector<EyePoint>;

@@ -18,7 +18,7 @@ FibreFrame fibre_between(const EyePoint& from, const EyePoint& to, double share)
     const double rest = 1.0 - share;
     FibreFrame frame;
     Eigen::Vector3d along;
-    if (length < kSamePlace_mm) {
+    if (length < kSamePlace_mm || (from.on_pins && to.on_pins)) {
         frame.landing_mm = from.landing_mm + share * chord;
         along = rest * from.tangent + share * to.tangent;
     } else {

@@ -14,6 +14,7 @@
 #include "geodesic/field_walk.h"
 #include "machines/kinematics.h"
 #include "mesh/nearest.h"
+#include "postproc/pin_contact.h"
 
 namespace meshwind {
 namespace {
@@ -36,6 +37,13 @@ constexpr double kHollow_per_mm = 1e-4;
 constexpr double kAheadShare = 0.9;
 // Bridges within one sample; more means a wall of spikes.
 constexpr int kMaxBridges = 50;
+
+// Fibre about a pin is recorded so often.
+constexpr double kPinStation_mm = 0.25;
+
+// Where along its curve the eye is in line with a place about a pin: as many halvings reach the
+// last digit.
+constexpr int kPinHalvings = 50;
 
 // A free fibre shorter than this has no direction.
 constexpr double kLeastFree_mm = 1e-3;
@@ -150,7 +158,8 @@ public:
           machine_(machine),
           list_(list),
           options_(options),
-          walker_(wall.surface(), wall.nearest(tie_on_mm)) {
+          walker_(wall.surface(), wall.nearest(tie_on_mm)),
+          pins_(wall.pins()) {
         walker_.move_under(tie_on_mm);  // the patch's point instead of the facet's
     }
 
@@ -222,13 +231,12 @@ private:
     }
 
     [[nodiscard]] double slack(const PathPoint& station, const Vector3d& eye) const {
-        return station.normal.dot(eye - station.position_mm);
+        return station.normal.dot(pins_.pull(station.position_mm, eye));
     }
 
     // Takes up what the eye has lifted off.
     void peel(const Vector3d& eye) {
-        const Vector3d free = eye - walker_.position_mm();
-        if (walker_.normal().dot(free) <= kLift_mm) {
+        if (walker_.normal().dot(pins_.pull(walker_.position_mm(), eye)) <= kLift_mm) {
             return;
         }
         furthest_mm_ = std::max(furthest_mm_, laid_.path.back().s_mm);
@@ -267,7 +275,8 @@ private:
         };
         const FieldWalk walk = walker_.walk(
             [&](const Vector3d& x, const Vector3d& n) {
-                return Aim{tangent(x), n.dot(eye - x), 0.0, (eye - x).norm()};
+                const Vector3d pull = pins_.pull(x, eye);
+                return Aim{tangent(x), n.dot(pull), 0.0, pull.norm()};
             },
             between_mm, between_mm);
         record(walker_.station(tangent(walker_.position_mm())), last.s_mm + walk.length_mm, false);
@@ -276,7 +285,13 @@ private:
     // The landing point follows the eye to the end of its curve.
     bool follow(const EyeCurve& curve) {
         const Vector3d& eye = curve.end();
+        if (const std::string words = pins_.update(walker_.position_mm(), eye); !words.empty()) {
+            return fail(words);
+        }
         peel(eye);
+        if (pins_.holds()) {
+            return follow_pin(curve);
+        }
         const AimField field = [&curve, &eye](const Vector3d& x, const Vector3d& n) {
             return Aim{curve.in_plane(x, n) - x, n.dot(eye - x), 0.0, (eye - x).norm()};
         };
@@ -315,6 +330,50 @@ private:
         return fail("the fibre bridges again and again at one place");
     }
 
+    // The same where a pin holds the fibre.
+    bool follow_pin(const EyeCurve& curve) {
+        const AimField field = [&](const Vector3d& x, const Vector3d& n) {
+            const Vector3d pull = pins_.pull(x, curve.end());
+            return Aim{pull_in_plane(curve, x, n), n.dot(pull), 0.0, pull.norm()};
+        };
+        const double free = (curve.end() - walker_.position_mm()).norm();
+        for (double gone = 0.0; gone < free;) {
+            const double begun = laid_.path.back().s_mm;
+            const FieldWalk walk = walker_.walk(
+                field, kPinStation_mm, std::min(pins_.step_mm(), kPinStation_mm),
+                [&](const PathPoint& station) { record(station, begun + station.s_mm, false); });
+            if (walk.length_mm > kStation_mm) {
+                record(walker_.station(pins_.pull(walker_.position_mm(), curve.end())),
+                       begun + walk.length_mm, false);
+            }
+            if (walk.stop == FieldStop::Arrived || walk.stop == FieldStop::Stalled) {
+                return true;
+            }
+            if (walk.stop != FieldStop::Length) {
+                break;
+            }
+            gone += walk.length_mm;
+        }
+        return fail("the fibre about a pin runs off the wall");
+    }
+
+    // The fibre's direction when it is in the tangent plane of a place that it ends under.
+    [[nodiscard]] Vector3d pull_in_plane(const EyeCurve& curve, const Vector3d& place,
+                                         const Vector3d& normal) const {
+        const auto over = [&](double share) {
+            return normal.dot(pins_.pull(place, curve.position(share)));
+        };
+        double low = 0.0;
+        double high = over(0.0) > 0.0 ? 1.0 : 0.0;
+        high = over(1.0) >= 0.0 ? 1.0 : high;
+        low = over(1.0) >= 0.0 ? 1.0 : low;
+        for (int i = 0; i < kPinHalvings && low < high; ++i) {
+            const double middle = 0.5 * (low + high);
+            (over(middle) > 0.0 ? low : high) = middle;
+        }
+        return pins_.pull(place, curve.position(high));
+    }
+
     // Over a hollow, to where the straight fibre meets the wall again; false where it does not.
     bool cross_hollow(const Vector3d& eye) {
         const Vector3d free = eye - walker_.position_mm();
@@ -350,7 +409,7 @@ private:
         const double at_mm = same_place ? laid_.path.back().s_mm : s_mm;
         laid_.path.push_back(station);
         laid_.path.back().s_mm = at_mm;
-        laid_.at.push_back({block_, lifted, 0.0});
+        laid_.at.push_back({block_, lifted, 0.0, pins_.at_pin(station.position_mm)});
     }
 
     void record_sample(const std::vector<double>& joints) {
@@ -360,6 +419,10 @@ private:
         sample.s_mm = laid_.path.back().s_mm;
         sample.landing_mm = walker_.position_mm();
         sample.eye_mm = eye_mm_;
+        if (const auto bent = pins_.string(sample.landing_mm, eye_mm_)) {
+            sample.landing_mm = bent->out_mm;
+            sample.s_mm += bent->to_out_mm;
+        }
         const Vector3d free = eye_mm_ - sample.landing_mm;
         sample.free_length_mm = free.norm();
         sample.tangent = free / sample.free_length_mm;
@@ -375,6 +438,7 @@ private:
     const BlockList& list_;
     LaydownOptions options_;
     FieldWalker walker_;
+    PinContact pins_;
     Vector3d eye_mm_ = Vector3d::Zero();
     std::size_t block_ = 0;
     double time_s_ = 0.0;
@@ -384,9 +448,10 @@ private:
 
 }  // namespace
 
-LaydownWall::LaydownWall(Surface surface, double bridge_reach_mm)
+LaydownWall::LaydownWall(Surface surface, double bridge_reach_mm, std::vector<Pin> pins)
     : surface_(std::move(surface)),
       bridge_reach_mm_(bridge_reach_mm),
+      pins_(std::move(pins)),
       hollow_(hollow_faces(surface_, bridge_reach_mm)),
       facets_(facets_of(surface_)) {}
 

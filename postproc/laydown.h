@@ -15,6 +15,7 @@
 #include "postproc/block.h"
 #include "postproc/eye_path.h"
 #include "postproc/joint_path.h"
+#include "winding/pin.h"
 
 namespace meshwind {
 
@@ -31,10 +32,13 @@ public:
     /// \param surface the wall with its extensions (mesh/extension.h)
     /// \param bridge_reach_mm over hollows the fibre is looked for so far ahead of the landing
     /// point; what it meets further on counts as a collision of the free fibre
-    explicit LaydownWall(Surface surface, double bridge_reach_mm = kBridgeReach_mm);
+    /// \param pins that stand on it
+    explicit LaydownWall(Surface surface, double bridge_reach_mm = kBridgeReach_mm,
+                         std::vector<Pin> pins = {});
 
     [[nodiscard]] const Surface& surface() const { return surface_; }
     [[nodiscard]] double bridge_reach_mm() const { return bridge_reach_mm_; }
+    [[nodiscard]] const std::vector<Pin>& pins() const { return pins_; }
 
     /// Whether the wall is hollow, along any direction, within reach of a face.
     [[nodiscard]] bool hollow_near(std::int32_t face) const {
@@ -48,6 +52,7 @@ public:
 private:
     Surface surface_;
     double bridge_reach_mm_;
+    std::vector<Pin> pins_;
     std::vector<char> hollow_;  // per face
     RayQuery facets_;
 };
@@ -57,6 +62,7 @@ struct LaidAt {
     std::size_t block = 0;
     bool lifted = false;  ///< on the wall under a bridge; the fibre is in the air there
     double gap_mm = 0.0;  ///< height of the fibre over the wall, where lifted
+    bool held = false;    ///< at a pin that the fibre bends about
 };
 
 /// What a program lays. Mandrel frame.
@@ -83,6 +89,10 @@ struct LaidPath {
 /// path is the integral curve of the directions E(theta(X)) - X, solved on the curved patches with
 /// fourth order. Over a hollow the straight fibre is followed over the wall: where it meets the
 /// wall again the landing point goes there and leaves a bridge behind.
+/// A pin that the free fibre is swept against holds it (pin_contact.h): the fibre then leaves P for
+/// the pin's flank instead of the eye, n . (E - P) becomes the same of that direction, and P goes
+/// about the pin's foot as the fibre sinks to the wall there. Samples then begin on the flank, with
+/// the fibre up to there counted as laid.
 /// \param tie_on_mm within an edge of the wall
 /// \throws InputError verify.tie_on where it is not
 /// Accuracy: tests/postproc/laydown_test.cpp.

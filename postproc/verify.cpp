@@ -158,18 +158,18 @@ private:
         found_.checks.push_back(check);
     }
 
-    // Length of path from each station to the nearest one under a bridge.
+    // Length of path from each station to the nearest one under a bridge or held by a pin.
     [[nodiscard]] std::vector<double> distance_to_bridges() const {
         const LaidPath& laid = found_.laid;
         std::vector<double> distance(laid.path.size(), std::numeric_limits<double>::infinity());
         double last = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < laid.path.size(); ++i) {
-            last = laid.at[i].lifted ? laid.path[i].s_mm : last;
+            last = laid.at[i].lifted || laid.at[i].held ? laid.path[i].s_mm : last;
             distance[i] = laid.path[i].s_mm - last;
         }
         last = std::numeric_limits<double>::infinity();
         for (std::size_t i = laid.path.size(); i-- > 0;) {
-            last = laid.at[i].lifted ? laid.path[i].s_mm : last;
+            last = laid.at[i].lifted || laid.at[i].held ? laid.path[i].s_mm : last;
             distance[i] = std::min(distance[i], last - laid.path[i].s_mm);
         }
         return distance;
