@@ -12,6 +12,7 @@
 
 #include "postproc/eye_rules.h"
 #include "winding/pattern_wish.h"
+#include "winding/pin_turn.h"
 
 namespace meshwind {
 
@@ -62,6 +63,7 @@ struct Job {
         std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
         double extension_mm = 100.0;             ///< >= 0; room for turns beyond each rim
         TurnKind turn = TurnKind::Friction;
+        PinWish pins{};  ///< read with TurnKind::Pins only
     };
     struct TowJob {
         double width_mm = 6.0;       ///< > 0
@@ -95,8 +97,8 @@ struct Job {
 /// Reads a job from text; what the text leaves out keeps its default.
 /// \param name file name for messages
 /// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
-///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced;
-///         each with file and JSON pointer
+///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced,
+///         job.pins_unused; each with file and JSON pointer
 [[nodiscard]] Job parse_job(std::string_view text, const std::string& name);
 
 /// `parse_job` of a file. \throws IoError io.cannot_read; InputError as parse_job

@@ -34,6 +34,9 @@ constexpr std::int64_t kMostCircuits = 10'000;
 constexpr std::int64_t kMostSeries = 1'000;
 constexpr std::int64_t kMostPlies = 1'000;
 
+// More pins than on any ring.
+constexpr std::int64_t kMostPins = 10'000;
+
 // Dwells of a turn and less end at every place there is.
 constexpr double kMostDwell_deg = 3600.0;
 
@@ -92,9 +95,38 @@ std::vector<std::int32_t> read_regions(const JsonValue& value) {
     return regions;
 }
 
+std::optional<JsonValue> unless_auto(const JsonObject& object, std::string_view key) {
+    std::optional<JsonValue> value = object.optional(key);
+    if (value && value->is_string()) {
+        (void)value->one_of({"auto"});
+        return std::nullopt;
+    }
+    return value;
+}
+
+PinWish read_pins(const JsonValue& value) {
+    PinWish pins;
+    const JsonObject object = value.object({"count", "diameter", "height", "skip", "offset"});
+    if (const auto count = unless_auto(object, "count")) {
+        pins.count = static_cast<int>(count->integer(1, kMostPins));
+    }
+    read_number(object, "diameter", kPositive, pins.diameter_mm);
+    if (const auto height = unless_auto(object, "height")) {
+        pins.height_mm = height->number(kPositive);
+    }
+    if (const auto skip = unless_auto(object, "skip")) {
+        pins.skip = static_cast<int>(skip->integer(1, kMostPins));
+    }
+    if (const auto offset = unless_auto(object, "offset")) {
+        pins.offset_mm = offset->number(kPositive);
+    }
+    return pins;
+}
+
 Job::MandrelJob read_mandrel(const JsonValue& value) {
     Job::MandrelJob mandrel;
-    const JsonObject object = value.object({"units", "axis", "keep_regions", "extension", "turn"});
+    const JsonObject object =
+        value.object({"units", "axis", "keep_regions", "extension", "turn", "pins"});
     read_word(object, "units", kUnitWords, mandrel.units);
     if (const auto axis = object.optional("axis")) {
         mandrel.axis = read_axis(*axis);
@@ -104,6 +136,13 @@ Job::MandrelJob read_mandrel(const JsonValue& value) {
     }
     read_number(object, "extension", kNotNegative, mandrel.extension_mm);
     read_word(object, "turn", kTurnWords, mandrel.turn);
+    if (const auto pins = object.optional("pins")) {
+        if (mandrel.turn != TurnKind::Pins) {
+            pins->fail("job.pins_unused",
+                       "only \"turn\": \"pins\" reads it; write that, or remove it");
+        }
+        mandrel.pins = read_pins(*pins);
+    }
     return mandrel;
 }
 
@@ -392,6 +431,24 @@ std::string vector_text(const Eigen::Vector3d& vector) {
     return text;
 }
 
+std::string mandrel_end_text(const Job::MandrelJob& mandrel) {
+    if (mandrel.turn != TurnKind::Pins) {
+        return "}";
+    }
+    const PinWish& pins = mandrel.pins;
+    const std::string chosen = "\"auto\"";
+    std::string text = "{";
+    append_member(text, "count", pins.count > 0 ? std::to_string(pins.count) : chosen);
+    append_member(text, "diameter", pins.diameter_mm);
+    const auto add = [&](const char* key, double mm) {
+        mm > 0.0 ? append_member(text, key, mm) : append_member(text, key, chosen);
+    };
+    add("height", pins.height_mm.value_or(0.0));
+    append_member(text, "skip", pins.skip > 0 ? std::to_string(pins.skip) : chosen);
+    add("offset", pins.offset_mm);
+    return ", \"pins\":" + text + "}}";
+}
+
 std::string mandrel_text(const Job::MandrelJob& mandrel) {
     std::string text = "{";
     append_member(text, "units", json_string(word_of(mandrel.units, kUnitWords)));
@@ -410,7 +467,7 @@ std::string mandrel_text(const Job::MandrelJob& mandrel) {
     append_member(text, "keep_regions", regions);
     append_member(text, "extension", mandrel.extension_mm);
     append_member(text, "turn", json_string(word_of(mandrel.turn, kTurnWords)));
-    return text + "}";
+    return text + mandrel_end_text(mandrel);
 }
 
 std::string tow_text(const Job::TowJob& tow) {

@@ -26,6 +26,10 @@ constexpr double kChoiceShare = 0.75;
 // Share of the friction that plan and blocks may use together: the rest is for measuring it.
 constexpr double kUsedFriction = 0.995;
 
+// Whether a pin takes hold of the fibre turns on tenths of a mm at the pin (kLeastPinRoom_mm), and
+// what the eye is off it is off there by less: by its share of the free length.
+constexpr double kMostInPinTurns_mm = 0.4;
+
 // Share of the head's spare clearance that blocks may use: between two points it may be less.
 constexpr double kUsedRoom = 0.5;
 
@@ -394,6 +398,11 @@ private:
         for (double& room : room_mm_) {
             room = std::clamp(kUsedRoom * (room - setup_.rule.clearance_mm), kLeastBetweenBlocks_mm,
                               kMostBetweenBlocks_mm);
+        }
+        for (std::size_t i = 0; i < room_mm_.size(); ++i) {
+            if (!pieces_[static_cast<std::size_t>(path_[i].piece)].free_start.empty()) {
+                room_mm_[i] = std::min(room_mm_[i], kMostInPinTurns_mm);
+            }
         }
     }
 

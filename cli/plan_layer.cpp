@@ -187,6 +187,9 @@ private:
         }
         pattern.seed = options_.seed;
         pattern.lattice = layer_.lattice;
+        if (setup_.job.mandrel.turn == TurnKind::Pins) {
+            pattern.pins = setup_.job.mandrel.pins;
+        }
         if (layer_.pattern) {
             pattern.wish = wish_of(*layer_.pattern);
         }

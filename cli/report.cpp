@@ -51,6 +51,21 @@ json reach_report(const Plan& plan) {
     return shares;
 }
 
+json pins_report(std::span<const PinRing> rings) {
+    json report = json::array();
+    for (const PinRing& ring : rings) {
+        report.push_back({{"rim", ring.rim},
+                          {"count", ring.count},
+                          {"diameter_mm", report_number(ring.diameter_mm)},
+                          {"height_mm", report_number(ring.height_mm)},
+                          {"offset_mm", report_number(ring.offset_mm)},
+                          {"azimuth_deg", report_number(deg_from_rad(ring.azimuth_rad))},
+                          {"skip", ring.skip},
+                          {"strand_mm", report_number(2.0 * ring.strand_mm)}});
+    }
+    return report;
+}
+
 json turns_report(const Plan& plan) {
     json rims = json::array();
     for (std::size_t rim = 0; rim < plan.turns.size(); ++rim) {
@@ -195,6 +210,9 @@ json plan_report(const Plan& plan) {
     }
     if (plan.pattern) {
         report["pattern"] = pattern_report(*plan.pattern);
+    }
+    if (!plan.pins.empty()) {
+        report["pins"] = pins_report(plan.pins);
     }
     if (plan.elbow) {
         report["elbow"] = elbow_report(*plan.elbow);

@@ -123,7 +123,7 @@ TriangleSoup read_triangles_of(const std::string& file) {
 }
 
 std::unique_ptr<RayQuery> obstacles_of(const Machine& machine, const Mandrel& mandrel,
-                                       double extension_mm) {
+                                       double extension_mm, std::span<const Pin> pins) {
     std::vector<TriangleSoup> parts{mandrel.whole};
     for (const Rim& rim : mandrel.rims) {
         if (extension_mm > 0.0) {
@@ -133,13 +133,17 @@ std::unique_ptr<RayQuery> obstacles_of(const Machine& machine, const Mandrel& ma
     for (TriangleSoup& body : bodies_on_mandrel(machine, read_triangles_of)) {
         parts.push_back(std::move(body));
     }
+    for (const Pin& pin : pins) {
+        parts.push_back(mesh_of(pin));
+    }
     return std::make_unique<RayQuery>(parts, kTableReach_mm);
 }
 
 // What follows from machine, job and mandrel.
 void complete(Setup& setup, const fs::path& job_file) {
     setup.rule = collision_rule(setup, job_file);
-    setup.obstacles = obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm);
+    setup.obstacles =
+        obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm, {});
     setup.wall = std::make_unique<LaydownWall>(
         extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
 }
@@ -168,6 +172,19 @@ Setup setup_for(const Setup& setup, Mandrel mandrel) {
     next.mandrel = std::move(mandrel);
     complete(next, {});
     return next;
+}
+
+void put_pins(Setup& setup, std::span<const PinRing> rings) {
+    std::vector<Pin> pins;
+    for (const PinRing& ring : rings) {
+        const std::vector<Pin> more =
+            pins_of(ring, setup.mandrel.rims[static_cast<std::size_t>(ring.rim)]);
+        pins.insert(pins.end(), more.begin(), more.end());
+    }
+    setup.obstacles =
+        obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm, pins);
+    setup.wall = std::make_unique<LaydownWall>(setup.wall->surface(), setup.wall->bridge_reach_mm(),
+                                               std::move(pins));
 }
 
 bool wants_least_time(const Setup& setup) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "cli/job.h"
 #include "machines/machine.h"
@@ -12,6 +13,7 @@
 #include "postproc/collision.h"
 #include "postproc/dialect.h"
 #include "postproc/verify.h"
+#include "winding/pin.h"
 
 namespace meshwind {
 
@@ -38,6 +40,9 @@ struct Setup {
 
 /// The same machine and job for another mandrel: what the layers before have made of the first.
 [[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel);
+
+/// Puts the pins that a plan needs on the mandrel: what can be hit, and what holds the fibre.
+void put_pins(Setup& setup, std::span<const PinRing> rings);
 
 /// Whether the motion of least time is to be found: the job asks for it, and the machine leaves the
 /// turn of the mandrel free.

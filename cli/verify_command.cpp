@@ -54,6 +54,12 @@ VerifyOutcome run_verify(const VerifyRequest& request) {
     const auto begun = Clock::now();
     VerifyOutcome outcome;
     outcome.setup = read_setup(request.setup);
+    if (outcome.setup.job.mandrel.turn == TurnKind::Pins) {
+        throw InputError("job.not_offered", request.setup.job.string() + ": /mandrel/turn",
+                         "the pins are chosen with the plan, so a program that turns on them is "
+                         "not wound again without it; `meshwind` has done so when it made the "
+                         "program, see its report.json");
+    }
     outcome.program = request.program.filename().string();
     outcome.blocks = outcome.setup.dialect->read(read_text_file(request.program),
                                                  request.program.string(), outcome.setup.machine);

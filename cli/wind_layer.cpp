@@ -61,6 +61,9 @@ private:
             plan.progress = [this](const std::string& step, double share) { tell(step, share); };
             layer_.plan = plan_layer(setup_, layer_.job, plan);
         }
+        if (!layer_.plan.pins.empty()) {
+            put_pins(layer_.setup, layer_.plan.pins);
+        }
         if (options_.before != nullptr && !layer_.plan.goes_on && layer_.plan.cut_because.empty()) {
             layer_.plan.cut_because = "plans of the kind \"" + layer_.plan.planner +
                                       "\" are not led on from another layer";

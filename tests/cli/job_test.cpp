@@ -70,6 +70,16 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "  \"speed\":{\"fibre\":30} }\n");
 }
 
+TEST(Job, PinsAreWrittenWhereTheyAreRead) {
+    const Job job = parse_job(R"({"mandrel": {"turn": "pins"}})", "pins.json");
+    EXPECT_NE(job_text(job).find("\"turn\":\"pins\", \"pins\":{\"count\":\"auto\", "
+                                 "\"diameter\":2, \"height\":\"auto\", \"skip\":\"auto\", "
+                                 "\"offset\":\"auto\"}}"),
+              std::string::npos)
+        << job_text(job);
+    EXPECT_EQ(job_text(parse_job(job_text(job), "again.json")), job_text(job));
+}
+
 TEST(Job, EveryKeyReachesItsField) {
     const Job job = read_job(kCorpus / "valid/all_keys.json");
     EXPECT_EQ(job.mandrel.units, LengthUnit::Millimetre);
@@ -78,6 +88,11 @@ TEST(Job, EveryKeyReachesItsField) {
     EXPECT_EQ(job.mandrel.keep_regions, (std::vector<std::int32_t>{0, 3}));
     EXPECT_EQ(job.mandrel.extension_mm, 120.5);
     EXPECT_EQ(job.mandrel.turn, TurnKind::Pins);
+    EXPECT_EQ(job.mandrel.pins.count, 80);
+    EXPECT_EQ(job.mandrel.pins.diameter_mm, 1.5);
+    EXPECT_EQ(job.mandrel.pins.height_mm, 6.5);
+    EXPECT_EQ(job.mandrel.pins.skip, 4);
+    EXPECT_EQ(job.mandrel.pins.offset_mm, 12.0);
     EXPECT_EQ(job.tow.width_mm, 8.0);
     EXPECT_EQ(job.tow.thickness_mm, 0.3);
     EXPECT_EQ(job.tow.friction, 0.25);

@@ -1,0 +1,72 @@
+"""Turns on pins: a pipe at an angle that friction does not turn, and what is refused."""
+import json
+import re
+import sys
+
+import program
+
+MACHINE = "six_axis.json"
+LAYER = {"kind": "helical", "angle": 20.0}
+
+
+class Pins(program.ProgramTest):
+    def wind(self, mandrel, layer, code, **mandrel_job):
+        job = {"mandrel": {"extension": 40.0, **mandrel_job}, "layers": [layer],
+               "redundancy": "central-angle"}
+        text = self.write("job.json", json.dumps(job))
+        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out",
+                                  timeout_s=300)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def report(self):
+        return json.loads((self.folder / "out" / "report.json").read_text())
+
+    def pipe(self):
+        return self.make("cylinder", "--radius", "40", "--length", "120", "--edge", "4")
+
+    def test_a_pipe_is_wound_at_20_degrees(self):
+        pipe = self.pipe()
+        self.wind(pipe, LAYER, 1)
+        needed = re.search(r"takes ([0-9.]+) mm of extension where there are 40.0",
+                           self.report()["plan"]["failure"])
+        # (R / slip)(1 / sin(20 deg) - 1) with 0.2 as the slip: 385 mm, and more with less.
+        self.assertGreater(float(needed[1]), 385.0)
+        self.wind(pipe, LAYER, 0, turn="pins")
+        report = self.report()
+        plan = report["plan"]
+        for name, check in report["checks"].items():
+            self.assertTrue(check["ok"], name)
+        self.assertLess(report["checks"]["closure"]["closure_deg"], 0.01)
+        self.assertGreater(plan["coverage"]["fraction"], 0.999)
+        self.assertEqual(len(plan["pins"]), 2)
+        for ring in plan["pins"]:
+            self.assertEqual(ring["count"], plan["pattern"]["circuits"])
+            self.assertLess(ring["offset_mm"], 20.0)
+        for turns in plan["turns"]:
+            self.assertLess(turns["extension_mm"], 40.0)
+
+    def test_what_cannot_be_is_said(self):
+        pipe = self.pipe()
+        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "100", "--dome-height",
+                           "35", "--opening-radius", "12", "--edge", "5")
+        for mandrel, layer, pins, words in (
+                (vessel, {"kind": "helical", "angle": 50.0}, {}, "turns by itself at both ends"),
+                (pipe, LAYER, {"count": 41}, "no multiple"),
+                (pipe, LAYER, {"skip": 1}, "must run behind"),
+                (pipe, LAYER, {"diameter": 6.0}, "leave no gap"),
+                (pipe, LAYER, {"offset": 35.0}, "mm of extension where there are 40.0")):
+            with self.subTest(words):
+                self.wind(mandrel, layer, 1, turn="pins", pins=pins)
+                self.assertIn(words, self.report()["plan"]["failure"])
+
+    def test_what_is_not_offered_is_refused(self):
+        pipe = self.pipe()
+        result = self.wind(pipe, {"kind": "hoop"}, 2, turn="pins")
+        self.assertIn("is not offered yet", result.stderr)
+        result = self.wind(pipe, LAYER, 2, turn="friction", pins={"skip": 3})
+        self.assertIn("reads it", result.stderr)
+
+
+if __name__ == "__main__":
+    program.main(sys.modules[__name__])
