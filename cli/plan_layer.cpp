@@ -59,6 +59,9 @@ public:
         : setup_(setup), layer_(layer), options_(options) {}
 
     [[nodiscard]] Plan plan() const {
+        if (setup_.job.mandrel.turn == TurnKind::Pole) {
+            return plan_about_poles();
+        }
         if (layer_.kind == LayerKind::Cover) {
             return plan_courses();
         }
@@ -76,6 +79,23 @@ public:
     }
 
 private:
+    // Without an extension to turn on, patterns are all there is.
+    [[nodiscard]] Plan plan_about_poles() const {
+        Plan plan;
+        if (layer_.kind == LayerKind::Auto) {
+            plan = plan_pattern_that_covers();
+        } else if (layer_.kind != LayerKind::Cover) {
+            plan = plan_pattern_asked_for();
+        }
+        if (plan.failure.empty() && plan.planner != "pattern") {
+            plan = {};
+            plan.failure =
+                "fibre turns about a pole in patterns on the domes of a body of revolution only; "
+                "use \"turn\": \"friction\"";
+        }
+        return plan;
+    }
+
     [[nodiscard]] Plan plan_pattern_asked_for() const {
         const RevolutionFinding found = find_revolution(setup_.mandrel);
         if (!found.body) {
@@ -187,6 +207,7 @@ private:
         }
         pattern.seed = options_.seed;
         pattern.lattice = layer_.lattice;
+        pattern.over_rims = setup_.job.mandrel.turn != TurnKind::Pole;
         if (setup_.job.mandrel.turn == TurnKind::Pins) {
             pattern.pins = setup_.job.mandrel.pins;
         }

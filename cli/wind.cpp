@@ -94,9 +94,6 @@ void refuse_pins_not_offered(const Job& job, const fs::path& file, bool read_lay
 // What the job may ask for but this version does not do is refused at once, in words. Where landing
 // points are given the layers are not read.
 void refuse_what_is_not_offered(const Job& job, const fs::path& file, bool read_layers) {
-    if (job.mandrel.turn == TurnKind::Pole) {
-        not_offered(file, "/mandrel/turn", "turning over a pole", "use \"friction\" or \"pins\"");
-    }
     if (job.mandrel.turn == TurnKind::Pins) {
         refuse_pins_not_offered(job, file, read_layers);
     }

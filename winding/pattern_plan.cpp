@@ -169,6 +169,12 @@ private:
                             " pole; a larger angle turns before it");
             }
             const RimCrossing crossing = crossing_of(end);
+            if (!options_.over_rims) {
+                return fail("a fibre at " + degrees(angle_rad_) + " crosses the " + name +
+                            " rim at " + degrees(crossing.angle_rad) +
+                            " to the axis and turns about no pole there; give a larger angle, or "
+                            "\"turn\": \"friction\"");
+            }
             if (!options_.pins && !can_turn(*rim, crossing, rule_)) {
                 return fail(why_no_turn("the " + name + " rim", *rim, crossing, rule_));
             }

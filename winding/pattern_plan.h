@@ -27,6 +27,7 @@ struct PatternOptions {
     TurnRule turn{};                       ///< friction and band are taken from `tow`
     PatternWish wish{};                    ///< helical, polar
     std::optional<PinWish> pins{};         ///< helical: turns over rims are on pins (pin_turn.h)
+    bool over_rims = true;                 ///< false: only turns on the wall itself, about poles
     std::optional<LatticeWish> lattice{};  ///< helical: ribs instead of a closed wall
     /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
     /// place.

@@ -1,4 +1,4 @@
-"""Turns on pins: a pipe at an angle that friction does not turn, and what is refused."""
+"""Turns on pins and about poles: what they wind, and what is refused."""
 import json
 import re
 import sys
@@ -9,7 +9,7 @@ MACHINE = "six_axis.json"
 LAYER = {"kind": "helical", "angle": 20.0}
 
 
-class Pins(program.ProgramTest):
+class Turns(program.ProgramTest):
     def wind(self, mandrel, layer, code, **mandrel_job):
         job = {"mandrel": {"extension": 40.0, **mandrel_job}, "layers": [layer],
                "redundancy": "central-angle"}
@@ -25,6 +25,8 @@ class Pins(program.ProgramTest):
     def pipe(self):
         return self.make("cylinder", "--radius", "40", "--length", "120", "--edge", "4")
 
+
+class Pins(Turns):
     def test_a_pipe_is_wound_at_20_degrees(self):
         pipe = self.pipe()
         self.wind(pipe, LAYER, 1)
@@ -66,6 +68,19 @@ class Pins(program.ProgramTest):
         self.assertIn("is not offered yet", result.stderr)
         result = self.wind(pipe, LAYER, 2, turn="friction", pins={"skip": 3})
         self.assertIn("reads it", result.stderr)
+
+
+class Poles(Turns):
+    def test_only_domes_turn_the_fibre(self):
+        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "120", "--dome-height",
+                           "35", "--opening-radius", "12", "--edge", "5")
+        self.wind(vessel, {"kind": "polar"}, 0, turn="pole", extension=0.0)
+        for rim in self.report()["plan"]["turns"]:
+            self.assertEqual(rim["turns"], 0)
+        self.wind(self.pipe(), LAYER, 1, turn="pole")
+        self.assertIn("turns about no pole", self.report()["plan"]["failure"])
+        self.wind(self.pipe(), {"kind": "cover"}, 1, turn="pole")
+        self.assertIn("domes of a body of revolution", self.report()["plan"]["failure"])
 
 
 if __name__ == "__main__":
