@@ -16,39 +16,39 @@ interface Kind {
 
 /** What is known of the checks by name; others are shown with all their numbers. */
 const kKinds: Record<string, Kind> = {
-    slip: { title: 'Slip', measures: [{ key: 'worst', limit: 'limit', label: 'Slip ratio' }] },
-    bridging: { title: 'Bridging', measures: [{ key: 'worst_mm', limit: 'limit_mm', label: 'Gap' }] },
+    slip: { title: 'Slip', measures: [{ key: 'worst', limit: 'limit', label: '' }] },
+    bridging: { title: 'Bridging', measures: [{ key: 'worst_mm', limit: 'limit_mm', label: 'gap' }] },
     coverage: {
         title: 'Coverage',
-        measures: [{ key: 'fraction', limit: 'limit', least: true, label: 'Wall covered' }],
+        measures: [{ key: 'fraction', limit: 'limit', least: true, label: 'of the wall' }],
     },
     collision: {
         title: 'Collision',
         measures: [
-            { key: 'min_clearance_mm', label: 'Least clearance' },
-            { key: 'head_hits', limit: 0, label: 'Places where the head touches' },
-            { key: 'fibre_hits', limit: 0, label: 'Places where the fibre touches' },
+            { key: 'min_clearance_mm', label: 'clearance' },
+            { key: 'head_hits', limit: 0, label: 'Head touches' },
+            { key: 'fibre_hits', limit: 0, label: 'Fibre touches' },
         ],
     },
     continuity: {
         title: 'Continuity',
         measures: [
-            { key: 'fibres', limit: 'limit', label: 'Fibres' },
+            { key: 'fibres', limit: 'limit', label: 'fibres' },
             { key: 'worst_joint_mm', label: 'Widest joint' },
         ],
     },
-    eye: { title: 'Eye', measures: [{ key: 'blocked_points', limit: 0, label: 'Blocked points' }] },
+    eye: { title: 'Eye', measures: [{ key: 'blocked_points', limit: 0, label: 'blocked points' }] },
     free_length: {
         title: 'Free length',
         measures: [
-            { key: 'min_mm', limit: 'limit_min_mm', least: true, label: 'Shortest' },
+            { key: 'min_mm', limit: 'limit_min_mm', least: true, label: 'shortest' },
             { key: 'max_mm', limit: 'limit_max_mm', label: 'Longest' },
         ],
     },
     laydown: {
-        title: 'Laid as planned',
+        title: 'Laydown',
         measures: [
-            { key: 'max_deviation_mm', limit: 'limit_mm', label: 'Beside the plan' },
+            { key: 'max_deviation_mm', limit: 'limit_mm', label: 'off the plan' },
             { key: 'max_angle_deg', limit: 'limit_deg', label: 'Off its direction' },
             { key: 'end_gap_mm', label: 'Gap at the end' },
         ],
@@ -56,27 +56,31 @@ const kKinds: Record<string, Kind> = {
     limits: {
         title: 'Axis limits',
         measures: [
-            { key: 'velocity_ratio', limit: 1, label: 'Speed of its limit' },
-            { key: 'acceleration_ratio', limit: 1, label: 'Acceleration of its limit' },
+            { key: 'velocity_ratio', limit: 1, label: 'speed' },
+            { key: 'acceleration_ratio', limit: 1, label: 'Acceleration' },
             { key: 'corner_mm', limit: 'limit_corner_mm', label: 'Corner cut' },
         ],
     },
     payout: {
         title: 'Pay-out',
         measures: [
-            { key: 'worst_mm', limit: 'limit_mm', label: 'Taken back' },
+            { key: 'worst_mm', limit: 'limit_mm', label: 'taken back' },
             { key: 'max_speed_mm_s', limit: 'limit_mm_s', label: 'Fibre speed' },
         ],
     },
-    rounding: { title: 'Rounding', measures: [{ key: 'blocks', label: 'Blocks read back' }] },
+    rounding: { title: 'Rounding', measures: [{ key: 'blocks', label: 'blocks' }] },
     closure: {
         title: 'Closure',
         measures: [
-            { key: 'closure_deg', limit: 'limit_deg', label: 'Pattern closes within' },
-            { key: 'drift_deg', label: 'Drift over the program' },
+            { key: 'closure_deg', limit: 'limit_deg', label: 'off by' },
+            { key: 'drift_deg', label: 'Drift in the program' },
         ],
     },
 };
+
+const kTarget =
+    '<svg viewBox="0 0 16 16" width="14" height="14" fill="none" stroke="currentColor" stroke-width="1.4" aria-hidden="true">' +
+    '<circle cx="8" cy="8" r="4.6"/><path d="M8 .8v4M8 11.2v4M.8 8h4M11.2 8h4"/></svg>';
 
 export interface NamedCheck {
     name: string; // as in the report
@@ -117,7 +121,8 @@ function numberOf(check: Check, key: string): number | undefined {
     return typeof value === 'number' ? value : undefined;
 }
 
-function measureHtml(check: Check, measure: Measure): string {
+/** \param head, tail what stands before and after the measure's own name */
+function measureHtml(check: Check, measure: Measure, head: string, tail: string): string {
     const value = numberOf(check, measure.key) as number;
     const { words, unit } = keyInWords(measure.key);
     const limit =
@@ -136,7 +141,7 @@ function measureHtml(check: Check, measure: Measure): string {
     const bound =
         limit === undefined ? '' : `${measure.least ? '\u2265' : '\u2264'}\u202f${show(limit)}`;
     return (
-        `<tr><th scope="row">${escapeHtml(measure.label ?? words)}</th><td class="num">${show(value)}</td>` +
+        `<tr><th scope="row">${head}<span>${escapeHtml(measure.label ?? words)}</span>${tail}</th><td class="num">${show(value)}</td>` +
         `<td class="num muted">${bound}</td><td class="gauge-cell">${gauge}</td></tr>`
     );
 }
@@ -191,17 +196,19 @@ export class Checks {
         ].filter(Boolean);
         const name = escapeHtml([title, ...suffix].join(', '));
         const place = check.place
-            ? `<button type="button" class="plain" aria-label="Show the place of ${name}">Show place</button>`
+            ? `<button type="button" class="plain" title="Show the place" aria-label="Show the place of ${name}">${kTarget}</button>`
             : '';
         const mark = check.ok
-            ? '<span class="mark ok" role="img" aria-label="passed">\u2713</span>'
-            : '<span class="mark bad" role="img" aria-label="failed">\u2715</span>';
+            ? '<i class="mark ok" role="img" aria-label="passed">\u2713</i>'
+            : '<i class="mark bad" role="img" aria-label="failed">\u2715</i>';
+        const head = `${mark}<b>${name}</b>`;
+        const measures = measuresOf(item);
+        const rows = measures.map((m, i) => measureHtml(check, m, i === 0 ? head : '', i === 0 ? place : ''));
+        if (!measures.length) rows.push(`<tr><th scope="row">${head}${place}</th></tr>`);
         const words = check.words ? `<p class="words">${escapeHtml(sentence(check.words))}</p>` : '';
-        const rows = measuresOf(item).map((m) => measureHtml(check, m));
         return (
             `<article class="check${check.ok ? '' : ' failed'}${check.place ? ' placed' : ''}" ` +
-            `data-check="${escapeHtml(item.name)}"><header>${mark}<h4>${name}</h4>${place}</header>` +
-            `${words}<table class="measures"><tbody>${rows.join('')}</tbody></table></article>`
+            `data-check="${escapeHtml(item.name)}"><table class="measures"><tbody>${rows.join('')}</tbody></table>${words}</article>`
         );
     }
 }

@@ -109,7 +109,7 @@ function connectPlots(app: App): () => void {
     const values = (): void => {
         const v = plots.values();
         const unit = axes[axis].type === 'linear' ? 'mm' : '°';
-        const position = withUnit(Number(app.moment.axes[axis].toFixed(3)), unit, 6);
+        const position = `${fixed(app.moment.axes[axis], 3)}${unit === '°' ? '°' : '\u202fmm'}`;
         element('plot-values').textContent =
             `${axes[axis].letter} ${position} \u00b7 ${withUnit(v.speed, `${unit}/s`)} \u00b7 ${withUnit(v.acceleration, `${unit}/s²`)}`;
     };

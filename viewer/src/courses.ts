@@ -82,7 +82,9 @@ export class Courses {
         private readonly manyLayers: boolean,
     ) {
         this.rows = rows;
-        host.addEventListener('click', (event) => this.click(event.target as HTMLElement));
+        host.addEventListener('click', (event) =>
+            this.click(event.target as HTMLElement, event.detail === 0),
+        );
         host.addEventListener('keydown', (event) => {
             const row = (event.target as HTMLElement).closest<HTMLElement>('tr[data-row]');
             if (row && event.key === 'Enter') this.onSeek(this.rows[Number(row.dataset.row)]);
@@ -144,13 +146,13 @@ export class Courses {
         return `<tr data-row="${i}" tabindex="0" class="${row.piece.kind === 'course' ? '' : 'muted'}">${cells.join('')}</tr>`;
     }
 
-    private click(target: HTMLElement): void {
+    private click(target: HTMLElement, byKey: boolean): void {
         const sort = target.closest<HTMLElement>('[data-sort]')?.dataset.sort;
         if (sort) {
             this.down = sort === this.sortBy ? !this.down : sort === 'slip' || sort === 'time' || sort === 'length';
             this.sortBy = sort;
             this.show(this.layer);
-            this.host.querySelector<HTMLElement>(`[data-sort="${sort}"]`)?.focus();
+            if (byKey) this.host.querySelector<HTMLElement>(`[data-sort="${sort}"]`)?.focus();
             return;
         }
         const row = target.closest<HTMLElement>('tr[data-row]');

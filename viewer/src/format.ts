@@ -1,10 +1,13 @@
 /** Numbers as people read them: few digits, a thin space before the unit, a true minus. */
 
 const kThin = '\u202f';
+/** Below this numbers are told by their size only. */
+const kTiny = 0.0001;
 
 export function number(value: number | null | undefined, digits = 3): string {
     if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
     const size = Math.abs(value);
+    if (size > 0 && size < kTiny) return `<${kThin}${kTiny}`;
     const decimals =
         size >= 1e4 || Number.isInteger(value)
             ? 0

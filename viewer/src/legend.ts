@@ -23,7 +23,8 @@ export function legendHtml(by: Colouring, bare: boolean, transitions: boolean): 
         if (by.max + 1 > kMostCategories) keys.push('<span class="key">then again</span>');
     } else {
         const limit = by.limit === null ? '' : '<span class="limit">limit</span>';
-        const middle = number((by.min + by.max) / 2);
+        const half = (by.min + by.max) / 2;
+        const middle = number(by.id === 'course' ? Math.round(half) : half);
         scale =
             `<div class="ramp${by.limit === null ? '' : ' limited'}" style="background:${gradient()}"></div>` +
             `<div class="ticks"><span>${number(by.min)}</span><span>${middle}</span>` +

@@ -64,7 +64,10 @@ export class MachineView {
         this.ribbon.geometry.setIndex([0, 1, 2, 2, 1, 3]);
         this.line = new Line(new BufferGeometry(), new LineBasicMaterial());
         this.line.geometry.setAttribute('position', new BufferAttribute(new Float32Array(6), 3));
-        for (const part of [this.eye, this.ribbon, this.line]) part.frustumCulled = false;
+        for (const part of [this.eye, this.ribbon, this.line]) {
+            part.frustumCulled = false;
+            part.renderOrder = 900; // over the bands, which leave no depth behind
+        }
         this.fibre.add(this.eye, this.ribbon, this.line);
     }
 

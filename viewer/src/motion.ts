@@ -4,7 +4,7 @@ import type { Timeline } from './timeline';
 export interface AxisMotion {
     position: Float64Array; // at the block's end
     speed: Float64Array; // over the block; NaN at the start of a program
-    acceleration: Float64Array; // at the block's end, towards the next; NaN at starts and ends
+    acceleration: Float64Array; // that the block needs, without sign; NaN at the start of a program
 }
 
 export class Motion {
@@ -27,8 +27,9 @@ export class Motion {
     }
 
     /**
-     * Speed: increment over the block's time. Acceleration: the least that changes the speed of one
-     * block into that of the next within half of both.
+     * Speed: increment over the block's time. Acceleration: the least with which half the ramp
+     * from the block before and half the ramp to the next fit into the block, as the check of the
+     * axis limits has it; from rest at the start and to rest at the end.
      */
     private compute(axis: number): AxisMotion {
         const count = this.time.length;
@@ -39,14 +40,21 @@ export class Motion {
         this.timeline.programs.forEach((program, p) => {
             const { axes, time } = program.fibre;
             const base = this.first[p];
+            const span = (b: number) => time[b] - time[b - 1];
             for (let b = 0; b < time.length; ++b) {
                 position[base + b] = axes[b * n + axis];
-                if (b === 0) continue;
-                const span = time[b] - time[b - 1];
-                if (span > 0) speed[base + b] = (position[base + b] - position[base + b - 1]) / span;
-                if (b < 2) continue;
-                const both = (time[b] - time[b - 2]) / 2;
-                acceleration[base + b - 1] = (speed[base + b] - speed[base + b - 1]) / both;
+                if (b === 0 || !(span(b) > 0)) continue;
+                speed[base + b] = (position[base + b] - position[base + b - 1]) / span(b);
+            }
+            let before = 0;
+            for (let b = 1; b < time.length; ++b) {
+                const v = speed[base + b];
+                if (Number.isNaN(v)) continue;
+                let next = b + 1;
+                while (next < time.length && Number.isNaN(speed[base + next])) ++next;
+                const after = next < time.length ? speed[base + next] : 0;
+                acceleration[base + b] = (Math.abs(v - before) + Math.abs(after - v)) / 2 / span(b);
+                before = v;
             }
         });
         return { position, speed, acceleration };

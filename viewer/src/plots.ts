@@ -4,11 +4,12 @@ import type { AxisMotion, Motion } from './motion';
 import { upperBlock } from './timeline';
 import type { Axis } from './types';
 
-const kLeft = 58;
+const kLeft = 84;
 const kRight = 10;
 const kFoot = 18;
 const kGap = 7;
 const kLeastSpan = 0.05; // s
+const kPad = 0.08; // of a row's scale, above and below
 const kZoomStep = 1.6;
 /** A limit farther off than so many times the data's size is named, not drawn. */
 const kFarLimit = 2.5;
@@ -17,7 +18,8 @@ interface Row {
     label: string;
     unit: string;
     values: Float64Array;
-    steps: 'line' | 'block' | 'joint';
+    steps: 'line' | 'block';
+    about: 'data' | 'zero' | 'above-zero'; // what its scale begins with
     low: number | null; // limits
     high: number | null;
 }
@@ -144,14 +146,11 @@ export class Plots {
         const axis = this.axes[this.axis];
         const motion: AxisMotion = this.motion.of(this.axis);
         const unit = axis.type === 'linear' ? 'mm' : '°';
-        const both = (limit: number | null) => ({
-            low: limit === null ? null : -limit,
-            high: limit,
-        });
+        const { velocity, acceleration } = axis;
         return [
-            { label: 'Position', unit, values: motion.position, steps: 'line', low: axis.min, high: axis.max },
-            { label: 'Speed', unit: `${unit}/s`, values: motion.speed, steps: 'block', ...both(axis.velocity) },
-            { label: 'Accel.', unit: `${unit}/s²`, values: motion.acceleration, steps: 'joint', ...both(axis.acceleration) },
+            { label: 'Position', unit, values: motion.position, steps: 'line', about: 'data', low: axis.min, high: axis.max },
+            { label: 'Speed', unit: `${unit}/s`, values: motion.speed, steps: 'block', about: 'zero', low: velocity && -velocity, high: velocity },
+            { label: 'Acceleration', unit: `${unit}/s²`, values: motion.acceleration, steps: 'block', about: 'above-zero', low: null, high: acceleration },
         ];
     }
 
@@ -171,25 +170,26 @@ export class Plots {
         const rows = this.rows();
         const rowHeight = (height - kFoot - 4) / rows.length;
         rows.forEach((row, i) =>
-            this.drawRow(row, 4 + i * rowHeight, rowHeight - kGap, i === 0 ? 2 : 0, colour),
+            this.drawRow(row, 4 + i * rowHeight, rowHeight - kGap, colour),
         );
         this.drawClock(height, colour);
     }
 
-    private drawRow(row: Row, top: number, height: number, _inset: number, colour: (n: string) => string) {
+    private drawRow(row: Row, top: number, height: number, colour: (n: string) => string) {
         const { paint } = this;
         const right = this.canvas.clientWidth - kRight;
         const [first, last] = this.entries();
-        const [low, high, off] = rangeOf(row, first, last);
+        const [bottom, peak] = rangeOf(row, first, last);
+        const pad = kPad * (peak - bottom);
+        const [low, high] = [row.about === 'above-zero' ? 0 : bottom - pad, peak + pad];
         const yOf = (v: number) => top + height - ((v - low) / (high - low)) * height;
         paint.fillStyle = colour('--plot-ground');
         paint.fillRect(kLeft, top, right - kLeft, height);
         paint.fillStyle = colour('--muted');
         paint.textAlign = 'right';
-        paint.textBaseline = 'top';
-        paint.fillText(number(high, 3), kLeft - 6, top - 1);
-        paint.textBaseline = 'bottom';
-        paint.fillText(number(low, 3), kLeft - 6, top + height + 2);
+        paint.textBaseline = 'middle';
+        paint.fillText(number(Number(peak.toPrecision(4)), 4), kLeft - 6, yOf(peak) + 1);
+        paint.fillText(number(Number(bottom.toPrecision(4)), 4), kLeft - 6, yOf(bottom));
         if (low < 0 && high > 0) this.level(yOf(0), colour('--line'), []);
         for (const limit of [row.low, row.high]) {
             if (limit === null || limit < low || limit > high) continue;
@@ -205,20 +205,28 @@ export class Plots {
         this.trace(row, first, last, yOf);
         paint.stroke();
         paint.restore();
-        paint.fillStyle = colour('--text');
+        this.drawNames(row, top, height, colour);
+    }
+
+    private drawNames(row: Row, top: number, height: number, colour: (n: string) => string): void {
+        const { paint } = this;
         paint.textAlign = 'left';
-        paint.textBaseline = 'top';
-        const title = `${row.label}, ${row.unit}`;
-        const room = paint.measureText(title + (off ? `   ${off}` : '')).width;
-        paint.globalAlpha = 0.82;
-        paint.fillStyle = colour('--plot-ground');
-        paint.fillRect(kLeft + 3, top + 1, room + 8, 14);
-        paint.globalAlpha = 1;
+        paint.textBaseline = 'middle';
         paint.fillStyle = colour('--text');
-        paint.fillText(title, kLeft + 6, top + 2);
-        if (!off) return;
+        paint.fillText(row.label, 5, top + height / 2 - 6);
+        paint.fillStyle = colour('--muted');
+        paint.fillText(row.unit, 5, top + height / 2 + 7);
+        const words = limitWords(row);
+        if (!words) return;
+        const right = this.canvas.clientWidth - kRight;
+        const width = paint.measureText(words).width;
+        paint.globalAlpha = 0.8;
+        paint.fillStyle = colour('--plot-ground');
+        paint.fillRect(right - width - 9, top, width + 9, 15);
+        paint.globalAlpha = 1;
         paint.fillStyle = colour('--limit');
-        paint.fillText(off, kLeft + 6 + paint.measureText(`${title}   `).width, top + 2);
+        paint.textAlign = 'right';
+        paint.fillText(words, right - 4, top + 8);
     }
 
     private level(y: number, colour: string, dash: number[]): void {
@@ -262,12 +270,9 @@ export class Plots {
             if (Number.isNaN(v)) continue;
             const y = yOf(v);
             if (row.steps === 'line') to(this.xOf(time[i]), y);
-            else if (row.steps === 'block') {
+            else {
                 to(this.xOf(time[i - 1] ?? time[i]), y);
                 to(this.xOf(time[i]), y);
-            } else {
-                to(this.xOf((time[i - 1] + time[i]) / 2), y);
-                to(this.xOf((time[i] + time[i + 1]) / 2), y);
             }
         }
     }
@@ -275,9 +280,11 @@ export class Plots {
     /** Least and largest value in each column of pixels, where there are many blocks to one. */
     private traceColumns(row: Row, first: number, last: number, yOf: (v: number) => number): void {
         const { paint, motion } = this;
+        const starts = new Set(motion.first);
         let column = NaN;
         let low = Infinity;
         let high = -Infinity;
+        let before = NaN; // value of the entry before
         const flush = (): void => {
             if (low > high) return;
             paint.moveTo(column + 0.5, yOf(low) + 0.5);
@@ -285,16 +292,24 @@ export class Plots {
         };
         for (let i = first; i <= last; ++i) {
             const v = row.values[i];
+            if (starts.has(i)) before = NaN;
             if (Number.isNaN(v)) continue;
             const x = Math.floor(this.xOf(motion.time[i]));
             if (x !== column) {
                 flush();
+                if (x > column + 1) {
+                    // A block that is wider than a column.
+                    const from = row.steps === 'line' ? before : v;
+                    paint.moveTo(column + 0.5, yOf(Number.isNaN(from) ? v : from));
+                    paint.lineTo(x + 0.5, yOf(v));
+                }
                 column = x;
                 low = Infinity;
                 high = -Infinity;
             }
             low = Math.min(low, v);
             high = Math.max(high, v);
+            before = v;
         }
         flush();
     }
@@ -326,8 +341,16 @@ function tickStep(span: number, ticks: number): number {
     return power * ([1, 2, 5, 10].find((f) => f * power >= rough) ?? 10);
 }
 
-/** Lower and upper end of a row, and the limit in words where it is too far off to be drawn. */
-function rangeOf(row: Row, first: number, last: number): [number, number, string] {
+function limitWords(row: Row): string {
+    const { low, high } = row;
+    if (low === null && high === null) return '';
+    if (low === null) return `limit ${number(high, 6)}`;
+    if (high === null) return `limit ${number(low, 6)}`;
+    return low === -high ? `limit ±${number(high, 6)}` : `limits ${number(low, 6)} and ${number(high, 6)}`;
+}
+
+/** Lower and upper end of a row; limits that are not far off are within. */
+function rangeOf(row: Row, first: number, last: number): [number, number] {
     let low = Infinity;
     let high = -Infinity;
     for (let i = first; i <= last; ++i) {
@@ -337,27 +360,17 @@ function rangeOf(row: Row, first: number, last: number): [number, number, string
         high = Math.max(high, v);
     }
     if (low > high) [low, high] = [0, 1];
-    if (row.steps !== 'line') {
+    if (row.about === 'zero') {
         high = Math.max(Math.abs(low), Math.abs(high));
         low = -high;
-    }
-    if (high - low < 1e-9) [low, high] = [low - 0.5, high + 0.5];
+    } else if (row.about === 'above-zero') low = 0;
+    if (high - low < 1e-9) [low, high] = [row.about === 'above-zero' ? 0 : low - 0.5, high + 0.5];
     const [bottom, top] = [low, high];
-    const near = (limit: number) => Math.abs(limit - (top + bottom) / 2) <= (kFarLimit * (top - bottom)) / 2;
-    const far: number[] = [];
     for (const limit of [row.low, row.high]) {
-        if (limit === null) continue;
-        if (near(limit)) {
-            low = Math.min(low, limit);
-            high = Math.max(high, limit);
-        } else far.push(limit);
+        const off = limit === null ? Infinity : Math.abs(limit - (top + bottom) / 2);
+        if (limit === null || off > (kFarLimit * (top - bottom)) / 2) continue;
+        low = Math.min(low, limit);
+        high = Math.max(high, limit);
     }
-    const pad = 0.06 * (high - low);
-    const words =
-        far.length === 2 && far[0] === -far[1]
-            ? `limit ±${number(far[1], 6)}`
-            : far.length
-              ? `limit ${far.map((l) => number(l, 6)).join(' and ')}`
-              : '';
-    return [low - pad, high + pad, words];
+    return [low, high];
 }

@@ -9,7 +9,7 @@ import {
     Vector3,
     WebGLRenderer,
 } from 'three';
-import type { Matrix4, Object3D } from 'three';
+import type { Matrix4 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 const kFieldOfViewDeg = 28;
@@ -88,31 +88,37 @@ export class View {
         this.render();
     }
 
-    /** Looks at all of an object from a direction (world frame). */
-    fit(object: Object3D, direction: Vector3): void {
-        object.updateWorldMatrix(true, true);
-        const box = new Box3().setFromObject(object);
-        const centre = box.getCenter(new Vector3());
-        this.radius = Math.max(box.getSize(new Vector3()).length() / 2, 1);
+    /**
+     * Looks at all points (world frame) from a direction, as near as it can be.
+     */
+    fit(points: Vector3[], direction: Vector3): void {
         const forward = direction.clone().normalize().negate();
         const right = forward.clone().cross(this.camera.up).normalize();
         const upward = right.clone().cross(forward);
         const vertical = Math.tan((kFieldOfViewDeg * Math.PI) / 360);
         const horizontal = vertical * this.camera.aspect;
+        const target = new Box3().setFromPoints(points).getCenter(new Vector3());
         let distance = 0;
-        for (let i = 0; i < 8; ++i) {
-            const corner = new Vector3(
-                i & 1 ? box.max.x : box.min.x,
-                i & 2 ? box.max.y : box.min.y,
-                i & 4 ? box.max.z : box.min.z,
-            ).sub(centre);
-            const across = Math.abs(corner.dot(right)) / horizontal;
-            const high = Math.abs(corner.dot(upward)) / vertical;
-            distance = Math.max(distance, Math.max(across, high) - corner.dot(forward));
+        for (let round = 0; round < 4; ++round) {
+            // Nearest distance for this target, then the target moved into the picture's middle.
+            const ends = [Infinity, -Infinity, Infinity, -Infinity];
+            distance = 0;
+            for (const point of points) {
+                const p = point.clone().sub(target);
+                const [x, y, z] = [p.dot(right), p.dot(upward), p.dot(forward)];
+                distance = Math.max(distance, Math.abs(x) / horizontal - z, Math.abs(y) / vertical - z);
+                ends[0] = Math.min(ends[0], x);
+                ends[1] = Math.max(ends[1], x);
+                ends[2] = Math.min(ends[2], y);
+                ends[3] = Math.max(ends[3], y);
+            }
+            target.addScaledVector(right, (ends[0] + ends[1]) / 2);
+            target.addScaledVector(upward, (ends[2] + ends[3]) / 2);
         }
+        this.radius = Math.max(...points.map((p) => p.distanceTo(target)), 1);
         ++this.flight;
-        this.controls.target.copy(centre);
-        this.camera.position.copy(centre).addScaledVector(forward, -1.08 * distance);
+        this.controls.target.copy(target);
+        this.camera.position.copy(target).addScaledVector(forward, -1.1 * distance);
         this.controls.update();
         this.request();
     }

@@ -27,7 +27,8 @@ import type { Landing, Moment, Timeline } from './timeline';
 export type CameraMode = 'machine' | 'mandrel';
 
 /** From where the whole is first seen, in the machine's axes: from above, the arm to the right. */
-const kFirstView = new Vector3(0.5, 0.62, 0.6);
+const kFirstView = new Vector3(0.6, 0.65, 0.48);
+const kFitPoints = 1000; // of each cloud
 const kCloseWidths = 26; // distance of the camera from a place, in widths of the band
 
 export class Stage {
@@ -152,7 +153,12 @@ export class Stage {
 
     fit(): void {
         this.view.resize();
-        this.view.fit(this.mandrel.mesh, kFirstView);
+        this.onMandrel.updateWorldMatrix(true, false);
+        this.view.world.updateMatrixWorld();
+        const clouds = [this.page.points, ...this.timeline.programs.map((p) => p.fibre.position)];
+        const points = clouds.flatMap((cloud) => sample(cloud));
+        points.forEach((p) => p.applyMatrix4(this.onMandrel.matrixWorld));
+        this.view.fit(points, kFirstView);
     }
 
     /** Flies to a place of the mandrel frame and marks it. */
@@ -233,4 +239,12 @@ export class Stage {
         material.color.setStyle('#8a94a0', '');
         return new Line(geometry, material);
     }
+}
+
+/** Some thousand points of a cloud, all over it. */
+function sample(cloud: Float32Array): Vector3[] {
+    const step = 3 * Math.max(1, Math.floor(cloud.length / 3 / kFitPoints));
+    const points: Vector3[] = [];
+    for (let i = 0; i + 2 < cloud.length; i += step) points.push(new Vector3().fromArray(cloud, i));
+    return points;
 }

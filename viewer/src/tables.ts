@@ -1,5 +1,5 @@
 /** Key figures, bare wall with its reasons, and the layers of a laminate. */
-import { clock, escapeHtml, number, percent, sentence, withUnit } from './format';
+import { clock, escapeHtml, fixed, number, percent, sentence, withUnit } from './format';
 import type { LayerReport, Plan, Report, Uncovered } from './types';
 
 export function figuresHtml(report: Report, duration: number): string {
@@ -70,23 +70,23 @@ export function layersHtml(report: Report): string {
     const layers = report.layers ?? [];
     const row = (l: LayerReport, i: number) =>
         `<tr tabindex="0" data-layer="${i}"><td class="num">${l.layer ?? i + 1}</td><td>${escapeHtml(l.kind)}</td>` +
-        `<td class="num">${angleText(l)}</td><td class="num">${number(l.thickness_mm?.mean)}</td>` +
-        `<td class="num">${number(l.thickness_mm?.max)}</td><td class="num">${number(l.fibre_m)}</td>` +
-        `<td class="num">${number(l.mass_g)}</td><td class="num">${clock(l.time_s ?? NaN)}</td></tr>` +
+        `<td class="num">${angleText(l)}</td><td class="num">${fixed(l.thickness_mm?.mean ?? NaN, 2)}</td>` +
+        `<td class="num">${fixed(l.thickness_mm?.max ?? NaN, 2)}</td><td class="num">${fixed(l.fibre_m ?? NaN, 1)}</td>` +
+        `<td class="num">${fixed(l.mass_g ?? NaN, 1)}</td><td class="num">${clock(l.time_s ?? NaN)}</td></tr>` +
         (l.cut_because
             ? `<tr class="note"><td></td><td colspan="7">A new fibre: ${escapeHtml(l.cut_because)}</td></tr>`
             : '');
     const sum = report.laminate;
     const foot = sum
-        ? `<tfoot><tr><td></td><td>All</td><td></td><td class="num">${number(sum.thickness_mm?.mean)}</td>` +
-          `<td class="num">${number(sum.thickness_mm?.max)}</td><td class="num">${number(sum.fibre_m)}</td>` +
-          `<td class="num">${number(sum.mass_g)}</td><td class="num">${clock(sum.time_s ?? NaN)}</td></tr></tfoot>`
+        ? `<tfoot><tr><td></td><td>All</td><td></td><td class="num">${fixed(sum.thickness_mm?.mean ?? NaN, 2)}</td>` +
+          `<td class="num">${fixed(sum.thickness_mm?.max ?? NaN, 2)}</td><td class="num">${fixed(sum.fibre_m ?? NaN, 1)}</td>` +
+          `<td class="num">${fixed(sum.mass_g ?? NaN, 1)}</td><td class="num">${clock(sum.time_s ?? NaN)}</td></tr></tfoot>`
         : '';
     return (
         `<p class="muted sum">From the mandrel outward. Choose one to see it alone.</p>` +
         `<table class="grid layers"><thead><tr><th scope="col" class="num">#</th><th scope="col">Kind</th>` +
-        `<th scope="col" class="num">Angle</th><th scope="col" class="num">Mean mm</th><th scope="col" class="num">Max mm</th>` +
-        `<th scope="col" class="num">Fibre m</th><th scope="col" class="num">Mass g</th><th scope="col" class="num">Time</th></tr></thead>` +
+        `<th scope="col" class="num">Angle</th><th scope="col" class="num">Mean<br>mm</th><th scope="col" class="num">Max<br>mm</th>` +
+        `<th scope="col" class="num">Fibre<br>m</th><th scope="col" class="num">Mass<br>g</th><th scope="col" class="num">Time</th></tr></thead>` +
         `<tbody>${layers.map(row).join('')}</tbody>${foot}</table>`
     );
 }

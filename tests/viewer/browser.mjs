@@ -1,0 +1,95 @@
+// A browser without network and with software WebGL, and a page that notes whatever goes wrong.
+import { existsSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { pathToFileURL } from 'node:url';
+
+const require = createRequire(new URL('../../viewer/package.json', import.meta.url));
+const { chromium } = require('playwright-core');
+
+const kLaptop = { width: 1366, height: 768 };
+const kPlaces = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+
+export function launch() {
+    const executablePath = process.env.CHROMIUM ?? kPlaces.find((place) => existsSync(place));
+    if (!executablePath) throw new Error('no chromium found; name it in CHROMIUM');
+    return chromium.launch({
+        executablePath,
+        args: [
+            '--headless=new',
+            '--no-sandbox',
+            '--disable-quic',
+            '--no-first-run',
+            '--disable-background-networking',
+            '--disable-component-update',
+            '--disable-sync',
+            '--use-gl=angle',
+            '--use-angle=swiftshader',
+            '--enable-unsafe-swiftshader',
+        ],
+    });
+}
+
+/**
+ * Opens a file and waits until it is drawn.
+ * `options`: viewport, scheme ("light" or "dark"), hash, before (script run first), mayFail.
+ * `page.complaints` lists errors, warnings of the console and requests beyond the file itself.
+ */
+export async function open(browser, file, options = {}) {
+    const context = await browser.newContext({
+        viewport: options.viewport ?? kLaptop,
+        colorScheme: options.scheme ?? 'light',
+    });
+    const page = await context.newPage();
+    page.complaints = [];
+    page.on('console', (message) => {
+        if (['error', 'warning'].includes(message.type()) && !isDriverRemark(message.text())) {
+            page.complaints.push(`console: ${message.text()}`);
+        }
+    });
+    page.on('pageerror', (error) => page.complaints.push(`error: ${error.message}`));
+    page.on('requestfailed', (request) => page.complaints.push(`failed: ${request.url()}`));
+    page.on('request', (request) => {
+        if (/^(https?|wss?|ftp):/.test(request.url())) page.complaints.push(`network: ${request.url()}`);
+    });
+    if (options.before) await page.addInitScript(options.before);
+    await page.goto(pathToFileURL(file).href + (options.hash ?? ''));
+    await page.waitForFunction(
+        () => document.body.classList.contains('ready') || document.body.classList.contains('failed'),
+        null,
+        { timeout: 120000 },
+    );
+    return page;
+}
+
+/** Reading pixels back is slow on purpose here; software drivers remark on it. */
+function isDriverRemark(text) {
+    return /GPU stall due to ReadPixels|Automatic fallback to software WebGL/.test(text);
+}
+
+export const state = (page) => page.evaluate(() => window.meshwind.state());
+export const seek = (page, time) => page.evaluate((t) => window.meshwind.seek(t), time);
+
+/** {colours, share}: how many colours a canvas shows (5 bits each), and the share off its corner's. */
+export function look(page, selector) {
+    return page.evaluate((s) => {
+        const canvas = document.querySelector(s);
+        const copy = document.createElement('canvas');
+        copy.width = canvas.width;
+        copy.height = canvas.height;
+        const paint = copy.getContext('2d');
+        paint.drawImage(canvas, 0, 0);
+        const { data } = paint.getImageData(0, 0, copy.width, copy.height);
+        const key = (i) => (data[i] >> 3) | ((data[i + 1] >> 3) << 5) | ((data[i + 2] >> 3) << 10);
+        const ground = key(0);
+        const colours = new Map();
+        let off = 0;
+        let sum = 0;
+        for (let i = 0; i < data.length; i += 4) {
+            colours.set(key(i), (colours.get(key(i)) ?? 0) + 1);
+            if (key(i) !== ground) ++off;
+            sum = (sum * 31 + key(i) + data[i + 3]) % 1000000007;
+        }
+        const seen = [...colours.values()].filter((n) => n > 20).length;
+        return { colours: seen, share: (4 * off) / data.length, sum };
+    }, selector);
+}
