@@ -32,7 +32,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
     connectCamera(app);
     connectPlayback(app);
     const plotValues = connectPlots(app);
-    connectPointer(app);
+    const hoverAgain = connectPointer(app);
     connectKeys(app, rows);
 
     const slider = element<HTMLInputElement>('slider');
@@ -57,6 +57,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
         element('with-machine').setAttribute('aria-pressed', String(app.mode() === 'machine'));
         element('on-mandrel').setAttribute('aria-pressed', String(app.mode() === 'mandrel'));
         plotValues();
+        hoverAgain();
     };
     return { refresh };
 }
@@ -138,13 +139,19 @@ function connectPlots(app: App): () => void {
     return values;
 }
 
-function connectPointer(app: App): void {
+/** \return looks again at what is under the pointer */
+function connectPointer(app: App): () => void {
     const canvas = element('scene');
     let next: Vector2 | null = null;
     let waiting = false;
     const look = (): void => {
         waiting = false;
         app.hover(next);
+    };
+    const lookSoon = (): void => {
+        if (waiting) return;
+        waiting = true;
+        requestAnimationFrame(look);
     };
     canvas.addEventListener('pointermove', (event) => {
         const box = canvas.getBoundingClientRect();
@@ -154,14 +161,15 @@ function connectPointer(app: App): void {
                   ((event.clientX - box.left) / box.width) * 2 - 1,
                   1 - ((event.clientY - box.top) / box.height) * 2,
               );
-        if (waiting) return;
-        waiting = true;
-        requestAnimationFrame(look);
+        lookSoon();
     });
     canvas.addEventListener('pointerleave', () => {
         next = null;
         app.hover(null);
     });
+    return () => {
+        if (next) lookSoon();
+    };
 }
 
 function connectKeys(app: App, rows: CourseRow[]): void {

@@ -95,9 +95,11 @@ export class LinkKeeper {
         const { moment, layer, playing } = this.app;
         if (playing) return;
         const t = Number(moment.time.toFixed(3));
-        this.written = `#t=${t}${layer === null ? '' : `&layer=${layer + 1}`}`;
+        const whole = layer === null && moment.time >= this.app.timeline.duration;
+        this.written = whole ? '' : `#t=${t}${layer === null ? '' : `&layer=${layer + 1}`}`;
+        if (this.written === location.hash) return;
         try {
-            history.replaceState(null, '', this.written);
+            history.replaceState(null, '', this.written || location.pathname + location.search);
         } catch {
             // Some browsers forbid it on pages opened from a file; the page works without.
         }

@@ -31,13 +31,13 @@ function notice(text: string): void {
 function openStage(page: Page, kinematics: Kinematics, timeline: Timeline): Stage | null {
     const canvas = element<HTMLCanvasElement>('scene');
     const probe = document.createElement('canvas').getContext('webgl2');
-    if (!probe) {
-        notice('This browser has no WebGL 2, so the picture is left out; checks, tables, plots and program are complete.');
-        document.body.classList.add('no-picture');
-        return null;
-    }
-    probe.getExtension('WEBGL_lose_context')?.loseContext();
-    return new Stage(page, kinematics, timeline, canvas);
+    probe?.getExtension('WEBGL_lose_context')?.loseContext();
+    if (probe) return new Stage(page, kinematics, timeline, canvas);
+    notice(
+        'This browser has no WebGL 2, so the picture is left out; checks, tables, plots and program are complete.',
+    );
+    document.body.classList.add('no-picture');
+    return null;
 }
 
 function fillHead(page: Page, duration: number, checks: Checks): void {

@@ -123,6 +123,8 @@ export interface Landing {
 }
 
 const kSearchStations = 24;
+/** Sine of the angle between free fibre and tangent plane that is left as it is (0.4 deg). */
+const kTangentSine = 0.007;
 
 /**
  * The landing point for an eye: near the planned station, where the eye lies in the tangent plane
@@ -139,6 +141,9 @@ export function landingPoint(fibre: Fibre, planned: number, eye: Vector3): Landi
             (eye.x - p[k]) * n[k] + (eye.y - p[k + 1]) * n[k + 1] + (eye.z - p[k + 2]) * n[k + 2]
         );
     };
+    const planar = landingAt(fibre, guess);
+    const free = eye.clone().sub(planar.point);
+    if (Math.abs(free.dot(planar.normal)) < kTangentSine * free.length()) return planar;
     let station = guess;
     const first = Math.max(0, Math.floor(guess) - kSearchStations);
     const end = Math.min(last, Math.ceil(guess) + kSearchStations);
