@@ -111,9 +111,11 @@ function measuresOf({ base, check }: NamedCheck): Measure[] {
         .filter((k) => !/(^|_)limit(_|$)/.test(k))
         .map((key) => {
             const unit = /(_mm_s|_mm|_deg|_s)$/.exec(key)?.[0] ?? '';
-            const limit = keys.find((k) => k === `limit${unit}`);
+            const worst = /^(worst|max)/.test(key);
+            const limit = worst ? keys.find((k) => k === `limit${unit}`) : undefined;
             return limit ? { key, limit } : { key };
-        });
+        })
+        .sort((a, b) => Number('limit' in b) - Number('limit' in a));
 }
 
 function numberOf(check: Check, key: string): number | undefined {
@@ -121,7 +123,7 @@ function numberOf(check: Check, key: string): number | undefined {
     return typeof value === 'number' ? value : undefined;
 }
 
-/** \param head, tail what stands before and after the measure's own name */
+/** \param head, tail what stands before the measure's own name and at the end of its row */
 function measureHtml(check: Check, measure: Measure, head: string, tail: string): string {
     const value = numberOf(check, measure.key) as number;
     const { words, unit } = keyInWords(measure.key);
@@ -141,8 +143,8 @@ function measureHtml(check: Check, measure: Measure, head: string, tail: string)
     const bound =
         limit === undefined ? '' : `${measure.least ? '\u2265' : '\u2264'}\u202f${show(limit)}`;
     return (
-        `<tr><th scope="row">${head}<span>${escapeHtml(measure.label ?? words)}</span>${tail}</th><td class="num">${show(value)}</td>` +
-        `<td class="num muted">${bound}</td><td class="gauge-cell">${gauge}</td></tr>`
+        `<tr><th scope="row">${head}<span>${escapeHtml(measure.label ?? words)}</span></th><td class="num">${show(value)}</td>` +
+        `<td class="num muted">${bound}</td><td class="gauge-cell">${gauge}</td><td class="place-cell">${tail}</td></tr>`
     );
 }
 
@@ -204,7 +206,7 @@ export class Checks {
         const head = `${mark}<b>${name}</b>`;
         const measures = measuresOf(item);
         const rows = measures.map((m, i) => measureHtml(check, m, i === 0 ? head : '', i === 0 ? place : ''));
-        if (!measures.length) rows.push(`<tr><th scope="row">${head}${place}</th></tr>`);
+        if (!measures.length) rows.push(`<tr><th scope="row" colspan="4">${head}</th><td class="place-cell">${place}</td></tr>`);
         const words = check.words ? `<p class="words">${escapeHtml(sentence(check.words))}</p>` : '';
         return (
             `<article class="check${check.ok ? '' : ' failed'}${check.place ? ' placed' : ''}" ` +

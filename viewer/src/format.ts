@@ -7,7 +7,7 @@ const kTiny = 0.0001;
 export function number(value: number | null | undefined, digits = 3): string {
     if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
     const size = Math.abs(value);
-    if (size > 0 && size < kTiny) return `<${kThin}${kTiny}`;
+    if (size > 0 && size < kTiny) return `<${kTiny}`;
     const decimals =
         size >= 1e4 || Number.isInteger(value)
             ? 0
@@ -33,6 +33,7 @@ export function withUnit(value: number | null | undefined, unit: string, digits 
 
 export function percent(share: number): string {
     const value = share * 100;
+    if (value > 0 && value < 0.05) return `<0.1${kThin}%`;
     const text = value > 99 && value < 100 ? value.toFixed(2) : value.toFixed(1);
     return `${text.replace(/\.0+$/, '')}${kThin}%`;
 }

@@ -21,14 +21,13 @@ import { kBodyFragment, kBodyVertex } from './shaders';
 import type { Landing } from './timeline';
 import type { Body, Machine } from './types';
 
-export function bodyMaterial(opacity = 1): ShaderMaterial {
+/** \param ambient how light it is on its dark side, 0..1 */
+export function bodyMaterial(ambient = 0.45): ShaderMaterial {
     return new ShaderMaterial({
         vertexShader: kBodyVertex,
         fragmentShader: kBodyFragment,
-        uniforms: { colour: { value: new Color() }, opacity: { value: opacity } },
+        uniforms: { colour: { value: new Color() }, ambient: { value: ambient } },
         side: DoubleSide,
-        transparent: opacity < 1,
-        depthWrite: opacity === 1,
     });
 }
 
@@ -58,7 +57,7 @@ export class MachineView {
     ) {
         for (const body of [...machine.eye.envelope, ...machine.bodies]) this.add(body);
         this.eye = new Mesh(new SphereGeometry(Math.max(1.2, widthMm * 0.3), 20, 14), this.eyeMaterial);
-        this.ribbon = new Mesh(new BufferGeometry(), bodyMaterial());
+        this.ribbon = new Mesh(new BufferGeometry(), bodyMaterial(0.85));
         this.ribbon.geometry.setAttribute('position', new BufferAttribute(new Float32Array(12), 3));
         this.ribbon.geometry.setAttribute('normal', new BufferAttribute(new Float32Array(12), 3));
         this.ribbon.geometry.setIndex([0, 1, 2, 2, 1, 3]);

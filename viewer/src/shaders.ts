@@ -19,11 +19,11 @@ void main() {
 
 export const kBodyFragment = /* glsl */ `
 uniform vec3 colour;
-uniform float opacity;
+uniform float ambient;
 varying vec3 vNormal;
 ${kShade}
 void main() {
-    gl_FragColor = vec4(colour * shade(vNormal, 0.45), opacity);
+    gl_FragColor = vec4(colour * shade(vNormal, ambient), 1.0);
 }`;
 
 /** Mandrel: grey, or coloured by a value per face; bare faces are hatched on the screen. */

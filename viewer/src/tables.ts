@@ -38,14 +38,20 @@ function coverageHtml(plan: Plan | undefined): string {
         .join('')}</tbody></table>`;
 }
 
-function uncoveredHtml(list: Uncovered[], wall: number): string {
-    if (!list.length) return '<p class="muted">No bare wall was found.</p>';
+function uncoveredHtml(list: Uncovered[], wall: number, covered: number | undefined): string {
+    if (!list.length) {
+        const words =
+            covered === undefined || covered < 1
+                ? 'The plan gives no reasons for the wall that stays bare.'
+                : 'No wall stays bare.';
+        return `<p class="muted">${words}</p>`;
+    }
     const regions = new Set(list.map((u) => u.region)).size > 1;
     const rows = [...list]
         .sort((a, b) => b.area_mm2 - a.area_mm2)
         .map(
             (u) =>
-                `<tr><td class="num">${withUnit(u.area_mm2 / 100, '', 3)}</td><td class="num">${percent(u.area_mm2 / wall)}</td>` +
+                `<tr><td class="num">${fixed(u.area_mm2 / 100, 2)}</td><td class="num">${percent(u.area_mm2 / wall)}</td>` +
                 `${regions ? `<td class="num">${u.region}</td>` : ''}<td>${escapeHtml(sentence(u.reason))}</td></tr>`,
         );
     return (
@@ -59,7 +65,8 @@ function uncoveredHtml(list: Uncovered[], wall: number): string {
 export function bareHtml(report: Report, layer: number | null): string {
     const plan = layer === null ? report.plan : (report.layers?.[layer]?.plan ?? report.plan);
     return (
-        coverageHtml(plan) + uncoveredHtml(plan?.uncovered ?? [], wallArea(report))
+        coverageHtml(plan) +
+        uncoveredHtml(plan?.uncovered ?? [], wallArea(report), plan?.coverage?.fraction)
     );
 }
 
