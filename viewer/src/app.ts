@@ -63,9 +63,7 @@ export class App {
     }
 
     private ownPrograms(): Program[] {
-        const own = this.timeline.programs.filter(
-            (p) => this.layer === null || p.fibre.layer === this.layer,
-        );
+        const own = this.timeline.programs.filter((p) => this.layer === null || p.fibre.layer === this.layer);
         return own.length ? own : this.timeline.programs;
     }
 
@@ -77,11 +75,7 @@ export class App {
         const under = program && own.includes(program) ? program : own.find((p) => at <= p.end);
         this.moment = this.timeline.at(at, under ?? own[own.length - 1]);
         this.pose = this.kinematics.pose(this.moment.axes);
-        this.landing = landingPoint(
-            this.moment.program.fibre,
-            this.moment.station,
-            this.pose.eyeMandrel,
-        );
+        this.landing = landingPoint(this.moment.program.fibre, this.moment.station, this.pose.eyeMandrel);
         const { stage, plots, listing, courses } = this.parts;
         stage?.update(this.moment, this.pose, this.landing);
         plots.setTime(this.moment.time);
@@ -179,8 +173,7 @@ export class App {
     /** Goes to the block of a place and flies there. */
     showPlace(place: Place): void {
         const program = this.timeline.programs.find(
-            (p) =>
-                p.fibre.layer === (place.layer ?? 1) - 1 && p.fibre.fibre === (place.fibre ?? 1) - 1,
+            (p) => p.fibre.layer === (place.layer ?? 1) - 1 && p.fibre.fibre === (place.fibre ?? 1) - 1,
         );
         if (program && place.block !== undefined) this.seekBlock(program, place.block);
         if (place.position_mm) this.parts.stage?.flyTo(new Vector3(...place.position_mm));

@@ -113,7 +113,6 @@ function bandGeometry(fibre: Fibre, width: number, values: Float32Array): Buffer
     return geometry;
 }
 
-
 function stripIndices(fibre: Fibre, width: number): Uint32Array {
     const n = fibre.s.length;
     const indices = new Uint32Array(kIndicesPerStep * Math.max(n - 1, 0));

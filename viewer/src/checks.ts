@@ -140,8 +140,7 @@ function measureHtml(check: Check, measure: Measure, head: string, tail: string)
         const over = measure.least ? value < limit : value > limit * 1.0001;
         gauge = `<span class="gauge${over ? ' over' : ''}" aria-hidden="true"><i style="width:${(100 * share).toFixed(1)}%"></i></span>`;
     }
-    const bound =
-        limit === undefined ? '' : `${measure.least ? '\u2265' : '\u2264'}\u202f${show(limit)}`;
+    const bound = limit === undefined ? '' : `${measure.least ? '\u2265' : '\u2264'}\u202f${show(limit)}`;
     return (
         `<tr><th scope="row">${head}<span>${escapeHtml(measure.label ?? words)}</span></th><td class="num">${show(value)}</td>` +
         `<td class="num muted">${bound}</td><td class="gauge-cell">${gauge}</td><td class="place-cell">${tail}</td></tr>`
@@ -206,7 +205,10 @@ export class Checks {
         const head = `${mark}<b>${name}</b>`;
         const measures = measuresOf(item);
         const rows = measures.map((m, i) => measureHtml(check, m, i === 0 ? head : '', i === 0 ? place : ''));
-        if (!measures.length) rows.push(`<tr><th scope="row" colspan="4">${head}</th><td class="place-cell">${place}</td></tr>`);
+        if (!measures.length)
+            rows.push(
+                `<tr><th scope="row" colspan="4">${head}</th><td class="place-cell">${place}</td></tr>`,
+            );
         const words = check.words ? `<p class="words">${escapeHtml(sentence(check.words))}</p>` : '';
         return (
             `<article class="check${check.ok ? '' : ' failed'}${check.place ? ' placed' : ''}" ` +

@@ -6,14 +6,12 @@ import { DataTexture, LinearFilter, NearestFilter, NoColorSpace, RGBAFormat } fr
  * apart without red and green (after the published "viridis" table, every sixteenth of it).
  */
 const kSequential = [
-    0x440154, 0x481a6c, 0x472f7d, 0x414487, 0x39568c, 0x31688e, 0x2a788e, 0x23888e, 0x1f988b,
-    0x22a884, 0x35b779, 0x54c568, 0x7ad151, 0xa5db36, 0xd2e21b, 0xfde725,
+    0x440154, 0x481a6c, 0x472f7d, 0x414487, 0x39568c, 0x31688e, 0x2a788e, 0x23888e, 0x1f988b, 0x22a884,
+    0x35b779, 0x54c568, 0x7ad151, 0xa5db36, 0xd2e21b, 0xfde725,
 ];
 
 /** Eight colours that stay apart for the colour-blind (Okabe and Ito), black left out. */
-const kCategories = [
-    0x0072b2, 0xe69f00, 0x009e73, 0xcc79a7, 0x56b4e9, 0xd55e00, 0xf0e442, 0x7a6fb0,
-];
+const kCategories = [0x0072b2, 0xe69f00, 0x009e73, 0xcc79a7, 0x56b4e9, 0xd55e00, 0xf0e442, 0x7a6fb0];
 
 export const kBare = '#d55e00';
 export const kOverLimit = '#e0007a';
@@ -29,11 +27,7 @@ export function sequential(t: number): [number, number, number] {
     const x = Math.min(Math.max(t, 0), 1) * (kSequential.length - 1);
     const i = Math.min(Math.floor(x), kSequential.length - 2);
     const [a, b] = [rgb(kSequential[i]), rgb(kSequential[i + 1])];
-    return [0, 1, 2].map((k) => Math.round(a[k] + (x - i) * (b[k] - a[k]))) as [
-        number,
-        number,
-        number,
-    ];
+    return [0, 1, 2].map((k) => Math.round(a[k] + (x - i) * (b[k] - a[k]))) as [number, number, number];
 }
 
 export function category(n: number): [number, number, number] {
@@ -59,14 +53,7 @@ export const categoryTexture = texture(
     false,
 );
 
-export type ColouringId =
-    | 'course'
-    | 'family'
-    | 'slip'
-    | 'bridging'
-    | 'layers'
-    | 'thickness'
-    | 'angle';
+export type ColouringId = 'course' | 'family' | 'slip' | 'bridging' | 'layers' | 'thickness' | 'angle';
 
 export interface Colouring {
     id: ColouringId;

@@ -28,10 +28,7 @@ export function colouringsOf(page: Page, layer: number | null): Colouring[] {
     const layers = layer === null ? page.layers : [page.layers[layer]];
     const fibres = layers.flatMap((l) => l.fibres);
     const values = layer === null ? page.total : page.layers[layer].values;
-    const lastCourse = Math.max(
-        0,
-        ...fibres.flatMap((f) => f.header.pieces.map((p) => p.course)),
-    );
+    const lastCourse = Math.max(0, ...fibres.flatMap((f) => f.header.pieces.map((p) => p.course)));
     const slipLimit = limitOf(checks, 'slip', 'limit') ?? page.header.tow.friction;
     const bridgeLimit = limitOf(checks, 'bridging', 'limit_mm');
     const worstBridge = largest(fibres.map((f) => f.bridge));

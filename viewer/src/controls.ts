@@ -180,9 +180,7 @@ function connectKeys(app: App, rows: CourseRow[]): void {
         const { from, to } = app.span();
         const now = app.moment.time;
         const own = rows.filter(
-            (r) =>
-                r.piece.kind === 'course' &&
-                (app.layer === null || r.program.fibre.layer === app.layer),
+            (r) => r.piece.kind === 'course' && (app.layer === null || r.program.fibre.layer === app.layer),
         );
         const later = (r: CourseRow): boolean => r.start > now + 1e-6;
         const earlier = (r: CourseRow): boolean => r.start < now - 1e-6;

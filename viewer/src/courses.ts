@@ -50,19 +50,73 @@ interface Column {
 }
 
 const kFamily = (n: number) =>
-    n < 0
-        ? '\u2013'
-        : `<i class="swatch" style="background:${cssColour(category(n))}"></i>${n}`;
+    n < 0 ? '\u2013' : `<i class="swatch" style="background:${cssColour(category(n))}"></i>${n}`;
 
 const kColumns: Column[] = [
-    { id: 'layer', label: 'Layer', title: 'Layer', numeric: true, value: (r) => r.program.fibre.layer, text: (r) => String(r.program.fibre.layer + 1) },
-    { id: 'course', label: 'Course', title: 'Number in winding order', numeric: true, value: (r) => 1e6 * r.program.index + r.index, text: (r) => String(r.piece.course) },
-    { id: 'kind', label: 'Kind', title: 'Course, or transition between courses', numeric: false, value: (r) => r.piece.kind, text: (r) => escapeHtml(r.piece.kind) },
-    { id: 'family', label: 'Family', title: 'Family of parallel courses', numeric: true, value: (r) => r.piece.family, text: (r) => kFamily(r.piece.family) },
-    { id: 'length', label: 'Length m', title: 'Length in metres', numeric: true, value: (r) => r.piece.length_mm, text: (r) => fixed(r.piece.length_mm / 1000, 3) },
-    { id: 'slip', label: 'Slip', title: 'Worst slip ratio', numeric: true, value: (r) => r.piece.worst_slip, text: (r) => fixed(r.piece.worst_slip, 3) },
-    { id: 'start', label: 'From s', title: 'Begins at, seconds', numeric: true, value: (r) => r.start, text: (r) => fixed(r.start, 1) },
-    { id: 'time', label: 'Time s', title: 'Takes so many seconds', numeric: true, value: (r) => r.duration, text: (r) => fixed(r.duration, 2) },
+    {
+        id: 'layer',
+        label: 'Layer',
+        title: 'Layer',
+        numeric: true,
+        value: (r) => r.program.fibre.layer,
+        text: (r) => String(r.program.fibre.layer + 1),
+    },
+    {
+        id: 'course',
+        label: 'Course',
+        title: 'Number in winding order',
+        numeric: true,
+        value: (r) => 1e6 * r.program.index + r.index,
+        text: (r) => String(r.piece.course),
+    },
+    {
+        id: 'kind',
+        label: 'Kind',
+        title: 'Course, or transition between courses',
+        numeric: false,
+        value: (r) => r.piece.kind,
+        text: (r) => escapeHtml(r.piece.kind),
+    },
+    {
+        id: 'family',
+        label: 'Family',
+        title: 'Family of parallel courses',
+        numeric: true,
+        value: (r) => r.piece.family,
+        text: (r) => kFamily(r.piece.family),
+    },
+    {
+        id: 'length',
+        label: 'Length m',
+        title: 'Length in metres',
+        numeric: true,
+        value: (r) => r.piece.length_mm,
+        text: (r) => fixed(r.piece.length_mm / 1000, 3),
+    },
+    {
+        id: 'slip',
+        label: 'Slip',
+        title: 'Worst slip ratio',
+        numeric: true,
+        value: (r) => r.piece.worst_slip,
+        text: (r) => fixed(r.piece.worst_slip, 3),
+    },
+    {
+        id: 'start',
+        label: 'From s',
+        title: 'Begins at, seconds',
+        numeric: true,
+        value: (r) => r.start,
+        text: (r) => fixed(r.start, 1),
+    },
+    {
+        id: 'time',
+        label: 'Time s',
+        title: 'Takes so many seconds',
+        numeric: true,
+        value: (r) => r.duration,
+        text: (r) => fixed(r.duration, 2),
+    },
 ];
 
 export class Courses {
@@ -149,7 +203,8 @@ export class Courses {
     private click(target: HTMLElement, byKey: boolean): void {
         const sort = target.closest<HTMLElement>('[data-sort]')?.dataset.sort;
         if (sort) {
-            this.down = sort === this.sortBy ? !this.down : sort === 'slip' || sort === 'time' || sort === 'length';
+            this.down =
+                sort === this.sortBy ? !this.down : sort === 'slip' || sort === 'time' || sort === 'length';
             this.sortBy = sort;
             this.show(this.layer);
             if (byKey) this.host.querySelector<HTMLElement>(`[data-sort="${sort}"]`)?.focus();

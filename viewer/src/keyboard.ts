@@ -33,18 +33,22 @@ export function helpHtml(): string {
 }
 
 export function listenToKeys(actions: KeyActions): void {
-    window.addEventListener('keydown', (event) => {
-        if (event.ctrlKey || event.metaKey || event.altKey) return;
-        if (document.querySelector('dialog[open]')) return;
-        const target = event.target as HTMLElement;
-        if (target.matches('select, input[type=text]')) return;
-        const scrolls = target.closest('.listing, .panel') !== null;
-        const action = actionOf(event, actions, scrolls, target);
-        if (!action) return;
-        event.preventDefault();
-        event.stopPropagation();
-        action();
-    }, { capture: true });
+    window.addEventListener(
+        'keydown',
+        (event) => {
+            if (event.ctrlKey || event.metaKey || event.altKey) return;
+            if (document.querySelector('dialog[open]')) return;
+            const target = event.target as HTMLElement;
+            if (target.matches('select, input[type=text]')) return;
+            const scrolls = target.closest('.listing, .panel') !== null;
+            const action = actionOf(event, actions, scrolls, target);
+            if (!action) return;
+            event.preventDefault();
+            event.stopPropagation();
+            action();
+        },
+        { capture: true },
+    );
 }
 
 function actionOf(

@@ -65,7 +65,12 @@ export function stateOf(app: App): PageState {
 export function followLink(app: App): boolean {
     const link = new URLSearchParams(location.hash.slice(1));
     const layer = Number(link.get('layer'));
-    if (Number.isInteger(layer) && layer >= 1 && layer <= app.page.layers.length && app.page.layers.length > 1) {
+    if (
+        Number.isInteger(layer) &&
+        layer >= 1 &&
+        layer <= app.page.layers.length &&
+        app.page.layers.length > 1
+    ) {
         app.setLayer(layer - 1);
     }
     const time = link.get('t');

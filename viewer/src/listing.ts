@@ -80,7 +80,10 @@ export class Listing {
         if (!blocks) return;
         const now = program.fibre.time[this.block];
         const off = (b: number) => Math.abs(program.fibre.time[b] - now);
-        this.onSeek(program, blocks.reduce((best, b) => (off(b) < off(best) ? b : best)));
+        this.onSeek(
+            program,
+            blocks.reduce((best, b) => (off(b) < off(best) ? b : best)),
+        );
     }
 
     private centre(): void {

@@ -134,14 +134,9 @@ export class MachineView {
         const from = new Vector3(...body.from);
         const to = new Vector3(...body.to);
         const along = to.clone().sub(from);
-        const mesh = new Mesh(
-            new CapsuleGeometry(body.radius, along.length(), 10, 28, 1),
-            this.material,
-        );
+        const mesh = new Mesh(new CapsuleGeometry(body.radius, along.length(), 10, 28, 1), this.material);
         mesh.position.copy(from).add(to).multiplyScalar(0.5);
-        mesh.quaternion.copy(
-            new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), along.normalize()),
-        );
+        mesh.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), along.normalize()));
         group.add(mesh);
     }
 }

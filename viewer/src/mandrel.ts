@@ -121,8 +121,7 @@ function faceNormals(points: Float32Array, faces: Uint32Array): Float32Array {
 
 function cosine(normals: Float32Array, f: number, g: number): number {
     const [a, b] = [3 * f, 3 * g];
-    const dot =
-        normals[a] * normals[b] + normals[a + 1] * normals[b + 1] + normals[a + 2] * normals[b + 2];
+    const dot = normals[a] * normals[b] + normals[a + 1] * normals[b + 1] + normals[a + 2] * normals[b + 2];
     const size =
         Math.hypot(normals[a], normals[a + 1], normals[a + 2]) *
         Math.hypot(normals[b], normals[b + 1], normals[b + 2]);

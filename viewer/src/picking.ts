@@ -66,6 +66,17 @@ export class Picker {
         private readonly widthMm: number,
     ) {}
 
+    /** Sorts the stations of fibres beforehand, which else happens at the first look. */
+    prepare(fibres: Fibre[]): void {
+        for (const fibre of fibres) this.gridOf(fibre);
+    }
+
+    private gridOf(fibre: Fibre): StationGrid {
+        let grid = this.grids.get(fibre);
+        if (!grid) this.grids.set(fibre, (grid = new StationGrid(fibre, 1.5 * this.widthMm)));
+        return grid;
+    }
+
     /**
      * \param at pointer, -1..1 both ways
      * \param shown fibres that are drawn, in the order of winding, and up to which station
@@ -87,8 +98,7 @@ export class Picker {
     }
 
     private uppermost(fibre: Fibre, upTo: number, place: Vector3, normal: Vector3): number {
-        let grid = this.grids.get(fibre);
-        if (!grid) this.grids.set(fibre, (grid = new StationGrid(fibre, 1.5 * this.widthMm)));
+        const grid = this.gridOf(fibre);
         const { position: p, normal: m, tangent: t } = fibre;
         const half = this.widthMm / 2;
         let best = -1;

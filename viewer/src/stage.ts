@@ -28,6 +28,7 @@ export type CameraMode = 'machine' | 'mandrel';
 
 /** From where the whole is first seen, in the machine's axes: from above, the arm to the right. */
 const kFirstView = new Vector3(0.6, 0.65, 0.48);
+const kIdleMs = 400; // after which what is not seen at once is prepared
 const kFitPoints = 1000; // of each cloud
 const kCloseWidths = 26; // distance of the camera from a place, in widths of the band
 
@@ -70,6 +71,7 @@ export class Stage {
         this.onMandrel.add(this.marker, this.makeAxis());
         this.view.world.add(this.onMandrel, this.machine.group, this.machine.fibre);
         this.picker = new Picker(this.mandrel.mesh, this.extension, width);
+        window.setTimeout(() => this.picker.prepare(timeline.programs.map((p) => p.fibre)), kIdleMs);
         this.setTheme();
     }
 
@@ -146,8 +148,7 @@ export class Stage {
 
     private place(): void {
         if (!this.pose) return;
-        const matrix =
-            this.mode === 'machine' ? new Matrix4() : this.pose.baseFromMandrel.clone().invert();
+        const matrix = this.mode === 'machine' ? new Matrix4() : this.pose.baseFromMandrel.clone().invert();
         this.view.setWorld(matrix);
     }
 
@@ -205,7 +206,8 @@ export class Stage {
             let distance = 0;
             for (let c = 0; c < 3; ++c) {
                 const mean =
-                    (points[3 * faces[f] + c] + points[3 * faces[f + 1] + c] + points[3 * faces[f + 2] + c]) / 3;
+                    (points[3 * faces[f] + c] + points[3 * faces[f + 1] + c] + points[3 * faces[f + 2] + c]) /
+                    3;
                 distance += (mean - place.getComponent(c)) ** 2;
             }
             if (distance < best) {

@@ -21,9 +21,7 @@ export function figuresHtml(report: Report, duration: number): string {
 
 function wallArea(report: Report): number {
     const kept = report.mandrel?.regions?.filter((r) => r.kept) ?? [];
-    return kept.length
-        ? kept.reduce((sum, r) => sum + r.area_mm2, 0)
-        : (report.mandrel?.area_mm2 ?? NaN);
+    return kept.length ? kept.reduce((sum, r) => sum + r.area_mm2, 0) : (report.mandrel?.area_mm2 ?? NaN);
 }
 
 function coverageHtml(plan: Plan | undefined): string {
@@ -65,8 +63,7 @@ function uncoveredHtml(list: Uncovered[], wall: number, covered: number | undefi
 export function bareHtml(report: Report, layer: number | null): string {
     const plan = layer === null ? report.plan : (report.layers?.[layer]?.plan ?? report.plan);
     return (
-        coverageHtml(plan) +
-        uncoveredHtml(plan?.uncovered ?? [], wallArea(report), plan?.coverage?.fraction)
+        coverageHtml(plan) + uncoveredHtml(plan?.uncovered ?? [], wallArea(report), plan?.coverage?.fraction)
     );
 }
 

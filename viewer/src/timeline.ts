@@ -58,6 +58,7 @@ export class Timeline {
 
     at(time: number, program = this.programAt(time)): Moment {
         const { fibre } = program;
+        if (!fibre.time.length) return standstill(program, this.axes.length);
         const local = Math.min(Math.max(time - program.start, 0), program.end - program.start);
         const block = upperBlock(fibre.time, local);
         const before = Math.max(block - 1, 0);
@@ -83,15 +84,21 @@ export class Timeline {
     /** Time on the common clock at which a block ends. */
     endOf(program: Program, block: number): number {
         const { time } = program.fibre;
+        if (!time.length) return program.start;
         return program.start + time[Math.min(Math.max(block, 0), time.length - 1)];
     }
+}
 
-    /** First block that lands at a station or beyond it. */
-    blockOfStation(program: Program, station: number): number {
-        const { station: stations } = program.fibre;
-        for (let b = 0; b < stations.length; ++b) if (stations[b] >= station) return b;
-        return stations.length - 1;
-    }
+/** What is shown of a fibre without blocks: all of it, with the axes at zero. */
+function standstill(program: Program, axes: number): Moment {
+    return {
+        time: program.start,
+        program,
+        block: 0,
+        share: 1,
+        axes: new Float64Array(axes),
+        station: program.fibre.s.length - 1,
+    };
 }
 
 /** First block whose end is not before `time`. */
@@ -137,9 +144,7 @@ export function landingPoint(fibre: Fibre, planned: number, eye: Vector3): Landi
     const lift = (i: number): number => {
         const k = 3 * i;
         const { position: p, normal: n } = fibre;
-        return (
-            (eye.x - p[k]) * n[k] + (eye.y - p[k + 1]) * n[k + 1] + (eye.z - p[k + 2]) * n[k + 2]
-        );
+        return (eye.x - p[k]) * n[k] + (eye.y - p[k + 1]) * n[k + 1] + (eye.z - p[k + 2]) * n[k + 2];
     };
     const planar = landingAt(fibre, guess);
     const free = eye.clone().sub(planar.point);
