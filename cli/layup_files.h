@@ -2,10 +2,10 @@
 /// fibre.obj, fibre.step (docs/files.md, "Lay-up").
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "cli/layup.h"
 #include "cli/wind.h"
 
 namespace meshwind {
@@ -16,9 +16,8 @@ struct MadeFile {
     std::string bytes;
 };
 
-/// The lay-up on the bare mandrel's triangles and the polylines of every fibre. The same run gives
-/// the same bytes. \param seed of the run: the plies are measured on its coverage samples
-/// \pre result.planned()
-[[nodiscard]] std::vector<MadeFile> layup_files(const WindResult& result, std::uint64_t seed);
+/// The lay-up on the bare mandrel's triangles and the polylines of every fibre. \param layup of the
+/// result's layers \pre result.planned()
+[[nodiscard]] std::vector<MadeFile> layup_files(const WindResult& result, const Layup& layup);
 
 }  // namespace meshwind

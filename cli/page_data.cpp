@@ -10,7 +10,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/layup_totals.h"
 #include "cli/run_files.h"
 #include "core/units.h"
 #include "machines/kinematics.h"
@@ -111,15 +110,15 @@ json limit_json(double value) {
 
 class PageData {
 public:
-    explicit PageData(const WindResult& result)
-        : result_(result), first_(result.layers.front().setup) {}
+    PageData(const WindResult& result, const Layup& layup)
+        : result_(result), layup_(layup), first_(result.layers.front().setup) {}
 
     std::string text(std::string_view report) {
         const Mandrel& mandrel = first_.mandrel;
         arrays_.add_points("mandrel/points", mandrel.surface.position_mm);
         arrays_.add_faces("mandrel/faces", mandrel.surface.face);
         arrays_.add<std::int32_t>("mandrel/region", 1, mandrel.surface.region);
-        add_layup("total/", layup_totals(result_.layers));
+        add_layup("total/", layup_.all());
         json layers = json::array();
         for (std::size_t i = 0; i < result_.layers.size(); ++i) {
             layers.push_back(layer_json(i));
@@ -143,10 +142,10 @@ public:
     }
 
 private:
-    void add_layup(const std::string& prefix, const LayupTotals& totals) {
-        arrays_.add_floats(prefix + "layers", totals.layers);
-        arrays_.add_floats(prefix + "thickness_mm", totals.thickness_mm);
-        arrays_.add_floats(prefix + "angle_deg", totals.angle_deg);
+    void add_layup(const std::string& prefix, const LayupArrays& arrays) {
+        arrays_.add_floats(prefix + "layers", arrays.layers);
+        arrays_.add_floats(prefix + "thickness_mm", arrays.thickness_mm);
+        arrays_.add_floats(prefix + "angle_deg", arrays.winding_deg);
     }
 
     json layer_json(std::size_t number) {
@@ -159,7 +158,7 @@ private:
             report["points"] = name + "/points";
             arrays_.add_points(name + "/points", layer.setup.mandrel.surface.position_mm);
         }
-        add_layup(name + "/", layup_totals({&layer, 1}));
+        add_layup(name + "/", layup_.each()[number]);
         report["fibres"] = json::array();
         const auto fibres = fibres_of(layer.plan.pieces);
         std::size_t course = 0;
@@ -388,6 +387,7 @@ private:
     }
 
     const WindResult& result_;
+    const Layup& layup_;
     const Setup& first_;
     Arrays arrays_;
     int meshes_ = 0;
@@ -395,8 +395,8 @@ private:
 
 }  // namespace
 
-std::string page_data(const WindResult& result, std::string_view report) {
-    return PageData(result).text(report);
+std::string page_data(const WindResult& result, const Layup& layup, std::string_view report) {
+    return PageData(result, layup).text(report);
 }
 
 }  // namespace meshwind

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/layup.h"
 #include "cli/wind.h"
 
 namespace meshwind {
@@ -19,6 +20,7 @@ namespace meshwind {
 ///
 /// Positions are in the mandrel's frame, mm; angles deg. \param report text of report.json
 /// \pre result.planned()
-[[nodiscard]] std::string page_data(const WindResult& result, std::string_view report);
+[[nodiscard]] std::string page_data(const WindResult& result, const Layup& layup,
+                                    std::string_view report);
 
 }  // namespace meshwind

@@ -247,19 +247,21 @@ private:
                 folder.withdraw(entry.path().filename().string());
             }
         }
+        std::optional<Layup> layup;
         if (result_.planned()) {
             for (std::size_t i = 0; i < result_.layers.size(); ++i) {
                 add_layer(i);
             }
-            for (const MadeFile& file : layup_files(result_, request_.seed)) {
+            layup.emplace(result_.layers, request_.seed);
+            for (const MadeFile& file : layup_files(result_, *layup)) {
                 folder.add(file.name, file.bytes);
             }
         }
         watch_.stage("write");
         const std::string report = report_json(result_);
         folder.add("report.json", report);
-        if (result_.planned() && !page_template().empty()) {
-            folder.add("report.html", report_page(page_data(result_, report)));
+        if (layup && !page_template().empty()) {
+            folder.add("report.html", report_page(page_data(result_, *layup, report)));
         }
         folder.publish();
     }
