@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/help_text.h"
 #include "cli/make_command.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -16,116 +17,43 @@
 namespace meshwind {
 namespace {
 
-// What stands below the options of a command. The commands' own lines are listed by --help, so that
-// they are short.
-constexpr const char* kCommon =
-    "\nOptions of every command (--json, --quiet, --force, --units, --seed, --threads): "
-    "meshwind --help";
-
-constexpr const char* kMainHelp =
-    "The main job plans a fibre, turns it into a program, winds that again, and writes it to the\n"
-    "output folder if every check passed; report.json there says what was found.\n"
-    "  meshwind tee.stl --machine six_axis.json\n"
-    "  meshwind part.stl --machine my_machine.json --job my_job.json -o out\n"
-    "Files that are not in the current folder are looked up in meshwind's own data/ and "
-    "machines/.\n"
-    "meshwind COMMAND --help has the options of a command. Exit codes: 0 every check passed,\n"
-    "1 a check failed and no program was written, 2 bad input, 3 internal error.";
-
-constexpr const char* kPostHelp =
-    "The table has columns x_mm,y_mm,z_mm (or x,y,z in the units of the mandrel's file), perhaps\n"
-    "course, nx,ny,nz (normal) and tx,ty,tz (direction); its rows are in winding order. The "
-    "points\n"
-    "are laid on the mandrel, courses that do not meet are joined over it, and from there on all "
-    "is\n"
-    "as in the main job: the same checks, the same output folder, exit code 1 and no program "
-    "where\n"
-    "a check fails.\n"
-    "  meshwind post points.csv --mandrel tee.stl --machine six_axis.json\n"
-    "  meshwind post meshwind-out/path.csv --frame mandrel --mandrel tee.stl --machine "
-    "six_axis.json";
-
-constexpr const char* kVerifyHelp =
-    "Nothing but the program, the machine and the mandrel says where the fibre goes. It is then\n"
-    "checked for slip, bridging, collisions, free length, axis limits and pay-out, and with "
-    "--plan\n"
-    "compared with what was planned: exit code 1 and the first wrong block where anything fails.\n"
-    "  meshwind verify meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json "
-    "--plan meshwind-out";
-
-constexpr const char* kDesignHelp =
-    "A cylinder with isotensoid domes: dome, and for each winding angle turn and length of its\n"
-    "geodesics, circuits and layers for the wanted wall or pressure (without either one layer of\n"
-    "each hand), fibre, mass and the thickest place of the dome. Angles that no geodesic can keep\n"
-    "are named with the slip that they would need. meshwind make isotensoid makes the mesh.\n"
-    "  meshwind design vessel --radius 40 --opening 15 --length 80 --e1 132 --e2 10.3 --nu12 0.25\n"
-    "  meshwind design vessel --radius 150 --opening 40 --length 600 --pressure 70 --strength 1200";
-
-constexpr const char* kCarryHelp =
-    "The head stands still; the robot moves a slender frame through its two rings, which turn "
-    "about\n"
-    "one axis and lay tows around the frame: the first ring on the way forth, the second on the "
-    "way\n"
-    "back. The table has the points of the frame's axis, columns x_mm,y_mm,z_mm, and perhaps "
-    "tx,ty,tz\n"
-    "(direction), rx,ry,rz (what is to meet the head's reference) and turn_deg (turn about the "
-    "axis);\n"
-    "a mesh gives axis and radius by itself. Written are NAME.src and NAME_back.src (KUKA KRL, "
-    "only if\n"
-    "every check passed), rings.csv for the drives of the rings, fibre.csv with the fibre that "
-    "they\n"
-    "lay, motion.csv and report.json.\n"
-    "  meshwind carry l_frame_axis.csv\n"
-    "  meshwind carry frame.stl --tow-width 6 --friction 0.4\n"
-    "  meshwind carry axis.csv --machine my_robot.json --tool 0,0,120,0,0,0 --speed 30";
-
-constexpr const char* kMeshSizeHelp =
-    "Lays the same random fibres on ever finer meshes of known surfaces and compares them with "
-    "the\n"
-    "exact fibres: the path's end, the winding angle and the slip; then, with the fibre's "
-    "direction\n"
-    "taken from the landing points by chord (P1-P2), central chord (P1-P3), parabola or tracer, "
-    "the\n"
-    "spindle angle C and the eye point. An error that falls by 2^k when the edges are halved is "
-    "of\n"
-    "order k.\n"
-    "Cylinders are compared with closed forms; torus, ellipsoid and tee with the differential\n"
-    "equation of their exact surface; a file with itself, coarsened: choose edges well above its\n"
-    "own, and mind that what its own mesh has wrong is not seen.\n"
-    "To choose a mesh for a part: take the row of the surface most like it, and the edge length "
-    "at\n"
-    "which the error that matters is small enough.\n"
-    "  meshwind study mesh-size\n"
-    "  meshwind study mesh-size --mandrel cylinder --radius 35 --edges 8,4,2,1 -o pipe\n"
-    "  meshwind study mesh-size --mandrel part.stl --edges 12,8,6";
-
 void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
     auto* mandrel =
-        app.add_option("mandrel", options.mandrel, "mesh of the part: .stl, .obj, .ply or .off");
+        app.add_option("mandrel", options.mandrel, "mesh of the part: .stl, .obj, .ply or .off")
+            ->type_name("FILE");
     if (required) {
         mandrel->required();
     }
     app.add_option("--machine", options.machine,
                    "machine file, JSON: axes, limits, eye, controller")
+        ->type_name("FILE")
         ->capture_default_str();
     app.add_option("--job", options.job,
-                   "job file, JSON: tow, layers, eye rule, tolerances, speed; without it defaults");
-    app.add_option("-o,--out", options.out, "output folder")->capture_default_str();
+                   "job file, JSON: tow, layers, eye rule, tolerances, speed; without it defaults")
+        ->type_name("FILE");
+    app.add_option("-o,--out", options.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
     app.add_option("--effort", options.effort,
                    "how long the plan is improved: 4 takes about 4 times as long as 1, and saves "
                    "fibre")
+        ->type_name("N")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
 }
 
 void add_post(CLI::App& app, PostOptions& options) {
     app.add_option("points", options.points, "table of landing points, CSV; columns below")
+        ->type_name("FILE")
         ->required();
-    app.add_option("--mandrel", options.mandrel, "mesh of the part")->required();
-    app.add_option("--machine", options.machine, "machine file, JSON")->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
+    app.add_option("--machine", options.machine, "machine file, JSON")
+        ->type_name("FILE")
+        ->required();
     app.add_option("--job", options.job,
                    "job file, JSON: tow, eye rule, extensions, tolerances; its layers are not "
-                   "read; without it defaults");
+                   "read; without it defaults")
+        ->type_name("FILE");
     app.add_option("--frame", options.frame,
                    "axes of the table. file: those of the mandrel's file; mandrel: those of "
                    "meshwind's own tables, Z along the spindle, in mm")
@@ -133,48 +61,74 @@ void add_post(CLI::App& app, PostOptions& options) {
         ->capture_default_str();
     app.add_option("--within", options.within_mm,
                    "mm: a point further than this from the mandrel is refused")
+        ->type_name("MM")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option("-o,--out", options.out, "output folder")->capture_default_str();
+    app.add_option("-o,--out", options.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
 }
 
 void add_verify(CLI::App& app, VerifyOptions& options) {
     app.add_option("program", options.program,
                    "NC program, by meshwind or anybody; the machine file names its language")
+        ->type_name("FILE")
         ->required();
-    app.add_option("--mandrel", options.mandrel, "mesh of the part")->required();
-    app.add_option("--machine", options.machine, "machine file")->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
+    app.add_option("--machine", options.machine, "machine file")->type_name("FILE")->required();
     app.add_option("--job", options.job,
-                   "job file: tow, friction, extensions, tolerances; without it the defaults hold");
+                   "job file: tow, friction, extensions, tolerances; without it the defaults hold")
+        ->type_name("FILE");
     app.add_option(
-        "--plan", options.plan,
-        "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
-        "path-2.csv and motion-2.csv");
+           "--plan", options.plan,
+           "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
+           "path-2.csv and motion-2.csv")
+        ->type_name("DIR");
     app.add_option("--tie-on", options.tie_on,
                    "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
-                   "say it");
-    app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv");
+                   "say it")
+        ->type_name("X,Y,Z");
+    app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv")
+        ->type_name("DIR");
 }
 
 void add_inspect(CLI::App& app, InspectOptions& options) {
-    app.add_option("mandrel", options.mandrel, "mesh of the part")->required();
+    app.add_option("mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
     auto* refine = app.add_option("--refine", options.refine_mm,
                                   "write the winding surface with edges of at most so many mm, new "
-                                  "vertices on its curved patches; frame and units of the file");
+                                  "vertices on its curved patches; frame and units of the file")
+                       ->type_name("MM");
     app.add_option("-o,--out", options.out, "mesh file to write: .stl, .obj, .ply or .off")
+        ->type_name("FILE")
         ->needs(refine);
+}
+
+// What stands for a parameter's value in the help.
+std::string name_of_unit(const MakeParameter& parameter) {
+    switch (parameter.unit) {
+        case MakeUnit::Angle:
+            return "DEG";
+        case MakeUnit::Ratio:
+            return "RATIO";
+        default:
+            return "MM";
+    }
 }
 
 // One subcommand per kind, with an option for each of its parameters.
 void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>& values) {
     app.require_subcommand(1);
     app.fallthrough();
-    app.add_option("-o,--out", request.output, "mesh file to write: .stl, .obj, .ply or .off");
-    app.add_option("--edge", request.options.edge_mm, "edge length, mm")->capture_default_str();
+    app.add_option("-o,--out", request.output, "mesh file to write: .stl, .obj, .ply or .off")
+        ->type_name("FILE");
+    app.add_option("--edge", request.options.edge_mm, "edge length, mm")
+        ->type_name("MM")
+        ->capture_default_str();
     app.add_flag("--irregular", request.options.irregular,
                  "jittered vertices and random diagonals");
     app.add_flag("--solid", request.options.solid, "with inner wall and end faces");
     app.add_option("--wall", request.options.wall_mm, "wall thickness of a solid, mm")
+        ->type_name("MM")
         ->capture_default_str();
     for (const MakeKind& kind : make_kinds()) {
         CLI::App* sub = app.add_subcommand(std::string(kind.name), std::string(kind.meaning));
@@ -182,28 +136,35 @@ void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>
         for (const MakeParameter& parameter : kind.parameters) {
             const std::string name(parameter.name);
             sub->add_option_function<double>(
-                "--" + name, [&values, name](const double& value) { values[name] = value; },
-                help_of(parameter));
+                   "--" + name, [&values, name](const double& value) { values[name] = value; },
+                   help_of(parameter))
+                ->type_name(name_of_unit(parameter));
         }
     }
 }
 
 CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
-    app.add_option("mandrel", text.mandrel, "mesh of the part")->required();
+    app.add_option("mandrel", text.mandrel, "mesh of the part")->type_name("FILE")->required();
     app.add_option("--start", text.start, "X,Y,Z in the file's frame; snapped to the surface")
+        ->type_name("X,Y,Z")
         ->required();
-    auto* direction = app.add_option("--direction", text.direction, "X,Y,Z in the file's frame");
+    auto* direction = app.add_option("--direction", text.direction, "X,Y,Z in the file's frame")
+                          ->type_name("X,Y,Z");
     auto* angle =
         app.add_option("--angle", text.angle_deg,
-                       "degrees from the local axial direction, counter-clockwise from outside");
+                       "degrees from the local axial direction, counter-clockwise from outside")
+            ->type_name("DEG");
     direction->excludes(angle);
     auto* to = app.add_option("--to", text.to,
                               "X,Y,Z where the path ends, instead of a direction: its start angle "
-                              "is found");
+                              "is found")
+                   ->type_name("X,Y,Z");
     to->excludes(direction)->excludes(angle);
     app.add_option("--lambda", text.request.slip_ratio, "slip ratio kg / kn to steer with")
+        ->type_name("RATIO")
         ->capture_default_str();
-    auto* length = app.add_option("--length", text.request.length_mm, "longest path, mm");
+    auto* length =
+        app.add_option("--length", text.request.length_mm, "longest path, mm")->type_name("MM");
     length->capture_default_str()->excludes(to);
     app.add_option("--method", text.method,
                    "patches: solved on curved patches, accurate; walk: over the facets, fast")
@@ -212,7 +173,7 @@ CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
     app.add_option("--frame", text.frame, "frame of the output")
         ->check(CLI::IsMember({"mandrel", "file"}))
         ->capture_default_str();
-    app.add_option("-o,--out", text.request.out, "table to write")->required();
+    app.add_option("-o,--out", text.request.out, "table to write")->type_name("FILE")->required();
     return angle;
 }
 
@@ -220,28 +181,38 @@ void add_mesh_size(CLI::App& app, StudyRequest& request) {
     MeshSizeOptions& options = request.options;
     request.out = "study-mesh-size";
     app.add_option(
-        "--mandrel", request.mandrels,
-        "cylinder, torus, ellipsoid, tee, or a mesh file; several may be named [all four]");
+           "--mandrel", request.mandrels,
+           "cylinder, torus, ellipsoid, tee, or a mesh file; several may be named [all four]")
+        ->type_name("NAME");
     app.add_option("--radius", request.radii_mm, "radii of the cylinders, mm")
+        ->type_name("MM")
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--edges", options.edges_mm, "edge lengths of the meshes, mm")
+        ->type_name("MM")
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--lambda", options.slip_ratios,
                    "slip ratios kg / kn to steer with; the eye is shown for the first")
+        ->type_name("RATIO")
         ->delimiter(',')
         ->capture_default_str();
-    app.add_option("--paths", options.paths, "fibres on each mesh")->capture_default_str();
+    app.add_option("--paths", options.paths, "fibres on each mesh")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_option("--length", options.length_mm, "length of a fibre unless it meets a rim, mm")
+        ->type_name("MM")
         ->capture_default_str();
     app.add_option("--free-length", options.free_length_mm, "from landing point to eye, mm")
+        ->type_name("MM")
         ->capture_default_str();
     app.add_flag("--irregular,!--regular", options.irregular,
                  "jittered vertices and random diagonals, as scans and CAD give them [irregular]");
     app.add_flag("--timing", options.timing,
                  "measure the cost of tracing too, one mesh at a time; writes timing.csv");
-    app.add_option("-o,--out", request.out, "output folder")->capture_default_str();
+    app.add_option("-o,--out", request.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
 }
 
 void add_carry(CLI::App& app, CarryOptionsText& text) {
@@ -249,67 +220,88 @@ void add_carry(CLI::App& app, CarryOptionsText& text) {
     app.add_option("axis", text.axis,
                    "table of points along the frame's axis, CSV, columns below; or the frame's "
                    "mesh: .stl, .obj, .ply, .off")
+        ->type_name("FILE")
         ->required();
     app.add_flag("--from-end", request.from_the_end, "of a mesh: begin at its other end");
     app.add_option("--bend-turn", request.bend_turn_deg,
                    "of a mesh: turn of the frame about its axis over each bend, degrees")
+        ->type_name("DEG")
         ->capture_default_str();
     app.add_option("--machine", text.machine,
                    "machine file, JSON: a robot whose eye stands still, in the head's centre")
+        ->type_name("FILE")
         ->capture_default_str();
     app.add_option("--tool", text.tool,
                    "X,Y,Z,A,B,C of the table's coordinates on the robot's flange, mm and degrees")
+        ->type_name("X,Y,Z,A,B,C")
         ->capture_default_str();
-    const auto number = [&](const char* name, double& value, const char* help) {
-        app.add_option(name, value, help)->capture_default_str();
+    const auto number = [&](const char* name, const char* unit, double& value, const char* help) {
+        app.add_option(name, value, help)->type_name(unit)->capture_default_str();
     };
-    number("--speed", request.speed_mm_s, "speed of the frame through the head, mm/s");
-    number("--tolerance", request.tolerance_mm,
+    number("--speed", "MM/S", request.speed_mm_s, "speed of the frame through the head, mm/s");
+    number("--tolerance", "MM", request.tolerance_mm,
            "how far the axis may be off the head's centre, mm");
-    number("--tolerance-angle", request.tolerance_deg,
+    number("--tolerance-angle", "DEG", request.tolerance_deg,
            "how far the frame's turn may be off, degrees");
     app.add_option("--tube-radius", request.tube_radius_mm,
-                   "radius of the frame's tube, mm; without it that of the mesh, or 20");
-    number("--ring-radius", request.ring_radius_mm, "radius of the rings' clear opening, mm");
-    number("--ring-distance", request.ring_distance_mm, "distance between the two rings, mm");
-    number("--clearance", request.clearance_mm,
+                   "radius of the frame's tube, mm; without it that of the mesh, or 20")
+        ->type_name("MM");
+    number("--ring-radius", "MM", request.ring_radius_mm, "radius of the rings' clear opening, mm");
+    number("--ring-distance", "MM", request.ring_distance_mm, "distance between the two rings, mm");
+    number("--clearance", "MM", request.clearance_mm,
            "distance to keep between the frame and the bodies on the machine's base, mm");
-    number("--angle", request.angle_deg,
+    number("--angle", "DEG", request.angle_deg,
            "wanted angle of the rings' fibres from the axis, degrees");
-    app.add_option("--tows", request.tows, "tows on each ring")->capture_default_str();
+    app.add_option("--tows", request.tows, "tows on each ring")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_option("--tow-width", request.tow_width_mm,
-                   "mm; without it the narrowest that covers the tube in one pass");
+                   "mm; without it the narrowest that covers the tube in one pass")
+        ->type_name("MM");
     CarryWindingOptions& winding = request.winding;
     app.add_option("--passes", winding.passes,
                    "passes of each ring; 0: as few as cover the tube with tows of that width")
+        ->type_name("N")
         ->check(CLI::Range(0, 100))
         ->capture_default_str();
     app.add_flag("--at-once", winding.at_once,
                  "both rings wind on the way forth, instead of one on each way");
     app.add_option("--spool-radius", winding.spool_radius_mm,
-                   "radius of the circle where fibres leave a ring, mm; without it its opening");
-    number("--angle-tolerance", winding.angle_tolerance_deg,
+                   "radius of the circle where fibres leave a ring, mm; without it its opening")
+        ->type_name("MM");
+    number("--angle-tolerance", "DEG", winding.angle_tolerance_deg,
            "how far laid fibre may be off the angle on regular arms, degrees");
     app.add_option("--friction", winding.friction,
-                   "of fibre on the tube: no more may be needed; without it the need is told");
-    app.add_option("--tow-tex", winding.tow_tex, "mass of the tow, g per km, to tell the fibre's");
-    app.add_option("--name", request.name, "name of the program")->capture_default_str();
-    app.add_option("-o,--out", text.out, "output folder")->capture_default_str();
+                   "of fibre on the tube: no more may be needed; without it the need is told")
+        ->type_name("RATIO");
+    app.add_option("--tow-tex", winding.tow_tex, "mass of the tow, g per km, to tell the fibre's")
+        ->type_name("TEX");
+    app.add_option("--name", request.name, "name of the program")
+        ->type_name("NAME")
+        ->capture_default_str();
+    app.add_option("-o,--out", text.out, "output folder")->type_name("DIR")->capture_default_str();
 }
 
 // The moduli are one ply, all three of them.
 void add_design_vessel(CLI::App& app, DesignRequest& request) {
     VesselDesign& design = request.design;
-    const auto number = [&](const char* name, double& value, const char* help) {
-        app.add_option(name, value, help)->capture_default_str();
+    const auto number = [&](const char* name, const char* unit, double& value, const char* help) {
+        app.add_option(name, value, help)->type_name(unit)->capture_default_str();
     };
-    app.add_option("--radius", design.radius_mm, "radius of the cylinder, mm")->required();
-    app.add_option("--opening", design.opening_radius_mm, "radius of the polar openings, mm")
+    app.add_option("--radius", design.radius_mm, "radius of the cylinder, mm")
+        ->type_name("MM")
         ->required();
-    app.add_option("--length", design.cylinder_length_mm, "length of the cylinder, mm")->required();
+    app.add_option("--opening", design.opening_radius_mm, "radius of the polar openings, mm")
+        ->type_name("MM")
+        ->required();
+    app.add_option("--length", design.cylinder_length_mm, "length of the cylinder, mm")
+        ->type_name("MM")
+        ->required();
     auto* ke = app.add_option("--ke", request.ke,
-                              "E2 (1 + nu12) / (E1 (1 + nu21)) of the ply; 0: fibres alone [0.1]");
-    const auto modulus = [&](const char* name, double PlyStiffness::*member, const char* help) {
+                              "E2 (1 + nu12) / (E1 (1 + nu21)) of the ply; 0: fibres alone [0.1]")
+                   ->type_name("RATIO");
+    const auto modulus = [&](const char* name, const char* unit, double PlyStiffness::*member,
+                             const char* help) {
         return app
             .add_option_function<double>(
                 name,
@@ -318,27 +310,33 @@ void add_design_vessel(CLI::App& app, DesignRequest& request) {
                     (*request.ply).*member = value;
                 },
                 help)
+            ->type_name(unit)
             ->excludes(ke);
     };
-    auto* e1 = modulus("--e1", &PlyStiffness::e1_gpa, "stiffness along the fibres, GPa");
-    auto* e2 = modulus("--e2", &PlyStiffness::e2_gpa, "stiffness across them, GPa");
-    auto* nu12 = modulus("--nu12", &PlyStiffness::nu12, "Poisson's ratio for a pull along them");
+    auto* e1 = modulus("--e1", "GPA", &PlyStiffness::e1_gpa, "stiffness along the fibres, GPa");
+    auto* e2 = modulus("--e2", "GPA", &PlyStiffness::e2_gpa, "stiffness across them, GPa");
+    auto* nu12 =
+        modulus("--nu12", "RATIO", &PlyStiffness::nu12, "Poisson's ratio for a pull along them");
     e1->needs(e2)->needs(nu12);
     e2->needs(e1);
     nu12->needs(e1);
-    number("--design-radius", design.design_radius_mm,
+    number("--design-radius", "MM", design.design_radius_mm,
            "Clairaut radius of the geodesics the domes are made for, mm; 0: the opening's");
     request.angles_deg = {10, 15, 20, 25, 30, 35, 40, 45, 50, 55};
     app.add_option("--angles", request.angles_deg, "winding angles on the cylinder, degrees")
+        ->type_name("DEG")
         ->delimiter(',')
         ->capture_default_str();
-    number("--band", design.band_mm, "width of the band, mm");
-    number("--thickness", design.ply_mm, "thickness of the band, mm");
-    number("--density", design.density_kg_m3, "of the band, kg/m3");
-    app.add_option("--wall", design.wall_mm, "wanted thickness on the cylinder, mm");
-    app.add_option("--pressure", design.pressure_mpa, "wanted pressure, MPa; needs --strength");
+    number("--band", "MM", design.band_mm, "width of the band, mm");
+    number("--thickness", "MM", design.ply_mm, "thickness of the band, mm");
+    number("--density", "KG/M3", design.density_kg_m3, "of the band, kg/m3");
+    app.add_option("--wall", design.wall_mm, "wanted thickness on the cylinder, mm")
+        ->type_name("MM");
+    app.add_option("--pressure", design.pressure_mpa, "wanted pressure, MPa; needs --strength")
+        ->type_name("MPA");
     app.add_option("--strength", design.strength_mpa,
-                   "of the band along its fibres, MPa, safety taken off");
+                   "of the band along its fibres, MPa, safety taken off")
+        ->type_name("MPA");
 }
 
 int run(int argc, char** argv) {
@@ -350,19 +348,27 @@ int run(int argc, char** argv) {
     Common common;
     WindOptions wind_options;
     add_wind_options(app, wind_options, false);
+    constexpr const char* kEvery = "Options of every command";
     app.add_option("--threads", common.threads, "threads to use; 0: one per core")
+        ->group(kEvery)
+        ->type_name("N")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     app.add_option("--seed", common.seed,
                    "seed of every random draw; the same seed gives the same files")
+        ->group(kEvery)
+        ->type_name("N")
         ->capture_default_str();
     app.add_option("--units", common.units,
                    "length of a unit of the mandrel's file; overrides the job")
+        ->group(kEvery)
         ->check(CLI::IsMember({"auto", "um", "mm", "cm", "m", "in"}));
-    app.add_flag("--json", common.json, "the report as JSON on stdout, in place of the summary");
-    app.add_flag("--quiet", common.quiet, "no progress and no summary");
+    app.add_flag("--json", common.json, "the report as JSON on stdout, in place of the summary")
+        ->group(kEvery);
+    app.add_flag("--quiet", common.quiet, "no progress and no summary")->group(kEvery);
     app.add_flag("--force", common.force,
-                 "write the program although a check failed; its head says so");
+                 "write the program although a check failed; its head says so")
+        ->group(kEvery);
 
     WindOptions named_wind_options;
     CLI::App* wind_command =
@@ -391,7 +397,7 @@ int run(int argc, char** argv) {
     CLI::Option* angle = add_trace(*trace_command, trace_text);
     std::string validate_file;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
-    validate->add_option("file", validate_file, "JSON file")->required();
+    validate->add_option("file", validate_file, "JSON file")->type_name("FILE")->required();
     CarryOptionsText carry_text;
     CLI::App* carry = app.add_subcommand(
         "carry", "a program for a robot that carries a frame through a fixed ring head");
@@ -408,19 +414,23 @@ int run(int argc, char** argv) {
     CLI::App* mesh_size =
         study->add_subcommand("mesh-size", "accuracy of paths and motion against mesh size");
     add_mesh_size(*mesh_size, study_request);
-    for (CLI::App* command :
-         {wind_command, post_command, verify_command, inspect, make, trace_command, validate, carry,
-          design, design_vessel, study, mesh_size}) {
-        command->fallthrough();
-        command->footer(kCommon);
-    }
     app.footer(kMainHelp);
-    for (const auto& [command, more] : {std::pair(post_command, kPostHelp),
+    for (CLI::App* command : {design, study}) {
+        command->fallthrough();
+        command->footer(std::string("\n") + kCommonHelp);
+    }
+    for (const auto& [command, more] : {std::pair(wind_command, kWindHelp),
+                                        {post_command, kPostHelp},
                                         {verify_command, kVerifyHelp},
+                                        {inspect, kInspectHelp},
+                                        {make, kMakeHelp},
+                                        {trace_command, kTraceHelp},
+                                        {validate, kValidateHelp},
                                         {carry, kCarryHelp},
                                         {design_vessel, kDesignHelp},
                                         {mesh_size, kMeshSizeHelp}}) {
-        command->footer(std::string(more) + "\n" + kCommon);
+        command->fallthrough();
+        command->footer(std::string(more) + "\n\n" + kCommonHelp);
     }
 
     try {
