@@ -9,6 +9,11 @@ install(
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshwind)
 install(TARGETS meshwind_umbrella EXPORT meshwindTargets)
 install(TARGETS meshwind_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/docs/meshwind.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(
+    FILES ${PROJECT_SOURCE_DIR}/cli/meshwind.bash
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    RENAME meshwind)
 # The meshes and machines that bare names on the command line stand for.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data DESTINATION ${CMAKE_INSTALL_DATADIR}/meshwind OPTIONAL)
 install(
