@@ -1,5 +1,6 @@
 """Command-line reference, manual page and completion of bash from the records of reference_help.py."""
 import re
+import textwrap
 
 MADE = "made by docs/make_reference.py; do not edit"
 COMMON = "Options of every command"
@@ -7,6 +8,11 @@ COMMON = "Options of every command"
 
 def _value(option):
     return "|".join(option.choices) or option.kind
+
+
+def wrapped(text):
+    """Lines of at most 120 columns."""
+    return textwrap.wrap(" ".join(text.split()), 120, break_long_words=False, break_on_hyphens=False)
 
 
 def _paragraphs(text):
@@ -44,11 +50,11 @@ def commands_page(commands):
     """docs/reference/commands.md"""
     out = [f"<!-- {MADE} -->", "# Command line", ""]
     main = commands[0]
-    out += [main.about.replace("\n", " "), "", "| command | |", "|---|---|"]
+    out += wrapped(main.about) + ["", "| command | |", "|---|---|"]
     for c in commands[1:]:
         out.append(f"| [`{' '.join(('meshwind', *c.path))}`](#{_anchor(c.path)}) | {_cell(c.about)} |")
-    out += ["", "Value names stand for units: `MM` mm, `DEG` degrees, `MM/S` mm/s, `GPA` and `MPA`, `TEX` g/km, `RATIO` a "
-            "plain number. Messages with exit code 2 are listed in [errors](../errors.md)."]
+    out += [""] + wrapped("Value names stand for units: `MM` mm, `DEG` degrees, `MM/S` mm/s, `GPA` and `MPA`, `TEX` g/km, "
+                          "`RATIO` a plain number. Messages with exit code 2 are listed in [errors](../errors.md).")
     for c in commands:
         out += ["", f"## {' '.join(('meshwind', *c.path))}", ""]
         if c.path:
@@ -70,7 +76,7 @@ def commands_page(commands):
                 head, body = p.split("\n", 1)
                 out += ["", head] + _listing(re.sub(r"^  ", "", body, flags=re.M))
             else:
-                out += ["", p.replace("\n", " ")]
+                out += [""] + wrapped(p)
     return "\n".join(out) + "\n"
 
 

@@ -1,6 +1,8 @@
 """A page of tables from a JSON Schema, of the vocabulary that the schemas of data/schema use. Anything else is an error."""
 import json
 
+from reference_pages import wrapped
+
 MADE = "made by docs/make_reference.py; do not edit"
 KNOWN = {"type", "description", "enum", "const", "default", "oneOf", "properties", "required", "additionalProperties",
          "items", "minItems", "maxItems", "minimum", "maximum", "exclusiveMinimum", "minLength", "pattern", "not",
@@ -137,8 +139,8 @@ def schema_page(path, title, more):
     """The page of one schema, Markdown."""
     schema = json.loads(path.read_text(encoding="utf-8"))
     page = _Page(schema)
-    out = [f"<!-- {MADE} -->", f"# {title}", "", f"{schema['description']} {more}",
-           f"The schema is `data/schema/{path.name}`."]
+    out = [f"<!-- {MADE} -->", f"# {title}", "",
+           *wrapped(f"{schema['description']} {more} The schema is `data/schema/{path.name}`.")]
     waiting = [("", schema)]
     while waiting:
         name, node = waiting.pop(0)
