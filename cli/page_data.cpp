@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -124,8 +125,10 @@ public:
             layers.push_back(layer_json(i));
         }
         const Job::TowJob& tow = first_.job.tow;
+        json found = json::parse(report);
+        found.erase("timing_s");  // the same run writes the same page
         json header = {{"format", "meshwind-page-1"},
-                       {"report", json::parse(report)},
+                       {"report", std::move(found)},
                        {"machine", machine_json()},
                        {"tow",
                         {{"width_mm", tow.width_mm},

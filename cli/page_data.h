@@ -18,7 +18,8 @@ namespace meshwind {
 ///                   these with their "pieces", "arrays": name -> type, width, count, offset
 ///     arrays        little endian, each at a multiple of 8 bytes from the first
 ///
-/// Positions are in the mandrel's frame, mm; angles deg. \param report text of report.json
+/// Positions are in the mandrel's frame, mm; angles deg. \param report text of report.json, whose
+/// timing_s is left out
 /// \pre result.planned()
 [[nodiscard]] std::string page_data(const WindResult& result, const Layup& layup,
                                     std::string_view report);
