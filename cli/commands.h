@@ -18,6 +18,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kCheckFailed = 1;
 inline constexpr int kBadInput = 2;
 inline constexpr int kInternalError = 3;
+inline constexpr int kInterrupted = 128;  ///< and the signal's number, as shells have it
 
 /// What every command takes.
 struct Common {

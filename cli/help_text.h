@@ -33,7 +33,10 @@ constexpr const char* kMainHelp =
     "  0  done, and every check passed\n"
     "  1  a check failed: the report is written, the program is not (--force writes it)\n"
     "  2  bad input or usage: one line names the file, the place and the mend\n"
-    "  3  internal error";
+    "  3  internal error\n"
+    "  130, 143  ended by Ctrl-C or SIGTERM; nothing unfinished is left, and the second one ends "
+    "at "
+    "once";
 
 constexpr const char* kWindHelp =
     "Examples:\n"

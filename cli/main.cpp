@@ -9,8 +9,10 @@
 
 #include "cli/commands.h"
 #include "cli/help_text.h"
+#include "cli/interrupt.h"
 #include "cli/make_command.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "version.h"
 
@@ -499,8 +501,12 @@ int run(int argc, char** argv) {
 }  // namespace meshwind
 
 int main(int argc, char** argv) {
+    meshwind::end_on_signals();
     try {
         return meshwind::run(argc, argv);
+    } catch (const meshwind::Interrupted& end) {
+        std::cerr << "meshwind: interrupted; nothing unfinished is left\n";
+        return meshwind::kInterrupted + end.reason();
     } catch (const meshwind::NumericalError& error) {
         std::cerr << "meshwind: " << error.what() << '\n';
         return meshwind::kInternalError;

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 
 namespace meshwind {
 namespace {
@@ -74,6 +75,7 @@ void write_file(const fs::path& file, std::string_view bytes) {
         throw_unwritable(file, error.message());
     }
     const fs::path temporary = temporary_beside(target);
+    const Temporary registered(temporary);
     write_plain(temporary, bytes, file);
     fs::rename(temporary, target, error);
     if (error) {
@@ -88,6 +90,9 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
         folder_ = folder_.parent_path();  // "out/" and "out" are one folder
     }
     created_ = missing_folders(folder_);
+    for (const fs::path& created : created_) {
+        temporaries_.emplace_back(created);
+    }
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error || !fs::is_directory(folder_, error)) {
@@ -95,6 +100,7 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     }
     // Found out now, not after minutes of planning.
     const fs::path probe = temporary("probe");
+    const Temporary registered(probe);
     write_plain(probe, {}, folder_);
     fs::remove(probe, error);
 }
@@ -116,6 +122,7 @@ fs::path OutputFolder::temporary(const std::string& name) const {
 void OutputFolder::add(const std::string& name, std::string_view bytes) {
     assert(fs::path(name).filename() == name);
     assert(std::find(added_.begin(), added_.end(), name) == added_.end());
+    temporaries_.emplace_back(temporary(name));
     write_plain(temporary(name), bytes, folder_ / name);
     added_.push_back(name);
 }
@@ -126,6 +133,8 @@ void OutputFolder::withdraw(const std::string& name) {
 }
 
 void OutputFolder::publish() {
+    check_interrupt();
+    const Unbroken whole;
     std::error_code error;
     for (const std::string& name : added_) {
         if (fs::is_directory(folder_ / name, error)) {
@@ -147,6 +156,7 @@ void OutputFolder::publish() {
     added_.clear();
     withdrawn_.clear();
     created_.clear();
+    temporaries_.clear();
 }
 
 }  // namespace meshwind

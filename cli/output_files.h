@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/interrupt.h"
+
 namespace meshwind {
 
 /// Writes `bytes` to `file` in one step: whoever reads it sees the old text or the new one, never a
@@ -46,6 +48,7 @@ private:
     std::vector<std::filesystem::path> created_;  ///< folders made by this run, outermost first
     std::vector<std::string> added_;
     std::vector<std::string> withdrawn_;
+    std::vector<Temporary> temporaries_;  ///< all of the run, for an end at once
 };
 
 }  // namespace meshwind

@@ -6,6 +6,8 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include "core/interrupt.h"
+
 namespace meshwind {
 
 void set_thread_count(int threads) {
@@ -20,8 +22,11 @@ void set_thread_count(int threads) {
 void parallel_for(std::size_t count, std::size_t chunk,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
     const std::size_t chunks = (count + chunk - 1) / chunk;
-    tbb::parallel_for(std::size_t{0}, chunks,
-                      [&](std::size_t c) { body(c * chunk, std::min(count, (c + 1) * chunk)); });
+    check_interrupt();
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t c) {
+        check_interrupt();
+        body(c * chunk, std::min(count, (c + 1) * chunk));
+    });
 }
 
 }  // namespace meshwind

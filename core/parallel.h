@@ -12,7 +12,8 @@ void set_thread_count(int threads);
 
 /// Calls `body(begin, end)` on consecutive chunks of [0, count), each at most `chunk` long.
 /// The chunks depend on `count` and `chunk` alone; a body that writes only to its own indices gives
-/// the same bytes for any number of threads. Exceptions of the bodies reach the caller.
+/// the same bytes for any number of threads. Exceptions of the bodies reach the caller. Each chunk
+/// is a cancellation point (core/interrupt.h). \throws Interrupted
 void parallel_for(std::size_t count, std::size_t chunk,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -1,0 +1,74 @@
+"""Ctrl-C leaves nothing half-written."""
+import signal
+import subprocess
+import time
+
+import program
+
+
+def listen_to_signals():
+    """As a shell's foreground job: whoever started the tests may ignore them."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+class Interrupt(program.ProgramTest):
+    def started(self, *arguments):
+        process = subprocess.Popen([program.PROGRAM, program.SOURCE / "data" / "tee.stl",
+                                    *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   preexec_fn=listen_to_signals)
+        self.addCleanup(process.kill)
+        return process
+
+    def ended(self, process, number, limit_s=2.0):
+        begun = time.monotonic()
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+        self.assertLess(time.monotonic() - begun, limit_s)
+        self.assertEqual(process.returncode, 128 + number, err)
+        self.assertEqual(out, "")
+        return err.splitlines()
+
+    def test_ends_soon_and_leaves_nothing(self):
+        for number, delay_s in ((signal.SIGINT, 1), (signal.SIGINT, 5), (signal.SIGTERM, 3)):
+            with self.subTest(number=number, delay_s=delay_s):
+                process = self.started("-o", "a/out", "--png", "view.png")
+                time.sleep(delay_s)
+                lines = self.ended(process, number)
+                self.assertEqual([line for line in lines if not line.endswith(" ...")],
+                                 ["meshwind: interrupted; nothing unfinished is left"])
+                self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_earlier_output_stays_as_it_was(self):
+        out = self.folder / "out"
+        out.mkdir()
+        kept = {"report.json": "{}", "program.ngc": "M2\n", "mine.txt": "mine"}
+        for name, text in kept.items():
+            (out / name).write_text(text)
+        process = self.started("-o", "out")
+        time.sleep(4)
+        self.ended(process, signal.SIGINT)
+        self.assertEqual({p.name: p.read_text() for p in out.iterdir()}, kept)
+
+    def test_second_signal_ends_at_once(self):
+        process = self.started("-o", "a/out")
+        time.sleep(3)
+        process.send_signal(signal.SIGINT)
+        self.ended(process, signal.SIGINT, limit_s=1.0)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_ignored_signal_stays_ignored(self):
+        process = subprocess.Popen([program.PROGRAM, "make", "cylinder", "--edge", "0.5", "-o",
+                                    "a.stl"], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE,
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT,
+                                                                    signal.SIG_IGN))
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0)
+        self.assertTrue((self.folder / "a.stl").exists())
+
+
+if __name__ == "__main__":
+    program.main("__main__")
