@@ -7,11 +7,11 @@
 #include <map>
 #include <sstream>
 
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/inspect.h"
 #include "cli/job.h"
+#include "cli/progress.h"
 #include "cli/project_files.h"
 #include "cli/refine_command.h"
 #include "cli/report.h"
@@ -37,46 +37,6 @@ double unit_mm(const std::string& name) {
                                                          {"in", 25.4}};
     return kUnits.at(name);
 }
-
-// A bar on a terminal, one line per step elsewhere.
-class Progress {
-public:
-    explicit Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
-    ~Progress() { clear(); }
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
-
-    void show(const std::string& step, double share) {
-        if (quiet_) {
-            return;
-        }
-        if (terminal_) {
-            constexpr int kWidth = 30;
-            const int done = static_cast<int>(kWidth * share);
-            std::cerr << "\r\033[K" << step << " ["
-                      << std::string(static_cast<std::size_t>(done), '#')
-                      << std::string(static_cast<std::size_t>(kWidth - done), '.') << "]"
-                      << std::flush;
-            shown_ = true;
-        } else if (step != last_) {
-            std::cerr << step << " ...\n";
-        }
-        last_ = step;
-    }
-
-    void clear() {
-        if (shown_) {
-            std::cerr << "\r\033[K" << std::flush;
-            shown_ = false;
-        }
-    }
-
-private:
-    bool quiet_;
-    bool terminal_;
-    bool shown_ = false;
-    std::string last_;
-};
 
 Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
     Eigen::Vector3d v;

@@ -1,9 +1,17 @@
-"""Ctrl-C leaves nothing half-written."""
+"""Ctrl-C leaves nothing half-written; progress is a bar on a terminal and never on stdout."""
+import fcntl
+import os
+import pty
 import signal
+import struct
 import subprocess
+import termios
 import time
 
 import program
+
+WIPE = "\r\033[K"
+COLUMNS = 60
 
 
 def listen_to_signals():
@@ -68,6 +76,53 @@ class Interrupt(program.ProgramTest):
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0)
         self.assertTrue((self.folder / "a.stl").exists())
+
+
+class Bar(program.ProgramTest):
+    def test_bar_on_a_terminal_is_wiped_and_stdout_is_clean(self):
+        mandrel = self.make("cylinder", "--radius", "40", "--length", "160", "--edge", "10")
+        job = self.write("hoops.json", '{"tow": {"width": 12}, "layers": [{"kind": "hoop"}]}')
+        terminal, program_side = pty.openpty()
+        fcntl.ioctl(program_side, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
+        begun = time.monotonic()
+        with open(self.folder / "stdout.txt", "wb") as stdout:
+            process = subprocess.Popen([program.PROGRAM, mandrel, "--job", job, "--force"],
+                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=stdout,
+                                       stderr=program_side)
+        os.close(program_side)
+        text = b""
+        while True:
+            try:
+                part = os.read(terminal, 4096)
+            except OSError:  # Linux: the other side is closed
+                break
+            if not part:
+                break
+            text += part
+        process.wait(timeout=60)
+        seconds = time.monotonic() - begun
+        os.close(terminal)
+        drawn = text.decode().split("meshwind: ")[0]
+        self.assertTrue(drawn.startswith(WIPE + "import ["), drawn[:80])
+        self.assertTrue(drawn.endswith(WIPE), drawn[-80:])
+        bars = drawn.split(WIPE)[1:-1]
+        self.assertGreaterEqual(len(bars), 2)
+        self.assertLessEqual(len(bars), 10 * seconds + 1)
+        for bar in bars:
+            self.assertLess(len(bar), COLUMNS)
+            self.assertIn("[", bar)
+            self.assertNotIn("\n", bar)
+        out = (self.folder / "stdout.txt").read_text()
+        self.assertIn("report:", out)
+        self.assertFalse({"\r", "\033", "#"} & set(out))
+
+    def test_quiet_says_nothing(self):
+        mandrel = self.make("cylinder", "--radius", "40", "--length", "160", "--edge", "10")
+        job = self.write("hoops.json", '{"tow": {"width": 12}, "layers": [{"kind": "hoop"}]}')
+        result = self.run_program(mandrel, "--job", job, "--quiet", timeout_s=300)
+        self.assertEqual(result.stdout, "")
+        self.assertFalse([line for line in result.stderr.splitlines()
+                          if not line.startswith("meshwind: ")])
 
 
 if __name__ == "__main__":
