@@ -65,13 +65,19 @@ int exit_code(const std::string& file, const std::vector<Check>& checks) {
 }
 
 // Runs the main job, shows what came of it.
-int run_main_job(const std::string& name, WindRequest& request, const Common& common) {
+int run_main_job(const std::string& name, WindRequest& request, const PreviewOptions& png,
+                 const Common& common) {
+    check_preview(png);
     Progress progress(common.quiet);
     request.unit_mm = unit_mm(common.units);
     request.seed = common.seed;
     request.force = common.force;
     request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
     const WindResult result = wind(request);
+    if (!png.file.empty()) {
+        progress.show("picture", 0.0);
+        write_preview(png, result.layers);
+    }
     progress.clear();
     if (common.json) {
         std::cout << report_json(result);
@@ -90,12 +96,12 @@ int run_wind(const WindOptions& options, const Common& common) {
     request.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
     request.out = options.out;
     request.effort = options.effort;
-    return run_main_job(options.mandrel, request, common);
+    return run_main_job(options.mandrel, request, options.png, common);
 }
 
 int run_post(const PostOptions& options, const Common& common) {
     WindRequest request = wind_request(options);
-    return run_main_job(options.points, request, common);
+    return run_main_job(options.points, request, options.png, common);
 }
 
 int run_verify_command(const VerifyOptions& options, const Common& common) {

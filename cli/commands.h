@@ -8,6 +8,7 @@
 #include "cli/carry_command.h"
 #include "cli/design_command.h"
 #include "cli/post_command.h"
+#include "cli/preview.h"
 #include "cli/study_command.h"
 #include "cli/trace_command.h"
 #include "cli/wind.h"
@@ -36,6 +37,7 @@ struct WindOptions {
     std::string job;
     std::string out = "meshwind-out";
     int effort = 1;
+    PreviewOptions png;
 };
 
 struct VerifyOptions {

@@ -19,6 +19,23 @@
 namespace meshwind {
 namespace {
 
+void add_png(CLI::App& app, PreviewOptions& options) {
+    auto* file = app.add_option("--png", options.file,
+                                "picture to write: mandrel and bands, the last wound on top")
+                     ->type_name("FILE");
+    app.add_option("--png-size", options.size, "its size in pixels")
+        ->type_name("WxH")
+        ->needs(file)
+        ->capture_default_str();
+    app.add_option("--png-colour", options.colour,
+                   "what its colours show: course by course, layers of the wall, slip up to the "
+                   "friction, angle to the spindle")
+        ->type_name("WORD")
+        ->needs(file)
+        ->check(CLI::IsMember({"course", "layers", "slip", "angle"}))
+        ->capture_default_str();
+}
+
 void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
     auto* mandrel =
         app.add_option("mandrel", options.mandrel, "mesh of the part: .stl, .obj, .ply or .off")
@@ -42,6 +59,7 @@ void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
         ->type_name("N")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    add_png(app, options.png);
 }
 
 void add_post(CLI::App& app, PostOptions& options) {
@@ -69,6 +87,7 @@ void add_post(CLI::App& app, PostOptions& options) {
     app.add_option("-o,--out", options.out, "output folder")
         ->type_name("DIR")
         ->capture_default_str();
+    add_png(app, options.png);
 }
 
 void add_verify(CLI::App& app, VerifyOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/preview.h"
 #include "cli/wind.h"
 
 namespace meshwind {
@@ -13,6 +14,7 @@ struct PostOptions {
     std::string frame = "file";  ///< "file" or "mandrel"
     std::string out = "meshwind-out";
     double within_mm = 1.0;  ///< > 0; a coarse mesh of the same part is nearer than that
+    PreviewOptions png;
 };
 
 /// The main job with the points in place of a planned layer. Names are looked up as find_input()
