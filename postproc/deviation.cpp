@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 // Stations of the plan closer together than this have no direction between them: the joint of two
 // pieces, the two sides of a feature edge.
-constexpr double kSamePlace_mm = 0.01;
+constexpr double kOneStation_mm = 0.01;
 
 // How far ahead of the present planned station a laid one is looked for. A laid fibre that is
 // further away has left the plan.
@@ -35,7 +35,7 @@ Matched between(const PlannedStation& a, const PlannedStation& b, const Vector3d
 template <class Station>
 std::size_t stations_at_one_place(Station first, Station last) {
     const auto apart = std::find_if(first, last, [&](const PathPoint& station) {
-        return !((station.position_mm - first->position_mm).norm() < kSamePlace_mm);
+        return !((station.position_mm - first->position_mm).norm() < kOneStation_mm);
     });
     return static_cast<std::size_t>(apart - first);
 }
@@ -62,7 +62,7 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
     const auto next_of = [&](std::size_t i) {
         std::size_t next = i + 1;
         while (next < planned.size() &&
-               (planned[next].position_mm - planned[i].position_mm).norm() < kSamePlace_mm) {
+               (planned[next].position_mm - planned[i].position_mm).norm() < kOneStation_mm) {
             ++next;
         }
         return next;
