@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""tidy.py BUILD_FOLDER JOBS FOLDER...: clang-tidy over the library sources of these folders, several in one run.
+
+Most of the time goes into the headers, Eigen's before all. So sources of one folder and the same flags are read one
+after the other as one text, ten at most, and none beside another that defines the same name.
+Where such a text does not compile nevertheless, its sources are checked one by one. Exit 1 when something is found.
+"""
+import concurrent.futures
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+BATCH = 10  # sources
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# At the start of a line: a type, or a function or constant behind its type; members of classes have "::" instead.
+DEFINED = re.compile(r"(?:struct|class|enum class|enum) (\w+)|using (\w+) =|(?!using|namespace)[\w:<>,&* ]*[\w>&*] "
+                     r"[&*]?(\w+) ?[({=;\[]")
+NOT_COMPILED = "[clang-diagnostic-error]"
+
+
+def flags_of(entry):
+    """The compiler's options but those that name this file, what comes of it, or headers compiled by GCC."""
+    words = iter(shlex.split(entry["command"]))
+    kept = []
+    for word in words:
+        if word in ("-o", "-MT", "-MF", "-c", "-include"):
+            next(words)
+        elif word.startswith(("-D", "-I", "-O", "-W", "-f", "-std=")) and word != "-Winvalid-pch":
+            kept.append(word)
+        elif word == "-isystem":
+            kept += [word, next(words)]
+    return kept
+
+
+def names_in(source):
+    found = (DEFINED.match(line) for line in source.read_text().splitlines() if line[:1].isalpha())
+    return {next(filter(None, match.groups())) for match in found if match}
+
+
+def batches_of(sources):
+    """First fit: a source goes into the first batch that is not full and has none of its names."""
+    batches = []
+    for source in sources:
+        names = names_in(source)
+        for batch in batches:
+            if len(batch[0]) < BATCH and not batch[1] & names:
+                batch[0].append(source)
+                batch[1].update(names)
+                break
+        else:
+            batches.append(([source], set(names)))
+    return [batch[0] for batch in batches]
+
+
+def tidy(source, flags, folders):
+    filters = f"--header-filter=/({'|'.join(folders)})/[a-z_0-9]+\\.(h|cpp)$"
+    run = subprocess.run(["clang-tidy-14", "--quiet", filters, str(source), "--", *flags], cwd=ROOT, text=True,
+                         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return run.returncode, run.stdout + (run.stderr if run.returncode else "")
+
+
+def check(number, sources, flags, folders, scratch):
+    if len(sources) > 1:
+        text = scratch / f"{sources[0].parent.name}_{number}.cpp"
+        text.write_text("".join(f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n' for source in sources))
+        code, said = tidy(text, flags, folders)
+        if NOT_COMPILED not in said:
+            return [(code, said)]
+    return [tidy(source, flags, folders) for source in sources]
+
+
+def main():
+    build, jobs, folders = pathlib.Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
+    groups = {}
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        source = pathlib.Path(entry["file"])
+        if source.parent.parent == ROOT and source.parent.name in folders:
+            groups.setdefault((source.parent.name, tuple(flags_of(entry))), []).append(source)
+    if not groups:
+        sys.exit("tidy: no sources")
+    scratch = build / "tidy"
+    scratch.mkdir(exist_ok=True)
+    work = [(batch, flags) for (_, flags), sources in groups.items() for batch in batches_of(sources)]
+    work.sort(key=lambda one: -len(one[0]))
+    found = 0
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        runs = [pool.submit(check, number, batch, flags, folders, scratch)
+                for number, (batch, flags) in enumerate(work)]
+        for (batch, _), run in zip(work, runs):
+            results = run.result()
+            print(f"{batch[0].parent.name}: {len(batch)} sources in {len(results)} runs", flush=True)
+            for code, said in results:
+                if code:
+                    found = 1
+                    print(said)
+    sys.exit(found)
+
+
+if __name__ == "__main__":
+    main()
