@@ -30,7 +30,6 @@ void add_png(CLI::App& app, PreviewOptions& options) {
     app.add_option("--png-colour", options.colour,
                    "what its colours show: course by course, layers of the wall, slip up to the "
                    "friction, angle to the spindle")
-        ->type_name("WORD")
         ->needs(file)
         ->check(CLI::IsMember({"course", "layers", "slip", "angle"}))
         ->capture_default_str();
