@@ -11,6 +11,7 @@
 #include "cli/report_checks.h"
 #include "cli/report_layers.h"
 #include "cli/report_mandrel.h"
+#include "cli/report_page.h"
 #include "cli/run_files.h"
 #include "core/text_number.h"
 #include "core/units.h"
@@ -496,6 +497,9 @@ void print_summary(std::ostream& out, const WindResult& result,
                 out << "program: " << (folder / program.file).string() << '\n';
             }
         }
+    }
+    if (result.planned() && !page_template().empty()) {
+        out << "page:    " << (folder / "report.html").string() << '\n';
     }
     out << "report:  " << (folder / "report.json").string() << '\n';
 }
