@@ -18,7 +18,8 @@ build_tests() {
     shift 2
     install_packages build test
     [[ $folder == asan ]] || prepare_page
-    configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON "-DMESHWIND_VIEWER=$page" "$@"
+    configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON -DMESHWIND_PCH=tests \
+        "-DMESHWIND_VIEWER=$page" "$@"
     echo "building the tests in build/$folder ..." >&2
     run_logged "$root/build/$folder/build.log" ninja -C "$root/build/$folder" "$target"
 }
@@ -47,7 +48,7 @@ sanitize)
     install_packages sanitize
     # Clang: it builds instrumented code twice as fast as GCC does, and sees the sources with other eyes.
     with_lock build_tests asan fast_tests -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
-        -DCMAKE_CXX_COMPILER=clang++-14 -DMESHWIND_SANITIZE=address,undefined -DMESHWIND_PCH=ON
+        -DCMAKE_CXX_COMPILER=clang++-14 -DMESHWIND_SANITIZE=address,undefined -DMESHWIND_PCH=all
     run_tests asan -L '^fast$'
     ;;
 fast | slow | oracle | golden)

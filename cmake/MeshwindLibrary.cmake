@@ -13,24 +13,24 @@ function(meshwind_library name)
     meshwind_flags(${target})
 endfunction()
 
-# Warnings, reproducible arithmetic and sanitizers for a target of this project.
+# Warnings, reproducible arithmetic, sanitizers and the common headers for a target of this project.
 function(meshwind_flags target)
     meshwind_compile_flags(${target})
-    if(MESHWIND_PCH)
+    if(MESHWIND_PCH STREQUAL "all")
         target_precompile_headers(${target} REUSE_FROM meshwind_pch)
     endif()
 endfunction()
 
-# The headers that nearly every source file reads, compiled once. Not by default: a source file then compiles
-# although it forgets to include what it uses, and GCC 12 gives false warnings of their inlined code.
-function(meshwind_precompile)
-    file(WRITE ${CMAKE_BINARY_DIR}/pch.cpp "")
-    add_library(meshwind_pch OBJECT ${CMAKE_BINARY_DIR}/pch.cpp)
-    target_link_libraries(meshwind_pch PRIVATE Eigen3::Eigen)
+# meshwind_precompile(TARGET HEADER ...): headers of other projects that nearly every source file reads, compiled
+# once. Not by default: a source file then compiles although it forgets to include what it uses.
+function(meshwind_precompile target)
+    file(TOUCH ${CMAKE_BINARY_DIR}/pch.cpp)
+    add_library(${target} OBJECT ${CMAKE_BINARY_DIR}/pch.cpp)
+    target_link_libraries(${target} PRIVATE Eigen3::Eigen)
     target_precompile_headers(
-        meshwind_pch PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <set>
-        <span> <string> <vector> <Eigen/Core> <Eigen/Geometry>)
-    meshwind_compile_flags(meshwind_pch)
+        ${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <set> <span>
+        <string> <vector> <Eigen/Core> <Eigen/Geometry> ${ARGN})
+    meshwind_compile_flags(${target})
 endfunction()
 
 function(meshwind_compile_flags target)
