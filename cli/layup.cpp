@@ -59,6 +59,10 @@ Layup::Layup(const std::vector<WoundLayer>& layers, std::uint64_t seed)
     set_angles(0, layers_.size(), all_);
 }
 
+Vector3d Layup::normal(std::size_t face) const {
+    return normal_of(*layers_.front().surface, face);
+}
+
 std::vector<LayupPly> Layup::plies(std::size_t face) const {
     std::vector<LayupPly> all;
     for (std::size_t layer = 0; layer < layers_.size(); ++layer) {

@@ -57,6 +57,9 @@ public:
     /// Per triangle: its material axis 1, unit (winding/material_axes.h).
     [[nodiscard]] const std::vector<Eigen::Vector3d>& axes() const { return axes_; }
 
+    /// Unit normal of a triangle of the bare mandrel, outward.
+    [[nodiscard]] Eigen::Vector3d normal(std::size_t face) const;
+
     /// The plies of a triangle from the bottom to the top.
     [[nodiscard]] std::vector<LayupPly> plies(std::size_t face) const;
 

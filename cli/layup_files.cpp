@@ -130,15 +130,8 @@ private:
         text += ",\"axis_1\":";
         append_vector(text, layup_.axes()[f], kParts_per_unit);
         text += ",\"axis_2\":";
-        append_vector(text, normal_of(f).cross(layup_.axes()[f]), kParts_per_unit);
+        append_vector(text, layup_.normal(f).cross(layup_.axes()[f]), kParts_per_unit);
         text += ",\"plies\":[" + plies + "]}";
-    }
-
-    [[nodiscard]] Vector3d normal_of(std::size_t f) const {
-        const auto corner = [&](std::size_t k) -> const Vector3d& {
-            return surface_.position_mm[static_cast<std::size_t>(surface_.face[f][k])];
-        };
-        return (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
     }
 
     const WindResult& result_;

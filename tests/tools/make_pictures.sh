@@ -1,0 +1,12 @@
+#!/bin/bash
+# make_pictures.sh: the pictures of docs/images, by the program and by the test of its page. Takes a built checkout.
+set -euo pipefail
+cd "$(dirname -- "${BASH_SOURCE[0]}")/../.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+./meshwind tee.stl --machine six_axis.json -o "$work/tee" --png "$work/tee.png" --quiet
+node tests/viewer/page_test.mjs "$work/tee/report.html" "$work/page"
+mv "$work/tee.png" docs/images/tee.png
+mv "$work/page/program.png" docs/images/report.png
+mv "$work/page/failed_check.png" docs/images/failed_check.png
+mv "$work/page/dark.png" docs/images/dark.png
