@@ -3,7 +3,7 @@
 
 Most of the time goes into the headers, Eigen's before all. So sources of one folder and the same flags are read one
 after the other as one text, ten at most, and none beside another that defines the same name.
-Where such a text does not compile nevertheless, its sources are checked one by one. Exit 1 when something is found.
+Where the compiler complains of such a text nevertheless, its sources are checked one by one. Exit 1 when something is found.
 """
 import concurrent.futures
 import json
@@ -18,7 +18,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # At the start of a line: a type, or a function or constant behind its type; members of classes have "::" instead.
 DEFINED = re.compile(r"(?:struct|class|enum class|enum) (\w+)|using (\w+) =|(?!using|namespace)[\w:<>,&* ]*[\w>&*] "
                      r"[&*]?(\w+) ?[({=;\[]")
-NOT_COMPILED = "[clang-diagnostic-error]"
+# Errors and warnings of the compiler itself may come of reading sources together.
+OF_COMPILER = "[clang-diagnostic-"
 
 
 def flags_of(entry):
@@ -67,7 +68,7 @@ def check(number, sources, flags, folders, scratch):
         text = scratch / f"{sources[0].parent.name}_{number}.cpp"
         text.write_text("".join(f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n' for source in sources))
         code, said = tidy(text, flags, folders)
-        if NOT_COMPILED not in said:
+        if OF_COMPILER not in said:
             return [(code, said)]
     return [tidy(source, flags, folders) for source in sources]
 
