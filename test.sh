@@ -2,6 +2,7 @@
 # ./test.sh            builds with warnings as errors and runs every test
 # ./test.sh LABEL      only the tests with that label: fast, slow, oracle, golden
 # ./test.sh sanitize   the fast tests under the address and undefined-behaviour sanitizers
+# ./test.sh fuzz SECONDS   random input under both, each harness of tests/fuzz for its share of the time [60]
 # The last line counts the tests. Missing Debian packages are installed first.
 set -euo pipefail
 
@@ -17,7 +18,7 @@ build_tests() {
     local folder=$1 target=$2
     shift 2
     install_packages build test
-    [[ $folder == asan ]] || prepare_page
+    [[ $folder == asan || $folder == fuzz ]] || prepare_page
     configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON -DMESHWIND_PCH=tests \
         "-DMESHWIND_VIEWER=$page" "$@"
     echo "building the tests in build/$folder ..." >&2
@@ -39,6 +40,23 @@ run_tests() {
     grep -E 'tests passed, 0 tests failed out of' "$log"
 }
 
+# fuzz_harness NAME SECONDS: the committed corpus and what earlier runs added in build/; stops at the first find.
+# Memory: a reader may take 1 GB; the address sanitizer's shadow and red zones add about as much again, its freed memory 64 MB.
+fuzz_harness() {
+    local name=$1 seconds=$2 folder=$root/build/fuzz
+    local log=$folder/$name.log
+    mkdir -p "$folder/corpus/$name" "$folder/found"
+    if ! ASAN_OPTIONS=quarantine_size_mb=64 UBSAN_OPTIONS=print_stacktrace=1 \
+        "$folder/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" -timeout=10 -rss_limit_mb=2048 \
+        -malloc_limit_mb=1024 -max_len=4096 -print_final_stats=1 "-artifact_prefix=$folder/found/$name-" \
+        "$folder/corpus/$name" "$root/tests/fuzz/corpus/$name" >"$log" 2>&1; then
+        tail -n 40 "$log"
+        echo "fuzz: $name FAILED, its input is in $folder/found (whole log: $log)"
+        return 1
+    fi
+    echo "fuzz: $name $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs"
+}
+
 case $what in
 all)
     with_lock build_tests release all
@@ -51,12 +69,23 @@ sanitize)
         -DCMAKE_CXX_COMPILER=clang++-14 -DMESHWIND_SANITIZE=address,undefined -DMESHWIND_PCH=all
     run_tests asan -L '^fast$'
     ;;
+fuzz)
+    install_packages sanitize
+    with_lock build_tests fuzz fuzz_harnesses -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
+        -DCMAKE_CXX_COMPILER=clang++-14 -DMESHWIND_SANITIZE=fuzzer-no-link,address,undefined \
+        -DMESHWIND_PCH=all
+    mapfile -t harnesses < <(cd "$root/tests/fuzz/corpus" && printf '%s\n' *)
+    share=$((${2:-60} / ${#harnesses[@]}))
+    for harness in "${harnesses[@]}"; do
+        fuzz_harness "$harness" "$((share > 0 ? share : 1))"
+    done
+    ;;
 fast | slow | oracle | golden)
     with_lock build_tests release all
     run_tests release -L "^$what\$"
     ;;
 *)
-    sed -n '2,5s/^# //p' "$self"
+    sed -n '2,6s/^# //p' "$self"
     exit 2
     ;;
 esac

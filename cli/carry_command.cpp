@@ -12,6 +12,7 @@
 #include "cli/digest.h"
 #include "cli/output_files.h"
 #include "cli/report_carry.h"
+#include "cli/run_files.h"
 #include "core/error.h"
 #include "core/text_file.h"
 #include "core/text_number.h"
@@ -191,8 +192,8 @@ private:
         }
         result_.duration_s = durations_s(planned_);
         text_ = write_krl(planned_, {}, result_.machine.controller.header);
-        result_.program = read_krl(text_, planned_.name + ".src");
-        back_ = back_program(planned_, planned_.name + "_back",
+        result_.program = read_krl(text_, planned_.name + kKrlExtension);
+        back_ = back_program(planned_, carried_back(planned_.name),
                              start_nano(result_.joints, result_.samples.size() - 1));
     }
 
@@ -205,7 +206,7 @@ private:
                                     *axis_,
                                     result_.points.s_mm,
                                     text_,
-                                    winds_back() ? write_krl(back_, {}) : "",
+                                    result_.winds_back() ? write_krl(back_, {}) : "",
                                     result_.tube_radius_mm,
                                     rad_from_deg(request.angle_deg),
                                     request.tows,
@@ -213,10 +214,6 @@ private:
         result_.winding = wind_carried(task, request.winding);
         result_.checks.insert(result_.checks.end(), result_.winding->checks.begin(),
                               result_.winding->checks.end());
-    }
-
-    [[nodiscard]] bool winds_back() const {
-        return result_.request.angle_deg > 0.0 && !result_.request.winding.at_once;
     }
 
     // Speed of the frame's axis in a move, and of the frame's own turn in the head.
@@ -481,9 +478,10 @@ private:
 
     void write() {
         result_.written = result_.passed() || result_.request.force;
+        folder_->withdraw_earlier_run();
         for (const KrlProgram* program : {&planned_, &back_}) {
-            const std::string file = program->name + ".src";
-            if (result_.written && (program == &planned_ || winds_back())) {
+            const std::string file = program->name + kKrlExtension;
+            if (result_.written && (program == &planned_ || result_.winds_back())) {
                 folder_->add(file,
                              write_krl(*program, comments(), result_.machine.controller.header));
             } else {
@@ -516,6 +514,10 @@ private:
 
 bool CarryOutcome::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.ok; });
+}
+
+bool CarryOutcome::winds_back() const {
+    return request.angle_deg > 0.0 && !request.winding.at_once;
 }
 
 double CarryOutcome::total_s() const {

@@ -90,6 +90,8 @@ struct CarryOutcome {
     bool written = false;  ///< the programs
 
     [[nodiscard]] bool passed() const;
+    /// Whether a program for the way back belongs to it.
+    [[nodiscard]] bool winds_back() const;
     [[nodiscard]] double total_s() const;
 };
 

@@ -7,19 +7,25 @@
 #include <map>
 #include <sstream>
 
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 
+#include "cli/check_controller.h"
 #include "cli/inspect.h"
 #include "cli/job.h"
+#include "cli/phases.h"
 #include "cli/progress.h"
 #include "cli/project_files.h"
 #include "cli/refine_command.h"
 #include "cli/report.h"
 #include "cli/report_carry.h"
+#include "cli/report_checks.h"
 #include "cli/report_design.h"
 #include "cli/report_mandrel.h"
 #include "cli/report_study.h"
 #include "cli/report_verify.h"
+#include "cli/streams.h"
 #include "cli/verify_command.h"
 #include "core/error.h"
 #include "core/text_number.h"
@@ -51,14 +57,24 @@ Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
     return v;
 }
 
-// A line on stderr for each check that failed.
-int exit_code(const std::string& file, const std::vector<Check>& checks) {
+// What takes seconds at most tells of its phases on a terminal alone: a log needs no line of them.
+bool shows_bar(const Common& common) {
+    return !common.quiet && ::isatty(STDERR_FILENO) != 0;
+}
+
+// A line on stderr for each check that failed, unless the summary has told it on the same terminal.
+int exit_code(const std::string& file, const std::vector<Check>& checks, const Common& common) {
+    const bool told = !common.json && !common.quiet && ::isatty(STDOUT_FILENO) != 0 &&
+                      ::isatty(STDERR_FILENO) != 0;
     int code = kDone;
     for (const Check& check : checks) {
         if (!check.ok) {
             code = kCheckFailed;
-            std::cerr << "meshwind: " << file << ": check failed: " << check.name << ": "
-                      << check.words << '\n';
+        }
+        if (!check.ok && !told) {
+            std::cerr << one_line("meshwind: " + file + ": check failed: " + check.name + ": " +
+                                  check.words)
+                      << '\n';
         }
     }
     return code;
@@ -72,10 +88,13 @@ int run_main_job(const std::string& name, WindRequest& request, const PreviewOpt
     request.unit_mm = unit_mm(common.units);
     request.seed = common.seed;
     request.force = common.force;
-    request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
+    request.progress = [&](const std::string& step, double share) {
+        progress.show(phase_text(step), share);
+    };
+    request.remark = [&](const std::string& words) { progress.say("meshwind: remark: " + words); };
     const WindResult result = wind(request);
     if (!png.file.empty()) {
-        progress.show("picture", 0.0);
+        progress.show(phase_text("picture"), 0.0);
         write_preview(png, result.layers);
     }
     progress.clear();
@@ -84,7 +103,7 @@ int run_main_job(const std::string& name, WindRequest& request, const PreviewOpt
     } else if (!common.quiet) {
         print_summary(std::cout, result, request.out);
     }
-    return exit_code(name, result.checks);
+    return exit_code(name, result.checks, common);
 }
 
 }  // namespace
@@ -116,13 +135,16 @@ int run_verify_command(const VerifyOptions& options, const Common& common) {
     if (!options.tie_on.empty()) {
         request.tie_on_mm = vector_of("--tie-on", options.tie_on);
     }
+    Progress progress(common.quiet);
+    request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
     const VerifyOutcome outcome = run_verify(request);
+    progress.clear();
     if (common.json) {
         std::cout << verify_json(outcome);
     } else if (!common.quiet) {
         print_verify(std::cout, outcome);
     }
-    return exit_code(options.program, outcome.checks);
+    return exit_code(options.program, outcome.checks, common);
 }
 
 int run_inspect(const InspectOptions& options, const Common& common) {
@@ -130,13 +152,20 @@ int run_inspect(const InspectOptions& options, const Common& common) {
         throw InputError("cli.output", "inspect --refine",
                          "name the mesh file to write with -o FILE");
     }
+    Progress progress(!shows_bar(common));
+    progress.show("mandrel", 0.0);
     const Mandrel mandrel =
         load_mandrel(find_input(options.mandrel), {.unit_mm = unit_mm(common.units)});
-    const std::size_t refined_faces =
-        options.refine_mm ? write_refined(mandrel, *options.refine_mm, options.out) : 0;
+    std::size_t refined_faces = 0;
+    if (options.refine_mm) {
+        progress.show("refine", 0.0);
+        refined_faces = write_refined(mandrel, *options.refine_mm, options.out);
+    }
+    progress.show("accuracy", 0.0);
     const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface);
     const RevolutionFinding revolution = find_revolution(mandrel);
     const TubeFinding tube = find_tube(mandrel);
+    progress.clear();
     if (common.json) {
         nlohmann::json report{{"meshwind", kVersion}, {"mandrel", mandrel_report(mandrel)}};
         report["mandrel"]["revolution"] = revolution_report(revolution);
@@ -147,7 +176,7 @@ int run_inspect(const InspectOptions& options, const Common& common) {
                                  {"longest_edge_mm", *options.refine_mm},
                                  {"triangles", refined_faces}};
         }
-        std::cout << report.dump(1) << '\n';
+        std::cout << json_text(report);
     } else {
         print_mandrel(std::cout, mandrel, accuracy, revolution, tube);
         if (options.refine_mm) {
@@ -175,7 +204,10 @@ int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& comm
         throw InputError("cli.direction", "trace",
                          "give --direction X,Y,Z, --angle DEG or --to X,Y,Z");
     }
+    Progress progress(!shows_bar(common));
+    progress.show("trace", 0.0);
     const std::string line = run_trace(request);
+    progress.clear();
     if (!common.quiet) {
         std::cout << line << '\n';
     }
@@ -213,7 +245,7 @@ int run_carry_command(CarryOptionsText& text, const Common& common) {
     } else if (!common.quiet) {
         print_carry(std::cout, outcome);
     }
-    return exit_code(text.axis, outcome.checks);
+    return exit_code(text.axis, outcome.checks, common);
 }
 
 int run_design_command(const DesignRequest& request, const Common& common) {
@@ -224,6 +256,16 @@ int run_design_command(const DesignRequest& request, const Common& common) {
         print_design(std::cout, outcome);
     }
     return kDone;
+}
+
+std::string main_job_words(const MachineClass& what) {
+    if (!what.refusal.empty()) {
+        return "cannot be run: " + what.refusal;
+    }
+    return what.eye_distance_mm > 0.0
+               ? "can be run, with the eye " + fixed(what.eye_distance_mm, 3) +
+                     " mm from the spindle axis (eye rule \"cylinder\")"
+               : "can be run";
 }
 
 // A machine file names its schema; everything else is read as a job.
@@ -240,14 +282,14 @@ int run_validate(const std::string& name, const Common& common) {
     if (machine) {
         const Machine read = read_machine(file);
         if (read.controller.dialect != kCarryDialect) {
-            make_dialect(read.controller.dialect)->check(read);
+            check_controller(read, file);
         }
         const MachineClass what = machine_class(read);
         more = "class         " + what.words + "\nfreedom       " +
                std::to_string(read.axis_count()) +
                " axes: " + std::to_string(read.mandrel_chain.size()) + " of the mandrel, " +
                std::to_string(read.eye_chain.size()) + " of the eye\nmain job      " +
-               (what.refusal.empty() ? "can be run" : "cannot be run: " + what.refusal) + "\n";
+               main_job_words(what) + "\n";
     } else {
         (void)read_job(file);
     }

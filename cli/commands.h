@@ -7,6 +7,7 @@
 
 #include "cli/carry_command.h"
 #include "cli/design_command.h"
+#include "cli/exit_codes.h"
 #include "cli/post_command.h"
 #include "cli/preview.h"
 #include "cli/study_command.h"
@@ -14,12 +15,6 @@
 #include "cli/wind.h"
 
 namespace meshwind {
-
-inline constexpr int kDone = 0;
-inline constexpr int kCheckFailed = 1;
-inline constexpr int kBadInput = 2;
-inline constexpr int kInternalError = 3;
-inline constexpr int kInterrupted = 128;  ///< and the signal's number, as shells have it
 
 /// What every command takes.
 struct Common {

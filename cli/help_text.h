@@ -33,10 +33,8 @@ constexpr const char* kMainHelp =
     "  0  done, and every check passed\n"
     "  1  a check failed: the report is written, the program is not (--force writes it)\n"
     "  2  bad input or usage: one line names the file, the place and the mend\n"
-    "  3  internal error\n"
-    "  130, 143  ended by Ctrl-C or SIGTERM; nothing unfinished is left, and the second one ends "
-    "at "
-    "once";
+    "  3  internal error, or standard output cannot be written\n"
+    "  128 + N  ended by signal N, as 130 by Ctrl-C; nothing unfinished is left";
 
 constexpr const char* kWindHelp =
     "Examples:\n"

@@ -1,109 +1,171 @@
 #include "cli/interrupt.h"
 
-#include <array>
-#include <atomic>
+#include <cerrno>
 #include <csignal>
-#include <deque>
-#include <mutex>
+#include <ctime>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <unistd.h>
 
+#include "cli/exit_codes.h"
 #include "core/interrupt.h"
 
 namespace meshwind {
 namespace {
 
-// Far more than the files of any run; beyond these none is registered.
-constexpr int kSlots = 1024;
+// A run has to end within a second of the signal. So much of it is left to the run, which removes
+// what it has begun by itself; after it the handler does.
+constexpr long kGrace_ns = 800'000'000;
 
-// What a signal handler reads: no locks, no memory of its own. Names are never freed, so that one
-// that is read is whole.
-struct Registry {
-    std::array<std::atomic<const char*>, kSlots> path{};
-    std::atomic<int> unbroken{0};
-    std::mutex mutex;  // of what follows; not the handler's
-    std::deque<std::string> names;
+// An end at once that has to wait looks again after this time; what is done whole takes less.
+constexpr long kAgain_ns = 20'000'000;
+
+// A name to be removed. Entries are never freed, so that a handler that reads one finds it whole.
+struct Entry {
+    std::string path;
+    std::atomic<bool> registered{true};
+    Entry* older = nullptr;
 };
 
-Registry& registry() {
-    static auto* const kOnly = new Registry;  // lives until the process ends, whoever ends it
-    return *kOnly;
+// What a signal handler reads and writes: no locks, no memory of its own.
+struct State {
+    std::atomic<Entry*> newest{nullptr};
+    std::atomic<int> unbroken{0};
+    std::atomic<bool> told{false};
+    timer_t timer{};
+    bool terminal = false;
+};
+
+State& state() noexcept {
+    static constinit State only;
+    return only;
 }
 
-void end_at_once(int signal) {
-    Registry& all = registry();
-    for (int i = kSlots - 1; i >= 0; --i) {  // files before the folders they are in
-        const char* path = all.path[static_cast<std::size_t>(i)].load();
-        if (path != nullptr && ::unlink(path) != 0) {
-            ::rmdir(path);
-        }
+void wake_after(long ns) noexcept {
+    itimerspec when{};
+    when.it_value.tv_nsec = ns;
+    ::timer_settime(state().timer, 0, &when, nullptr);
+}
+
+void tell(int signal) noexcept {
+    constexpr std::string_view kInterrupted = "meshwind: interrupted; nothing unfinished is left\n";
+    constexpr std::string_view kTooLarge =
+        "meshwind: a file would be larger than the shell allows (ulimit -f); nothing unfinished "
+        "is left\n";
+    // Whoever closed a pipe has read enough, and may be the one who would read this.
+    if (signal != SIGPIPE && !state().told.exchange(true)) {
+        const std::string_view words = signal == SIGXFSZ ? kTooLarge : kInterrupted;
+        (void)!::write(STDERR_FILENO, words.data(), words.size());
     }
-    constexpr std::string_view kWords = "\nmeshwind: ended at once\n";
-    (void)!::write(STDERR_FILENO, kWords.data(), kWords.size());
-    ::_exit(128 + signal);
+}
+
+void end_or_wait() noexcept {
+    if (!remove_temporaries()) {
+        wake_after(kAgain_ns);
+        return;
+    }
+    const int signal = interrupt_requested();
+    if (state().terminal) {
+        (void)!::write(STDERR_FILENO, "\n", 1);  // the bar stands in the line
+    }
+    tell(signal);
+    ::_exit(kInterrupted + signal);
 }
 
 void on_signal(int signal) {
+    const int kept = errno;
     if (interrupt_requested() == 0) {
         request_interrupt(signal);
-    } else if (registry().unbroken.load() == 0) {
-        end_at_once(signal);
+        wake_after(kGrace_ns);
+    } else {
+        end_or_wait();
     }
+    errno = kept;
+}
+
+void on_timer(int) {
+    const int kept = errno;
+    if (interrupt_requested() != 0) {
+        end_or_wait();
+    }
+    errno = kept;
+}
+
+void handle(int signal, void (*handler)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART | SA_ONSTACK;
+    ::sigfillset(&action.sa_mask);
+    ::sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
 
 void end_on_signals() {
-    (void)registry();  // made here, not by the handler
-    for (const int signal : {SIGINT, SIGTERM}) {
+    state().terminal = ::isatty(STDERR_FILENO) != 0;
+    handle(SIGALRM, on_timer);
+    sigevent event{};
+    event.sigev_notify = SIGEV_SIGNAL;
+    event.sigev_signo = SIGALRM;
+    ::timer_create(CLOCK_MONOTONIC, &event, &state().timer);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGXFSZ, SIGPIPE}) {
         struct sigaction before {};
         ::sigaction(signal, nullptr, &before);
-        if (before.sa_handler == SIG_IGN) {
-            continue;
+        if (before.sa_handler != SIG_IGN) {
+            handle(signal, on_signal);
         }
-        struct sigaction action {};
-        action.sa_handler = on_signal;
-        action.sa_flags = SA_RESTART;
-        ::sigemptyset(&action.sa_mask);
-        ::sigaction(signal, &action, nullptr);
     }
+}
+
+void end_interrupted() {
+    const int signal = interrupt_requested();
+    tell(signal);
+    ::_exit(kInterrupted + signal);
+}
+
+bool remove_temporaries() noexcept {
+    if (state().unbroken.load() != 0) {
+        return false;
+    }
+    // Newest first: files come before the folders they are in.
+    for (const Entry* entry = state().newest.load(); entry != nullptr; entry = entry->older) {
+        if (entry->registered.load() && ::unlink(entry->path.c_str()) != 0) {
+            ::rmdir(entry->path.c_str());
+        }
+    }
+    return true;
 }
 
 Temporary::Temporary(const std::filesystem::path& path) {
-    Registry& all = registry();
-    const std::lock_guard lock(all.mutex);
-    for (int i = kSlots - 1; i >= 0 && all.path[static_cast<std::size_t>(i)].load() == nullptr;
-         --i) {
-        slot_ = i;  // above all that are taken
+    auto* const entry = new Entry{.path = path.string()};
+    entry->older = state().newest.load();
+    while (!state().newest.compare_exchange_weak(entry->older, entry)) {
     }
-    if (slot_ >= 0) {
-        all.names.push_back(path.string());
-        all.path[static_cast<std::size_t>(slot_)].store(all.names.back().c_str());
-    }
+    registered_ = &entry->registered;
 }
 
 Temporary::~Temporary() {
-    if (slot_ >= 0) {
-        registry().path[static_cast<std::size_t>(slot_)].store(nullptr);
+    if (registered_ != nullptr) {
+        registered_->store(false);
     }
 }
 
-Temporary::Temporary(Temporary&& other) noexcept : slot_(std::exchange(other.slot_, -1)) {}
+Temporary::Temporary(Temporary&& other) noexcept
+    : registered_(std::exchange(other.registered_, nullptr)) {}
 
 Temporary& Temporary::operator=(Temporary&& other) noexcept {
-    std::swap(slot_, other.slot_);
+    std::swap(registered_, other.registered_);
     return *this;
 }
 
 Unbroken::Unbroken() {
-    ++registry().unbroken;
+    ++state().unbroken;
 }
 
 Unbroken::~Unbroken() {
-    --registry().unbroken;
+    --state().unbroken;
 }
 
 }  // namespace meshwind

@@ -110,5 +110,6 @@ struct Job {
 
 /// As the job file says it.
 [[nodiscard]] std::string_view name_of(LayerKind kind);
+[[nodiscard]] std::string_view name_of(EyeRule rule);
 
 }  // namespace meshwind

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "cli/job_ranges.h"
 #include "core/text_number.h"
 #include "machines/strict_json.h"
 
@@ -24,24 +25,7 @@ const std::initializer_list<std::string_view> kEyeWords = {
 const std::initializer_list<std::string_view> kRedundancyWords = {"central-angle", "hold",
                                                                   "oscillate", "optimal"};
 
-constexpr JsonRange kPositive = {.min = 0.0, .above_min = true};
-constexpr JsonRange kNotNegative = {.min = 0.0};
 constexpr JsonRange kAngleDeg = {.min = 0.0, .max = 90.0};
-
-// More circuits than patterns are looked for (winding/pattern.cpp), more series and plies than
-// anybody winds.
-constexpr std::int64_t kMostCircuits = 10'000;
-constexpr std::int64_t kMostSeries = 1'000;
-constexpr std::int64_t kMostPlies = 1'000;
-
-// More pins than on any ring.
-constexpr std::int64_t kMostPins = 10'000;
-
-// Dwells of a turn and less end at every place there is.
-constexpr double kMostDwell_deg = 3600.0;
-
-// Bands that overlap by more are a layer more.
-constexpr double kMostOverlap = 1.0;
 
 /// Leaves `target` as it is where the key is absent.
 void read_number(const JsonObject& object, std::string_view key, const JsonRange& range,
@@ -110,15 +94,15 @@ PinWish read_pins(const JsonValue& value) {
     if (const auto count = unless_auto(object, "count")) {
         pins.count = static_cast<int>(count->integer(1, kMostPins));
     }
-    read_number(object, "diameter", kPositive, pins.diameter_mm);
+    read_number(object, "diameter", kLengthRange, pins.diameter_mm);
     if (const auto height = unless_auto(object, "height")) {
-        pins.height_mm = height->number(kPositive);
+        pins.height_mm = height->number(kLengthRange);
     }
     if (const auto skip = unless_auto(object, "skip")) {
         pins.skip = static_cast<int>(skip->integer(1, kMostPins));
     }
     if (const auto offset = unless_auto(object, "offset")) {
-        pins.offset_mm = offset->number(kPositive);
+        pins.offset_mm = offset->number(kLengthRange);
     }
     return pins;
 }
@@ -134,7 +118,7 @@ Job::MandrelJob read_mandrel(const JsonValue& value) {
     if (const auto regions = object.optional("keep_regions")) {
         mandrel.keep_regions = read_regions(*regions);
     }
-    read_number(object, "extension", kNotNegative, mandrel.extension_mm);
+    read_number(object, "extension", kExtensionRange, mandrel.extension_mm);
     read_word(object, "turn", kTurnWords, mandrel.turn);
     if (const auto pins = object.optional("pins")) {
         if (mandrel.turn != TurnKind::Pins) {
@@ -150,11 +134,11 @@ Job::TowJob read_tow(const JsonValue& value) {
     Job::TowJob tow;
     const JsonObject object =
         value.object({"width", "thickness", "friction", "bridging_tolerance", "density"});
-    read_number(object, "width", kPositive, tow.width_mm);
-    read_number(object, "thickness", kPositive, tow.thickness_mm);
-    read_number(object, "friction", kNotNegative, tow.friction);
-    read_number(object, "bridging_tolerance", kNotNegative, tow.bridging_tolerance_mm);
-    read_number(object, "density", kPositive, tow.density_g_cm3);
+    read_number(object, "width", kBandRange, tow.width_mm);
+    read_number(object, "thickness", kThicknessRange, tow.thickness_mm);
+    read_number(object, "friction", kFrictionRange, tow.friction);
+    read_number(object, "bridging_tolerance", kGapRange, tow.bridging_tolerance_mm);
+    read_number(object, "density", kDensityRange, tow.density_g_cm3);
     return tow;
 }
 
@@ -189,7 +173,7 @@ PatternJob read_pattern(const JsonValue& value, LayerKind kind) {
     if (const auto most = object.optional("most_dwell_deg")) {
         wish.most_dwell_deg = most->number({.min = wish.dwell_deg, .max = kMostDwell_deg});
     }
-    read_number(object, "band_offset_mm", kPositive, wish.band_offset_mm);
+    read_number(object, "band_offset_mm", kBandRange, wish.band_offset_mm);
     return wish;
 }
 
@@ -248,7 +232,7 @@ LayerJob read_layer(const JsonValue& value) {
     if (object.optional("angle")) {
         read_number(object, "angle", kAngleDeg, layer.angle_deg.emplace());
     }
-    read_number(object, "target_layers", kPositive, layer.target_layers);
+    read_number(object, "target_layers", kLayersRange, layer.target_layers);
     const auto file = object.optional("file");
     if (file) {
         layer.file = file->string();
@@ -290,10 +274,11 @@ LengthPiece read_length(const JsonValue& value) {
             }
         }
     } else {
-        piece.from_mm = object.required("from_mm").number(kNotNegative);
-        piece.to_mm = object.required("to_mm").number({.min = piece.from_mm, .above_min = true});
+        piece.from_mm = object.required("from_mm").number(kAlongRange);
+        piece.to_mm = object.required("to_mm").number(
+            {.min = piece.from_mm, .max = kAlongRange.max, .above_min = true});
     }
-    piece.free_length_mm = object.required("free_length").number(kPositive);
+    piece.free_length_mm = object.required("free_length").number(kLengthRange);
     return piece;
 }
 
@@ -312,7 +297,7 @@ EyeLaw read_eye(const JsonValue& value) {
     const JsonObject object =
         value.object({"rule", "free_length", "lengths", "radius", "plane_x", "plane_y"});
     read_word(object, "rule", kEyeWords, eye.rule);
-    read_number(object, "free_length", kPositive, eye.free_length_mm);
+    read_number(object, "free_length", kLengthRange, eye.free_length_mm);
     refuse_unused(object, eye, "lengths", EyeRule::EqualFreeLength);
     refuse_unused(object, eye, "radius", EyeRule::Cylinder);
     refuse_unused(object, eye, "plane_x", EyeRule::VerticalPlane);
@@ -323,14 +308,14 @@ EyeLaw read_eye(const JsonValue& value) {
         }
     }
     if (eye.rule == EyeRule::Cylinder) {
-        eye.radius_mm = object.required("radius").number(kPositive);
+        eye.radius_mm = object.required("radius").number(kLengthRange);
     }
     if (eye.rule == EyeRule::VerticalPlane) {
-        eye.plane_x_mm = object.required("plane_x").number(kPositive);
+        eye.plane_x_mm = object.required("plane_x").number(kLengthRange);
     }
     if (eye.rule == EyeRule::HorizontalPlane) {
         const JsonValue plane = object.required("plane_y");
-        eye.plane_y_mm = plane.number();
+        eye.plane_y_mm = plane.number(kPlaneRange);
         if (eye.plane_y_mm == 0.0) {
             plane.fail("json.out_of_range",
                        "0 is the height of the spindle, where \"equal-free-length\" and "
@@ -376,12 +361,12 @@ Job job_of(const JsonDocument& document) {
     job.redundancy = read_redundancy(root, job.eye.rule);
     if (const auto tolerance = root.optional("tolerance")) {
         const JsonObject object = tolerance->object({"laydown", "laydown_angle", "clearance"});
-        read_number(object, "laydown", kPositive, job.tolerance.laydown_mm);
-        read_number(object, "laydown_angle", kPositive, job.tolerance.laydown_angle_deg);
-        read_number(object, "clearance", kNotNegative, job.tolerance.clearance_mm);
+        read_number(object, "laydown", kDeviationRange, job.tolerance.laydown_mm);
+        read_number(object, "laydown_angle", kDeviationRange, job.tolerance.laydown_angle_deg);
+        read_number(object, "clearance", kClearanceRange, job.tolerance.clearance_mm);
     }
     if (const auto speed = root.optional("speed")) {
-        read_number(speed->object({"fibre"}), "fibre", kPositive, job.speed.fibre_m_min);
+        read_number(speed->object({"fibre"}), "fibre", kSpeedRange, job.speed.fibre_m_min);
     }
     return job;
 }
@@ -579,6 +564,10 @@ Job read_job(const std::filesystem::path& file) {
 
 std::string_view name_of(LayerKind kind) {
     return word_of(kind, kLayerWords);
+}
+
+std::string_view name_of(EyeRule rule) {
+    return word_of(rule, kEyeWords);
 }
 
 std::string job_text(const Job& job) {

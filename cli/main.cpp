@@ -1,23 +1,71 @@
-#include <exception>
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
 #include <iostream>
+#include <limits>
 #include <map>
-#include <new>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.h"
+#include "cli/crash.h"
+#include "cli/ending.h"
 #include "cli/help_text.h"
 #include "cli/interrupt.h"
 #include "cli/make_command.h"
+#include "cli/project_files.h"
+#include "cli/streams.h"
+#include "cli/usage.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "version.h"
 
 namespace meshwind {
 namespace {
+
+// More than any machine has cores.
+constexpr std::uint64_t kMostThreads = 1024;
+
+// Digits and nothing else: the library behind options would take -1 for the largest number.
+CLI::Validator whole_number(std::uint64_t most) {
+    return {[most](const std::string& text) {
+                std::uint64_t value = 0;
+                const char* const end = text.data() + text.size();
+                const auto read = std::from_chars(text.data(), end, value);
+                const bool good = read.ec == std::errc() && read.ptr == end && value <= most;
+                return good ? std::string()
+                            : "'" + text + "' is no whole number from 0 to " + std::to_string(most);
+            },
+            ""};
+}
+
+// In place of CLI::IsMember, whose words propose nothing.
+CLI::Validator one_of(const std::vector<std::string_view>& words) {
+    return CLI::Validator([words](const std::string& word) { return why_no_choice(word, words); },
+                          CLI::detail::generate_set(words));
+}
+
+CommandWords command_words(const CLI::App& app) {
+    CommandWords words{app.get_name(), {}, {}};
+    for (const CLI::Option* option : app.get_options()) {
+        const bool takes_value = option->get_items_expected_max() > 0;
+        for (const std::string& name : option->get_lnames()) {
+            words.options.push_back({"--" + name, takes_value});
+        }
+        for (const std::string& name : option->get_snames()) {
+            words.options.push_back({"-" + name, takes_value});
+        }
+    }
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        words.commands.push_back(command_words(*command));
+    }
+    return words;
+}
 
 void add_png(CLI::App& app, PreviewOptions& options) {
     auto* file = app.add_option("--png", options.file,
@@ -31,7 +79,7 @@ void add_png(CLI::App& app, PreviewOptions& options) {
                    "what its colours show: course by course, layers of the wall, slip up to the "
                    "friction, angle to the spindle")
         ->needs(file)
-        ->check(CLI::IsMember({"course", "layers", "slip", "angle"}))
+        ->check(one_of({"course", "layers", "slip", "angle"}))
         ->capture_default_str();
 }
 
@@ -76,7 +124,7 @@ void add_post(CLI::App& app, PostOptions& options) {
     app.add_option("--frame", options.frame,
                    "axes of the table. file: those of the mandrel's file; mandrel: those of "
                    "meshwind's own tables, Z along the spindle, in mm")
-        ->check(CLI::IsMember({"file", "mandrel"}))
+        ->check(one_of({"file", "mandrel"}))
         ->capture_default_str();
     app.add_option("--within", options.within_mm,
                    "mm: a point further than this from the mandrel is refused")
@@ -188,10 +236,10 @@ CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
     length->capture_default_str()->excludes(to);
     app.add_option("--method", text.method,
                    "patches: solved on curved patches, accurate; walk: over the facets, fast")
-        ->check(CLI::IsMember({"patches", "walk"}))
+        ->check(one_of({"patches", "walk"}))
         ->capture_default_str();
     app.add_option("--frame", text.frame, "frame of the output")
-        ->check(CLI::IsMember({"mandrel", "file"}))
+        ->check(one_of({"mandrel", "file"}))
         ->capture_default_str();
     app.add_option("-o,--out", text.request.out, "table to write")->type_name("FILE")->required();
     return angle;
@@ -359,7 +407,7 @@ void add_design_vessel(CLI::App& app, DesignRequest& request) {
         ->type_name("MPA");
 }
 
-int run(int argc, char** argv) {
+int run(const std::vector<std::string>& arguments) {
     CLI::App app(
         "Filament winding on triangulated mandrels: mesh and machine in, checked NC code out.\n"
         "Without a command it runs the main job, the same as meshwind wind.",
@@ -372,17 +420,18 @@ int run(int argc, char** argv) {
     app.add_option("--threads", common.threads, "threads to use; 0: one per core")
         ->group(kEvery)
         ->type_name("N")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_number(kMostThreads))
         ->capture_default_str();
     app.add_option("--seed", common.seed,
                    "seed of every random draw; the same seed gives the same files")
         ->group(kEvery)
         ->type_name("N")
+        ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
         ->capture_default_str();
     app.add_option("--units", common.units,
                    "length of a unit of the mandrel's file; overrides the job")
         ->group(kEvery)
-        ->check(CLI::IsMember({"auto", "um", "mm", "cm", "m", "in"}));
+        ->check(one_of({"auto", "um", "mm", "cm", "m", "in"}));
     app.add_flag("--json", common.json, "the report as JSON on stdout, in place of the summary")
         ->group(kEvery);
     app.add_flag("--quiet", common.quiet, "no progress and no summary")->group(kEvery);
@@ -454,19 +503,17 @@ int run(int argc, char** argv) {
     }
 
     try {
-        app.parse(argc, argv);
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) {
             return app.exit(error);  // --help, --version
         }
-        std::cerr << "meshwind: " << error.what() << "; see meshwind --help\n";
-        return kBadInput;
+        throw usage_error(command_words(app), arguments, error.what());
     }
     set_thread_count(common.threads);
     if (!app.get_subcommands().empty() && !wind_options.mandrel.empty()) {
-        throw InputError(
-            "cli.extra", "",
-            "'" + wind_options.mandrel + "' is one argument too many; see meshwind --help");
+        throw usage_error(command_words(app), arguments,
+                          "'" + wind_options.mandrel + "' is one argument too many");
     }
     if (wind_command->parsed()) {
         return run_wind(named_wind_options, common);
@@ -512,6 +559,10 @@ int run(int argc, char** argv) {
         std::cerr << app.help();
         return kBadInput;
     }
+    if (!std::filesystem::exists(find_input(wind_options.mandrel)) &&
+        !command_meant(command_words(app), wind_options.mandrel).empty()) {
+        throw usage_error(command_words(app), arguments, "");
+    }
     return run_wind(wind_options, common);
 }
 
@@ -519,23 +570,13 @@ int run(int argc, char** argv) {
 }  // namespace meshwind
 
 int main(int argc, char** argv) {
+    meshwind::open_standard_streams();
     meshwind::end_on_signals();
-    try {
-        return meshwind::run(argc, argv);
-    } catch (const meshwind::Interrupted& end) {
-        std::cerr << "meshwind: interrupted; nothing unfinished is left\n";
-        return meshwind::kInterrupted + end.reason();
-    } catch (const meshwind::NumericalError& error) {
-        std::cerr << "meshwind: " << error.what() << '\n';
-        return meshwind::kInternalError;
-    } catch (const meshwind::Error& error) {
-        std::cerr << "meshwind: " << error.what() << '\n';
-        return meshwind::kBadInput;
-    } catch (const std::bad_alloc&) {
-        std::cerr << "meshwind: out of memory\n";
-        return meshwind::kInternalError;
-    } catch (const std::exception& error) {
-        std::cerr << "meshwind: internal error: " << error.what() << '\n';
-        return meshwind::kInternalError;
-    }
+    meshwind::end_on_crashes();
+    const std::vector<std::string> arguments =
+        meshwind::with_help_as_option({argv + std::min(1, argc), argv + argc});
+    meshwind::HeldOutput output;
+    return meshwind::shown(
+        output,
+        meshwind::run_to_the_end([&arguments] { return meshwind::run(arguments); }, arguments));
 }

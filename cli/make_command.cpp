@@ -1,5 +1,6 @@
 #include "cli/make_command.h"
 
+#include "cli/output_files.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "mesh/export.h"
@@ -57,7 +58,7 @@ std::string help_of(const MakeParameter& parameter) {
 std::string run_make(const MakeRequest& request) {
     (void)mesh_format_of(request.output);
     const TriangleSoup soup = make_mandrel(request.kind, values_of(request), request.options);
-    write_mesh_file(soup, request.output);
+    write_file(request.output, mesh_file_bytes(soup, mesh_format_of(request.output)));
     return request.output.string() + ": " + std::to_string(soup.points_mm.size()) + " points, " +
            std::to_string(soup.faces.size()) + " triangles, " + fixed(area_mm2(soup), 1) + " mm^2";
 }

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
-#include <unistd.h>
-
+#include "cli/disk_file.h"
+#include "cli/replacement.h"
+#include "cli/run_files.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 
@@ -18,45 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void throw_unwritable(const fs::path& place, const std::string& reason) {
-    throw IoError(
-        "output.unwritable", place.string(),
-        "cannot write (" + reason + "); choose another place with -o, or make room there");
-}
-
-/// Temporary name beside `file`; the process id keeps concurrent runs apart.
-fs::path temporary_beside(const fs::path& file) {
-    return file.parent_path() /
-           ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".tmp");
-}
-
-/// Writes and closes; `place` is the name the user knows.
-void write_plain(const fs::path& file, std::string_view bytes, const fs::path& place) {
-    errno = 0;
-    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) {
-        const std::string reason = errno != 0 ? std::strerror(errno) : "unknown reason";
+// Removed in the end, unless it has got another name by then.
+class RemovedInTheEnd {
+public:
+    explicit RemovedInTheEnd(fs::path file) : file_(std::move(file)), registered_(file_) {}
+    ~RemovedInTheEnd() {
         std::error_code ignored;
-        if (fs::is_regular_file(file, ignored)) {
-            fs::remove(file, ignored);
-        }
-        throw_unwritable(place, reason);
+        fs::remove(file_, ignored);
     }
-}
+    RemovedInTheEnd(const RemovedInTheEnd&) = delete;
+    RemovedInTheEnd& operator=(const RemovedInTheEnd&) = delete;
 
-/// Missing folders on the way to `folder`, outermost first.
-std::vector<fs::path> missing_folders(fs::path folder) {
-    std::vector<fs::path> missing;
-    std::error_code ignored;
-    while (!folder.empty() && !fs::exists(folder, ignored)) {
-        missing.push_back(folder);
-        folder = folder.parent_path();
-    }
-    std::reverse(missing.begin(), missing.end());
-    return missing;
-}
+private:
+    fs::path file_;
+    Temporary registered_;
+};
 
 }  // namespace
 
@@ -67,64 +41,101 @@ void write_file(const fs::path& file, std::string_view bytes) {
         throw_unwritable(file, "it is a folder");
     }
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-        write_plain(file, bytes, file);
+        write_to_disk(file, bytes, file);
         return;
     }
     const fs::path target = fs::exists(status) ? fs::canonical(file, error) : file;
     if (error && fs::exists(status)) {
         throw_unwritable(file, error.message());
     }
-    const fs::path temporary = temporary_beside(target);
-    const Temporary registered(temporary);
-    write_plain(temporary, bytes, file);
+    remove_leftovers_of(target);
+    const fs::path temporary = temporary_beside(target, TemporaryKind::File);
+    const RemovedInTheEnd guard(temporary);
+    write_to_disk(temporary, bytes, file);
     fs::rename(temporary, target, error);
     if (error) {
-        const std::string reason = error.message();
-        fs::remove(temporary, error);
-        throw_unwritable(file, reason);
+        throw_unwritable(file, error.message());
     }
+    flush_folder(target.parent_path());
 }
 
 OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     if (!folder_.has_filename() && folder_.has_parent_path() && folder_ != folder_.root_path()) {
         folder_ = folder_.parent_path();  // "out/" and "out" are one folder
     }
-    created_ = missing_folders(folder_);
-    for (const fs::path& created : created_) {
-        temporaries_.emplace_back(created);
+    try {
+        open();
+    } catch (...) {
+        remove_created();
+        throw;
     }
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error || !fs::is_directory(folder_, error)) {
-        throw_unwritable(folder_, error ? error.message() : "a file of that name is in the way");
-    }
-    // Found out now, not after minutes of planning.
-    const fs::path probe = temporary("probe");
-    const Temporary registered(probe);
-    write_plain(probe, {}, folder_);
-    fs::remove(probe, error);
 }
 
 OutputFolder::~OutputFolder() {
     std::error_code ignored;
     for (const std::string& name : added_) {
-        fs::remove(temporary(name), ignored);
+        fs::remove(staged(name), ignored);
     }
+    remove_created();
+}
+
+void OutputFolder::open() {
+    do {
+        lock_.reset();
+        create_folders();
+        try {
+            lock_.emplace(folder_);
+        } catch (const IoError&) {
+            created_.clear();  // a run that was quicker is in there
+            throw;
+        }
+    } while (!lock_->holds(folder_));
+    remove_leftovers(folder_);
+    // Found out now, not after minutes of planning.
+    const RemovedInTheEnd probe(staged("probe"));
+    write_to_disk(staged("probe"), std::string_view(), folder_);
+}
+
+void OutputFolder::create_folders() {
+    std::vector<fs::path> missing;
+    std::error_code error;
+    for (fs::path outer = folder_; !outer.empty() && !fs::exists(outer, error);
+         outer = outer.parent_path()) {
+        missing.push_back(outer);
+    }
+    for (auto outer = missing.rbegin(); outer != missing.rend(); ++outer) {
+        Temporary registered(*outer);
+        if (fs::create_directory(*outer, error)) {
+            created_.push_back(*outer);
+            temporaries_.push_back(std::move(registered));
+        }
+    }
+    if (error || !fs::is_directory(folder_, error)) {
+        throw_unwritable(folder_, error ? error.message() : "a file of that name is in the way");
+    }
+}
+
+void OutputFolder::remove_created() {
+    std::error_code ignored;
     for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
         fs::remove(*folder, ignored);  // only where it is empty
     }
 }
 
-fs::path OutputFolder::temporary(const std::string& name) const {
-    return temporary_beside(folder_ / name);
+fs::path OutputFolder::staged(const std::string& name) const {
+    return temporary_beside(folder_ / name, TemporaryKind::Staged);
 }
 
 void OutputFolder::add(const std::string& name, std::string_view bytes) {
+    add(name, ByteSource([bytes](const auto& write) { write(bytes); }));
+}
+
+void OutputFolder::add(const std::string& name, const ByteSource& source) {
     assert(fs::path(name).filename() == name);
     assert(std::find(added_.begin(), added_.end(), name) == added_.end());
-    temporaries_.emplace_back(temporary(name));
-    write_plain(temporary(name), bytes, folder_ / name);
+    temporaries_.emplace_back(staged(name));
     added_.push_back(name);
+    write_to_disk(staged(name), source, folder_ / name);
 }
 
 void OutputFolder::withdraw(const std::string& name) {
@@ -132,27 +143,16 @@ void OutputFolder::withdraw(const std::string& name) {
     withdrawn_.push_back(name);
 }
 
+void OutputFolder::withdraw_earlier_run() {
+    for (const std::string& name : files_of_earlier_run(folder_)) {
+        withdraw(name);
+    }
+}
+
 void OutputFolder::publish() {
     check_interrupt();
     const Unbroken whole;
-    std::error_code error;
-    for (const std::string& name : added_) {
-        if (fs::is_directory(folder_ / name, error)) {
-            throw_unwritable(folder_ / name, "a folder of that name is in the way");
-        }
-    }
-    for (const std::string& name : withdrawn_) {
-        fs::remove(folder_ / name, error);
-        if (error) {
-            throw_unwritable(folder_ / name, error.message());
-        }
-    }
-    for (const std::string& name : added_) {
-        fs::rename(temporary(name), folder_ / name, error);
-        if (error) {
-            throw_unwritable(folder_ / name, error.message());
-        }
-    }
+    replace_files(folder_, withdrawn_, added_);
     added_.clear();
     withdrawn_.clear();
     created_.clear();

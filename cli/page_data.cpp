@@ -1,5 +1,6 @@
 #include "cli/page_data.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_files.h"
+#include "core/text_number.h"
 #include "core/units.h"
 #include "machines/kinematics.h"
 #include "mesh/extension.h"
@@ -25,6 +27,13 @@ using Eigen::Vector3d;
 using nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little);
+
+// A page is to stay below 30 MB, and a browser to draw it: of all fibres together so many stations
+// (60 bytes each, before they are packed) and blocks (some 80 bytes) are in it, and so much of the
+// programs' text.
+constexpr std::size_t kMostStations = 200'000;
+constexpr std::size_t kMostBlocks = 100'000;
+constexpr std::size_t kMostText = 2'000'000;
 
 // Arrays begin at multiples of so many bytes.
 constexpr std::size_t kAlignment = 8;
@@ -109,10 +118,85 @@ json limit_json(double value) {
     return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
+// A chord whose square is less has no direction.
+constexpr double kShort_mm2 = 1e-12;
+
+// 1: all of them.
+std::size_t every_of(std::size_t count, std::size_t most) {
+    return (count + most - 1) / std::max<std::size_t>(most, 1);
+}
+
+// Stations of a fibre that the page shows.
+class ShownStations {
+public:
+    // Every so many, and both ends of each piece.
+    ShownStations(std::span<const Piece> pieces, std::size_t every) {
+        std::size_t first = 0;
+        for (const Piece& piece : pieces) {
+            first_.push_back(station_.size());
+            piece_first_.push_back(first);
+            for (std::size_t i = 0; i < piece.path.size(); ++i) {
+                if (i % every == 0 || i + 1 == piece.path.size()) {
+                    keep(piece, first, i);
+                }
+            }
+            first += piece.path.size();
+        }
+        first_.push_back(station_.size());
+    }
+
+    [[nodiscard]] const std::vector<std::size_t>& all() const { return station_; }
+    [[nodiscard]] std::size_t first(std::size_t piece) const { return first_[piece]; }
+    [[nodiscard]] std::size_t count(std::size_t piece) const {
+        return first_[piece + 1] - first_[piece];
+    }
+
+    // That which a point of a piece is shown by: itself or the next one.
+    [[nodiscard]] std::size_t shown(std::size_t piece, std::size_t point) const {
+        const auto at =
+            std::lower_bound(station_.begin(), station_.end(), piece_first_[piece] + point);
+        return static_cast<std::size_t>(at - station_.begin());
+    }
+
+    // How far the stations that are left out are from the lines between those shown.
+    [[nodiscard]] double off_mm() const { return off_mm_; }
+
+private:
+    void keep(const Piece& piece, std::size_t first, std::size_t i) {
+        const std::size_t before = i > 0 ? station_.back() - first : i;
+        const Vector3d& from = piece.path[before].position_mm;
+        const Vector3d chord = piece.path[i].position_mm - from;
+        for (std::size_t k = before + 1; k < i; ++k) {
+            const Vector3d to = piece.path[k].position_mm - from;
+            const double share =
+                std::clamp(to.dot(chord) / std::max(chord.squaredNorm(), kShort_mm2), 0.0, 1.0);
+            off_mm_ = std::max(off_mm_, (to - share * chord).norm());
+        }
+        station_.push_back(first + i);
+    }
+
+    std::vector<std::size_t> station_;      // of the fibre, ascending
+    std::vector<std::size_t> first_;        // per piece: in station_; and the end
+    std::vector<std::size_t> piece_first_;  // per piece: its first station
+    double off_mm_ = 0.0;
+};
+
 class PageData {
 public:
     PageData(const WindResult& result, const Layup& layup)
-        : result_(result), layup_(layup), first_(result.layers.front().setup) {}
+        : result_(result), layup_(layup), first_(result.layers.front().setup) {
+        std::size_t stations = 0;
+        std::size_t blocks = 0;
+        for (const WoundLayer& layer : result.layers) {
+            for (const FibreProgram& program : layer.programs) {
+                stations += program.made.eyes.path.size();
+                blocks += program.made.blocks.blocks.size();
+                text_ += result.program_written ? program.text.size() : 0;
+            }
+        }
+        station_every_ = every_of(stations, kMostStations);
+        block_every_ = every_of(blocks, kMostBlocks);
+    }
 
     std::string text(std::string_view report) {
         const Mandrel& mandrel = first_.mandrel;
@@ -137,7 +221,7 @@ public:
                        {"extension", extension_json()},
                        {"layers", layers}};
         header["arrays"] = arrays_.table();
-        std::string head = header.dump();
+        std::string head = header.dump(-1, ' ', false, json::error_handler_t::replace);
         pad(head, sizeof(std::uint32_t), ' ');
         const auto length =
             std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(head.size()));
@@ -176,15 +260,16 @@ private:
     // \param course the number of the fibre's first course; counted on
     json fibre_json(const WoundLayer& layer, std::span<const Piece> pieces,
                     const FibreProgram& program, const std::string& prefix, std::size_t& course) {
+        const ShownStations shown(pieces, station_every_);
         json list = json::array();
-        std::size_t first = 0;
-        for (const Piece& piece : pieces) {
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            const Piece& piece = pieces[p];
             const bool is_course = piece.kind == PieceKind::Course;
             json entry = {{"kind", is_course ? "course" : "transition"},
                           {"course", course},
                           {"family", -1},
-                          {"first", first},
-                          {"count", piece.path.size()},
+                          {"first", shown.first(p)},
+                          {"count", shown.count(p)},
                           {"length_mm", piece.path.back().s_mm - piece.path.front().s_mm},
                           {"worst_slip", piece.worst_slip},
                           {"start_rim", piece.start_rim},
@@ -198,20 +283,53 @@ private:
                 entry["course"] = course > 0 ? course - 1 : 0;
             }
             list.push_back(std::move(entry));
-            first += piece.path.size();
         }
-        add_stations(layer.setup.mandrel.surface, pieces, program.made.eyes.path, prefix);
-        add_blocks(pieces, program.made, prefix);
-        const std::string text = result_.program_written ? program.text : std::string();
-        arrays_.add<char>(prefix + "text", 1, text);
-        return {{"program", result_.program_written ? json(program.file) : json(nullptr)},
-                {"dialect", layer.setup.machine.controller.dialect},
-                {"prefix", prefix},
-                {"pieces", std::move(list)}};
+        add_stations(layer.setup.mandrel.surface, pieces, program.made.eyes.path, shown, prefix);
+        add_blocks(program.made, shown, prefix);
+        const std::string_view text = result_.program_written ? program.text : std::string_view();
+        const std::string_view listed = shown_text(text);
+        arrays_.add<char>(prefix + "text", 1, listed);
+        json report = {{"program", result_.program_written ? json(program.file) : json(nullptr)},
+                       {"dialect", layer.setup.machine.controller.dialect},
+                       {"prefix", prefix},
+                       {"pieces", std::move(list)}};
+        if (station_every_ > 1 || block_every_ > 1 || listed.size() < text.size()) {
+            report["shortened"] = shortened_words(shown, listed.size() < text.size());
+            report["block_every"] = block_every_;
+        }
+        return report;
+    }
+
+    // Whole lines from the beginning, of all programs in proportion.
+    [[nodiscard]] std::string_view shown_text(std::string_view text) const {
+        if (text_ <= kMostText) {
+            return text;
+        }
+        const double share = static_cast<double>(kMostText) / static_cast<double>(text_);
+        const auto most = static_cast<std::size_t>(share * static_cast<double>(text.size()));
+        return text.substr(0, text.rfind('\n', most) + 1);
+    }
+
+    // What the page leaves out, for who reads it.
+    [[nodiscard]] std::string shortened_words(const ShownStations& shown, bool text) const {
+        std::string words;
+        const auto add = [&words](const std::string& more) {
+            words += (words.empty() ? "" : "; ") + more;
+        };
+        if (text) {
+            add("the listing ends early");
+        }
+        if (block_every_ > 1) {
+            add("one block in " + std::to_string(block_every_) + " is shown");
+        }
+        if (station_every_ > 1) {
+            add("fibre is drawn within " + fixed(shown.off_mm(), 2) + " mm");
+        }
+        return words + "; all of it is in the files";
     }
 
     void add_stations(const Surface& surface, std::span<const Piece> pieces, const EyePath& eyes,
-                      const std::string& prefix) {
+                      const ShownStations& shown, const std::string& prefix) {
         std::vector<Vector3d> position;
         std::vector<Vector3d> normal;
         std::vector<Vector3d> tangent;
@@ -221,7 +339,8 @@ private:
         std::vector<double> free_length;
         std::vector<double> angle;
         std::vector<std::uint32_t> piece_of;
-        for (const EyePoint& eye : eyes) {
+        for (const std::size_t shown_station : shown.all()) {
+            const EyePoint& eye = eyes[shown_station];
             const Piece& piece = pieces[static_cast<std::size_t>(eye.piece)];
             const auto i = static_cast<std::size_t>(eye.point);
             const PathPoint& station = piece.path[i];
@@ -259,14 +378,8 @@ private:
                           std::abs(meridian.dot(station.tangent)));
     }
 
-    void add_blocks(std::span<const Piece> pieces, const PieceProgram& made,
+    void add_blocks(const PieceProgram& made, const ShownStations& shown,
                     const std::string& prefix) {
-        std::vector<std::int32_t> first;  // station of each piece
-        std::int32_t stations = 0;
-        for (const Piece& piece : pieces) {
-            first.push_back(stations);
-            stations += static_cast<std::int32_t>(piece.path.size());
-        }
         const BlockList& list = made.blocks;
         const bool has_lines = made.read.blocks.size() == list.blocks.size();
         std::vector<double> time_s;
@@ -278,13 +391,18 @@ private:
         for (std::size_t b = 0; b < list.blocks.size(); ++b) {
             const Block& block = list.blocks[b];
             now_s += block.duration_s;
+            if (b % block_every_ != 0 && b + 1 < list.blocks.size()) {
+                continue;
+            }
             time_s.push_back(now_s);
             for (std::size_t a = 0; a < list.axes.size(); ++a) {
                 axes.push_back(list.value(b, a));
             }
             eye.emplace_back(mandrel_from_eye(first_.machine, joints_at(list, b)).translation());
             const bool known = block.piece >= 0 && block.point >= 0;
-            station.push_back(known ? first[static_cast<std::size_t>(block.piece)] + block.point
+            station.push_back(known ? static_cast<std::int32_t>(
+                                          shown.shown(static_cast<std::size_t>(block.piece),
+                                                      static_cast<std::size_t>(block.point)))
                                     : -1);
             line.push_back(has_lines ? static_cast<std::uint32_t>(made.read.blocks[b].line) : 0U);
         }
@@ -393,6 +511,9 @@ private:
     const Layup& layup_;
     const Setup& first_;
     Arrays arrays_;
+    std::size_t station_every_ = 1;  // in the page
+    std::size_t block_every_ = 1;
+    std::size_t text_ = 0;  // of all programs
     int meshes_ = 0;
 };
 

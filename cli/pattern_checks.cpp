@@ -18,7 +18,7 @@ constexpr double kNoGap = 1e-6;
 
 Check check_of(const LaidClosure& closure, std::size_t circuits) {
     Check check{"closure", closure.holds(), {}, {}};
-    check.numbers = {{"limit_deg", deg_from_rad(kClosureLimit_rad)},
+    check.numbers = {{"limit_closure_deg", deg_from_rad(closure.limit_rad())},
                      {"closure_deg", deg_from_rad(closure.closure_rad)},
                      {"resolution_deg", deg_from_rad(closure.resolution_rad)},
                      {"drift_deg", deg_from_rad(closure.drift_rad)}};

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "cli/piece_program.h"
+#include "core/text_number.h"
 #include "core/units.h"
 #include "mesh/grown_tube.h"
+#include "mesh/triangle_soup.h"
 #include "winding/cover.h"
 #include "winding/elbow_plan.h"
 #include "winding/hoop_path.h"
@@ -69,16 +71,52 @@ public:
             return plan_pattern_asked_for();
         }
         Plan pattern = plan_pattern_that_covers();
-        if (!pattern.failure.empty()) {
+        std::string why = pattern.failure;
+        bool has_patterns = true;
+        if (!why.empty()) {
+            const bool round = find_revolution(setup_.mandrel).body.has_value();
             pattern = plan_elbow_that_covers();
+            why = round ? why : pattern.failure;
+            has_patterns = round || !pattern.planner.empty();
         }
-        if (pattern.failure.empty() && options_.refused(pattern.pieces).empty()) {
-            return pattern;
+        if (pattern.failure.empty()) {
+            const std::size_t refused = options_.refused(pattern.pieces).size();
+            if (refused == 0) {
+                return pattern;
+            }
+            why = std::to_string(refused) + " of " + std::to_string(pattern.pieces.size()) +
+                  " courses and turns of the pattern cannot be wound: " + options_.why_refused();
         }
-        return plan_courses();
+        pattern = {};  // its memory
+        return has_patterns ? cover_instead(why) : plan_courses();
     }
 
 private:
+    // On a body that has patterns, for want of one.
+    [[nodiscard]] Plan cover_instead(const std::string& why) const {
+        const Surface& surface = setup_.mandrel.surface;
+        const double tow_mm = setup_.job.tow.width_mm;
+        const double wall_mm2 = area_mm2({surface.position_mm, surface.face});
+        if (wall_mm2 > kMostTowSquares * tow_mm * tow_mm) {
+            Plan plan;
+            plan.planner = "pattern";
+            plan.failure = "no pattern is laid: " + why + "; a wall of " +
+                           fixed(wall_mm2 / 1e6, 3) +
+                           " m2 is too large to be covered by single "
+                           "courses of a tow of " +
+                           fixed(tow_mm, 1) + " mm instead, unless \"kind\": \"cover\" asks for it";
+            return plan;
+        }
+        if (options_.no_pattern) {
+            options_.no_pattern(why);
+        }
+        Plan courses = plan_courses();
+        if (!courses.failure.empty()) {
+            courses.failure += "; of patterns the last one tried: " + why;
+        }
+        return courses;
+    }
+
     // Without an extension to turn on, patterns are all there is.
     [[nodiscard]] Plan plan_about_poles() const {
         Plan plan;

@@ -25,12 +25,22 @@ struct LayerPlanOptions {
     const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
     /// Winds pieces and winds their program again; returns those that it does not lay as planned.
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused;
+    /// In words what was wrong with those that were refused last.
+    std::function<std::string()> why_refused;
     std::function<void(const std::string& step, double share)> progress;
+    /// Told in words why courses are planned on a body that has patterns.
+    std::function<void(const std::string& why)> no_pattern;
 };
 
+/// A cover of a body that has patterns is planned on a job's own account only where the wall is no
+/// larger than so many squares of the tow's width: ten times a tee of 0.19 m^2 with a tow of 6 mm,
+/// which takes half a minute. The time grows faster than that number.
+inline constexpr double kMostTowSquares = 5e4;
+
 /// A plan of the layer on the setup's mandrel. `auto` takes a pattern where the mandrel has one
-/// that covers kCoveredShare of it and can be wound, else courses that cover it. \pre the layer is
-/// not imported
+/// that covers kCoveredShare of it and can be wound, else courses that cover it; where the mandrel
+/// has patterns and none is taken `no_pattern` is told why, and a wall of more than
+/// kMostTowSquares is not covered. \pre the layer is not imported
 [[nodiscard]] Plan plan_layer(const Setup& setup, const LayerJob& layer,
                               const LayerPlanOptions& options);
 

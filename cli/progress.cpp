@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kRedraw_s = 0.1;
 constexpr double kClock_s = 0.5;
-constexpr double kLines_s = 10.0;
+constexpr double kLines_s = 2.0;
 
 // A rate is told from so much of a phase on; before, it is mostly noise.
 constexpr double kSettled_s = 1.0;
@@ -102,6 +102,8 @@ std::string progress_line(const ProgressState& state) {
     }
     if (const std::optional<double> left_s = time_left_s(state)) {
         line += ", " + clock_text(*left_s) + " left";
+    } else if (state.elapsed_s >= kSettled_s) {
+        line += ", for " + clock_text(state.elapsed_s);
     }
     return line + " ...";
 }
@@ -141,22 +143,36 @@ void Progress::show(const std::string& phase, double share) {
     if (quiet_ || over_) {
         return;
     }
-    const double now = now_s();
-    phases_.report(phase, share, now);
-    if (terminal_) {
-        draw();
-        if (!clock_.joinable()) {
-            clock_ = std::thread([this] { keep_drawing(); });
-        }
-    } else if (phase != named_ || now - last_s_ >= kLines_s) {
-        std::cerr << progress_line(phases_.state(now)) << '\n';
-        named_ = phase;
+    phases_.report(phase, share, now_s());
+    draw();
+    if (!clock_.joinable()) {
+        clock_ = std::thread([this] { keep_drawing(); });
+    }
+}
+
+void Progress::say(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    if (!quiet_) {
+        std::cerr << (shown_ ? kWipe : "") << line << '\n';
+        shown_ = false;
+    }
+}
+
+void Progress::draw_line(double now) {
+    const ProgressState state = phases_.state(now);
+    if (state.phase != named_ || now - last_s_ >= kLines_s) {
+        std::cerr << progress_line(state) << '\n';
+        named_ = state.phase;
         last_s_ = now;
     }
 }
 
 void Progress::draw() {
     const double now = now_s();
+    if (!terminal_) {
+        draw_line(now);
+        return;
+    }
     if (now - last_s_ < kRedraw_s) {
         return;
     }

@@ -25,7 +25,8 @@ struct ProgressState {
 /// the share, then the end of the name.
 [[nodiscard]] std::string progress_bar(const ProgressState& state, int columns);
 
-/// For a log: "library ..." where a phase begins, "library 42 %, 0:27 left ..." later.
+/// For a log: "library ..." where a phase begins, later "library 42 %, 0:27 left ...", or where
+/// nothing is known of its end "library, for 0:12 ...".
 [[nodiscard]] std::string progress_line(const ProgressState& state);
 
 /// Follows phases by the reports of a run; time is what the caller's clock says.
@@ -44,7 +45,7 @@ private:
 
 /// Tells stderr of a run, and nothing to stdout. On a terminal one line is drawn again, at most
 /// ten times a second, and wiped at the end. Elsewhere a line is written where another phase
-/// begins, and every ten seconds of a phase that reports. Thread-safe.
+/// begins, and every two seconds. Thread-safe.
 class Progress {
 public:
     explicit Progress(bool quiet);
@@ -55,12 +56,16 @@ public:
     /// A cancellation point (core/interrupt.h). \throws Interrupted
     void show(const std::string& phase, double share);
 
+    /// A line of its own, not over the bar; nothing when quiet.
+    void say(const std::string& line);
+
     /// Wipes the bar, for good.
     void clear();
 
 private:
     [[nodiscard]] static double now_s();
-    void draw();  // \pre mutex_ is held
+    void draw();                 // \pre mutex_ is held
+    void draw_line(double now);  // \pre mutex_ is held
     void keep_drawing();
 
     bool quiet_;

@@ -1,8 +1,14 @@
 #include "cli/project_files.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
+#include <vector>
+
+#include "core/error.h"
+#include "machines/strict_json.h"
 
 namespace meshwind {
 namespace {
@@ -11,6 +17,19 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 3> kFolders = {"data/meshes", "data", "machines"};
 
+std::vector<std::string> shipped_machines() {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(project_home() / "machines", ignored)) {
+        if (entry.path().extension() == ".json") {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
 }  // namespace
 
 fs::path project_home() {
@@ -18,9 +37,16 @@ fs::path project_home() {
     if (home != nullptr && *home != '\0') {
         return home;
     }
-    const fs::path installed = MESHWIND_INSTALLED_SHARE;
     std::error_code ignored;
-    return fs::is_directory(installed, ignored) ? installed : fs::path(MESHWIND_SOURCE_DIR);
+    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+    const fs::path beside =
+        (program.parent_path() / MESHWIND_SHARE_FROM_PROGRAM).lexically_normal();
+    for (const fs::path& share : {beside, fs::path(MESHWIND_INSTALLED_SHARE)}) {
+        if (fs::is_directory(share / "machines", ignored)) {
+            return share;
+        }
+    }
+    return MESHWIND_SOURCE_DIR;
 }
 
 fs::path find_input(const std::string& name) {
@@ -35,6 +61,27 @@ fs::path find_input(const std::string& name) {
         }
     }
     return name;
+}
+
+void require_machine_file(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) {
+        return;
+    }
+    const std::vector<std::string> shipped = shipped_machines();
+    const std::vector<std::string_view> known(shipped.begin(), shipped.end());
+    std::string wanted = file.filename().string();
+    if (file.extension() != ".json") {
+        wanted += ".json";
+    }
+    const auto near = nearest_word(wanted, known);
+    std::string words = "there is no such machine file";
+    words += near ? "; did you mean \"" + std::string(*near) + "\"?" : ";";
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        words += i == 0 ? " These come with meshwind: " : ", ";
+        words += known[i];
+    }
+    throw IoError("io.cannot_read", file.string(), words);
 }
 
 }  // namespace meshwind

@@ -7,13 +7,17 @@
 namespace meshwind {
 
 /// The folder that holds data/ and machines/: $MESHWIND_HOME when set (the launcher sets it), else
-/// the installed share/meshwind when it is there, else the source folder that the program was built
-/// from.
+/// share/meshwind of the folder that the program is installed in, wherever that was moved to, else
+/// the one of the configured prefix, else the source folder that the program was built from.
 [[nodiscard]] std::filesystem::path project_home();
 
 /// The file a user means by `name`: that path when it exists; else, for a bare name such as
 /// "tee.stl", the file of this name in data/meshes, data or machines of `project_home()`; else
 /// `name` as given.
 [[nodiscard]] std::filesystem::path find_input(const std::string& name);
+
+/// \throws IoError io.cannot_read where there is no such file, with the nearest of the machines
+/// that come with the program, and all of them
+void require_machine_file(const std::filesystem::path& file);
 
 }  // namespace meshwind

@@ -1,5 +1,6 @@
 #include "cli/refine_command.h"
 
+#include "cli/output_files.h"
 #include "mesh/export.h"
 #include "mesh/refine.h"
 
@@ -13,7 +14,7 @@ std::size_t write_refined(const Mandrel& mandrel, double edge_mm,
     for (Eigen::Vector3d& p : soup.points_mm) {
         p = mandrel_to_file * p;
     }
-    write_mesh_file(soup, file);
+    write_file(file, mesh_file_bytes(soup, mesh_format_of(file)));
     return soup.faces.size();
 }
 

@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "cli/part_words.h"
 #include "cli/report_checks.h"
 #include "cli/report_layers.h"
 #include "cli/report_mandrel.h"
 #include "cli/report_page.h"
 #include "cli/run_files.h"
+#include "core/counted.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "version.h"
@@ -102,6 +105,16 @@ json angles_report(const Plan& plan) {
 
 const char* word_of(BandOrder order) {
     return order == BandOrder::Leading ? "leading" : "lagging";
+}
+
+// Angles that differ by less are the same to whoever winds.
+constexpr double kSameAngle_deg = 0.05;
+
+// What the layer asks for, where another angle was laid.
+std::optional<double> other_angle_asked(const LayerJob& job, double laid_rad) {
+    const bool other =
+        job.angle_deg && std::abs(*job.angle_deg - deg_from_rad(laid_rad)) > kSameAngle_deg;
+    return other ? job.angle_deg : std::nullopt;
 }
 
 json pattern_report(const LaidPattern& laid) {
@@ -295,7 +308,7 @@ json program_report(const WoundLayer& layer, const FibreProgram& program, bool w
     return {{"file", written ? json(program.file) : json(nullptr)},
             {"dialect", layer.setup.machine.controller.dialect},
             {"path_points", made.path_points},
-            {"blocks", made.blocks.blocks.size()},
+            {"blocks", made.blocks.moves()},
             {"choice", choice_report(made.choice)},
             {"optimal_motion", made.optimal},
             {"duration_s", report_number(made.duration_s)},
@@ -338,31 +351,39 @@ void print_first_motions(std::ostream& out, const WoundLayer& layer) {
     }
 }
 
-void print_pattern(std::ostream& out, const LaidPattern& laid) {
+std::string asked_words(const LayerJob& job, double laid_rad) {
+    const std::optional<double> asked = other_angle_asked(job, laid_rad);
+    return asked ? " (" + fixed(*asked, 2) + " asked for)" : "";
+}
+
+void print_pattern(std::ostream& out, const LaidPattern& laid, const LayerJob& job) {
     const Pattern& pattern = laid.pattern;
-    out << "pattern: " << pattern.circuits << " circuits at "
-        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg, " << pattern.starts << " starts "
-        << word_of(pattern.order) << ", dwell " << fixed(deg_from_rad(pattern.dwell_rad), 2)
-        << " deg a circuit, bands " << (pattern.overlap < 0.0 ? "leave gaps of " : "overlap by ")
+    out << "pattern: " << counted(pattern.circuits, "circuit") << " at "
+        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg" << asked_words(job, laid.angle_rad)
+        << ", " << counted(pattern.starts, "start") << ' ' << word_of(pattern.order) << ", dwell "
+        << fixed(deg_from_rad(pattern.dwell_rad), 2) << " deg a circuit, bands "
+        << (pattern.overlap < 0.0 ? "leave gaps of " : "overlap by ")
         << percent(std::abs(pattern.overlap)) << '\n';
     const Interlacing& cross = laid.interlacing;
-    out << "  " << cross.crossing_rows << " rows of " << pattern.circuits << " crossings, "
-        << cross.diamonds_around << " diamonds around\n";
+    out << "  " << counted(cross.crossing_rows, "row") << " of "
+        << counted(pattern.circuits, "crossing") << ", "
+        << counted(cross.diamonds_around, "diamond") << " around\n";
     if (laid.lattice) {
         const LaidLattice& lattice = *laid.lattice;
-        out << "  lattice: " << 2 * pattern.circuits << " ribs of " << fixed(lattice.rib_mm, 2)
-            << " mm, " << fixed(lattice.rib_spacing_mm, 2) << " mm apart at the widest place, "
-            << lattice.series << " series " << fixed(lattice.offset_mm, 2) << " mm apart, "
-            << lattice.plies << " plies\n";
+        out << "  lattice: " << counted(2 * pattern.circuits, "rib") << " of "
+            << fixed(lattice.rib_mm, 2) << " mm, " << fixed(lattice.rib_spacing_mm, 2)
+            << " mm apart at the widest place, " << lattice.series << " series "
+            << fixed(lattice.offset_mm, 2) << " mm apart, "
+            << counted(lattice.plies, "ply", "plies") << '\n';
     }
 }
 
-void print_elbow(std::ostream& out, const LaidElbow& laid) {
-    out << "elbow: " << laid.lines << " lines of either hand (" << laid.needed_by_bend
-        << " for the bend) at " << fixed(deg_from_rad(laid.angle_rad), 2) << " deg outside, "
-        << fixed(deg_from_rad(laid.inner_angle_rad), 2) << " deg inside, "
-        << fixed(laid.thinnest_layers, 2) << " to " << fixed(laid.thickest_layers, 2)
-        << " layers on the bend\n";
+void print_elbow(std::ostream& out, const LaidElbow& laid, const LayerJob& job) {
+    out << "elbow: " << counted(laid.lines, "line") << " of either hand (" << laid.needed_by_bend
+        << " for the bend) at " << fixed(deg_from_rad(laid.angle_rad), 2) << " deg outside"
+        << asked_words(job, laid.angle_rad) << ", " << fixed(deg_from_rad(laid.inner_angle_rad), 2)
+        << " deg inside, " << fixed(laid.thinnest_layers, 2) << " to "
+        << fixed(laid.thickest_layers, 2) << " layers on the bend\n";
     for (const LaidElbowLeg& leg : laid.leg) {
         out << "leg: " << fixed(leg.length_mm, 1) << " mm, closed for " << fixed(leg.closed_mm, 1)
             << ", steered over " << fixed(leg.run_mm, 1) << " to "
@@ -407,6 +428,12 @@ void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
 // What a layer is and what came of it.
 void add_layer_report(json& report, const WoundLayer& layer, bool written) {
     report["plan"] = plan_report(layer.plan);
+    if (!layer.no_pattern.empty()) {
+        report["plan"]["no_pattern"] = layer.no_pattern;
+    }
+    if (layer.job.angle_deg) {
+        report["plan"]["asked_angle_deg"] = *layer.job.angle_deg;
+    }
     if (layer.import) {
         report["import"] = import_report(*layer.import);
     }
@@ -418,6 +445,24 @@ void add_layer_report(json& report, const WoundLayer& layer, bool written) {
     }
 }
 
+json eye_report(const Setup& setup) {
+    json report = {{"rule", name_of(setup.job.eye.rule)}, {"by_machine", setup.rule_of_machine}};
+    if (setup.job.eye.rule == EyeRule::Cylinder) {
+        report["radius_mm"] = setup.job.eye.radius_mm;
+    }
+    return report;
+}
+
+// What the run is about, and what of it nobody has said.
+void print_part(std::ostream& out, const WindResult& result) {
+    const Setup& setup = result.layers.front().setup;
+    out << setup.mandrel.file << ": " << size_words(setup.mandrel) << '\n';
+    if (setup.rule_of_machine) {
+        out << "eye: " << fixed(setup.job.eye.radius_mm, 3) << " mm from the spindle axis, where "
+            << setup.machine.name << " keeps it (eye rule \"cylinder\")\n";
+    }
+}
+
 void print_layer(std::ostream& out, const WoundLayer& layer) {
     const Plan& plan = layer.plan;
     if (!plan.failure.empty()) {
@@ -426,23 +471,27 @@ void print_layer(std::ostream& out, const WoundLayer& layer) {
     std::size_t blocks = 0;
     double least_s = 0.0;
     for (const FibreProgram& program : layer.programs) {
-        blocks += program.made.blocks.blocks.size();
+        blocks += program.made.blocks.moves();
         least_s += program.made.least_s;
     }
-    out << layer.setup.mandrel.file << " on " << layer.setup.machine.name << ": " << plan.courses
-        << " courses, " << fixed(plan.fibre_length_mm / 1000.0, 1) << " m of fibre, " << blocks
-        << " blocks, " << fixed(layer.duration_s() / 60.0, 1) << " min ("
-        << fixed(least_s / 60.0, 1) << " at the fibre's full speed)\n";
+    out << layer.setup.mandrel.file << " on " << layer.setup.machine.name << ": "
+        << counted(plan.courses, "course") << ", " << fixed(plan.fibre_length_mm / 1000.0, 1)
+        << " m of fibre, " << counted(blocks, "block") << ", "
+        << fixed(layer.duration_s() / 60.0, 1) << " min (" << fixed(least_s / 60.0, 1)
+        << " at the fibre's full speed)\n";
     print_first_motions(out, layer);
+    if (!layer.no_pattern.empty()) {
+        out << "no pattern is laid: " << layer.no_pattern << '\n';
+    }
     out << "covered " << percent(plan.coverage.fraction) << " of the wall"
         << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
         << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
         << plan.coverage.max_layers << '\n';
     if (plan.pattern) {
-        print_pattern(out, *plan.pattern);
+        print_pattern(out, *plan.pattern, layer.job);
     }
     if (plan.elbow) {
-        print_elbow(out, *plan.elbow);
+        print_elbow(out, *plan.elbow, layer.job);
     }
     if (layer.import) {
         const ImportFit& fit = *layer.import;
@@ -465,6 +514,8 @@ std::string report_json(const WindResult& result) {
                    {"mandrel", mandrel_report(first.setup.mandrel)},
                    {"checks", checks_report(result.checks)},
                    {"ok", result.passed()},
+                   {"eye", eye_report(first.setup)},
+                   {"remarks", result.remarks},
                    {"timing_s", timing}};
     if (result.layers.size() == 1) {
         add_layer_report(report, first, result.program_written);
@@ -474,11 +525,12 @@ std::string report_json(const WindResult& result) {
             add_layer_report(report["layers"][i], result.layers[i], result.program_written);
         }
     }
-    return report.dump(1) + "\n";
+    return json_text(report);
 }
 
 void print_summary(std::ostream& out, const WindResult& result,
                    const std::filesystem::path& folder) {
+    print_part(out, result);
     for (std::size_t i = 0; i < result.layers.size(); ++i) {
         out << (result.layers.size() > 1 ? "layer " + std::to_string(i + 1) + ": " : "");
         print_layer(out, result.layers[i]);

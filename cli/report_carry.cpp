@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/report_checks.h"
+#include "cli/run_files.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "version.h"
@@ -200,12 +202,34 @@ std::string carry_json(const CarryOutcome& outcome) {
           {"time_set_by_s", binding}}},
         {"checks", checks_report(outcome.checks)},
         {"program",
-         {{"file", outcome.written ? json(outcome.request.name + ".src") : json(nullptr)},
+         {{"file", outcome.written ? json(outcome.request.name + kKrlExtension) : json(nullptr)},
+          {"back_file", outcome.written && outcome.winds_back()
+                            ? json(carried_back(outcome.request.name) + kKrlExtension)
+                            : json(nullptr)},
           {"dialect", kCarryDialect},
           {"moves", outcome.program.moves.size()},
           {"duration_s", report_number(outcome.total_s())}}},
         {"ok", outcome.passed()}};
-    return report.dump(1) + "\n";
+    return json_text(report);
+}
+
+std::vector<std::string> files_of_carry(const std::filesystem::path& report) {
+    std::ifstream stream(report, std::ios::binary);
+    const json read = json::parse(stream, nullptr, false);
+    if (!read.is_object() || !read.contains("program") || !read["program"].is_object() ||
+        read["program"].value("dialect", json()) != kCarryDialect) {
+        return {};
+    }
+    std::vector<std::string> names = {"rings.csv", "fibre.csv"};
+    const json file = read["program"].value("file", json());
+    if (file.is_string()) {
+        const std::filesystem::path name = file.get<std::string>();
+        if (name.extension() == kKrlExtension && name.filename() == name) {
+            names.push_back(name.string());
+            names.push_back(carried_back(name.stem().string()) + kKrlExtension);
+        }
+    }
+    return names;
 }
 
 void print_carry(std::ostream& out, const CarryOutcome& outcome) {
@@ -224,10 +248,10 @@ void print_carry(std::ostream& out, const CarryOutcome& outcome) {
     }
     print_checks(out, outcome.checks);
     std::string files =
-        outcome.written ? "written: " + outcome.request.name + ".src" : "no program";
+        outcome.written ? "written: " + outcome.request.name + kKrlExtension : "no program";
     if (outcome.winding) {
-        if (outcome.written && !outcome.request.winding.at_once) {
-            files += ", " + outcome.request.name + "_back.src";
+        if (outcome.written && outcome.winds_back()) {
+            files += ", " + carried_back(outcome.request.name) + kKrlExtension;
         }
         files += ", rings.csv, fibre.csv";
     }

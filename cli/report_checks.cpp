@@ -21,6 +21,11 @@ std::string meaning_of(const std::string& check) {
         {"thickness", "even layers where the winding is regular"},
         {"closure", "the pattern's last circuit ends where its first began"},
         {"import", "how far the landing points were from the mandrel"},
+        {"tie_on", "the fibre is tied on where it is laid from"},
+        {"approach", "rapid moves to the start within the axes and clear of the mandrel"},
+        {"path_mode", "the controller passes corners as the machine file asks"},
+        {"roller", "the fibre leaves the roller at a right angle"},
+        {"code", "the program as it was written"},
         {"eye", "a free length that the rule allows everywhere"},
         {"rounding", "the program read back is the motion that was planned"},
         {"laydown", "the fibre comes to lie where it was planned"},
@@ -70,7 +75,8 @@ json checks_report(const std::vector<Check>& checks) {
     for (const Check& check : checks) {
         json entry = {{"ok", check.ok}};
         for (const auto& [name, value] : check.numbers) {
-            const bool whole = value == std::floor(value) && name.find("_mm") == std::string::npos;
+            const bool whole = std::isfinite(value) && value == std::floor(value) &&
+                               name.find("_mm") == std::string::npos;
             entry[name] =
                 whole ? json(static_cast<std::int64_t>(value)) : json(report_number(value));
         }
@@ -86,7 +92,7 @@ json checks_report(const std::vector<Check>& checks) {
 }
 
 json verification_report(const Verification& verification, const BlockList& program) {
-    json report = {{"blocks", program.blocks.size()},
+    json report = {{"blocks", program.moves()},
                    {"fibre_length_mm", report_number(verification.fibre_length_mm)},
                    {"duration_s", report_number(verification.duration_s)},
                    {"free_length_mm",
@@ -107,7 +113,11 @@ void print_checks(std::ostream& out, const std::vector<Check>& checks) {
             << meaning_of(check.name) << (check.numbers.empty() ? "" : ";");
         for (const auto& [name, value] : check.numbers) {
             std::string text;
-            append_shortest(text, std::round(value * 1e4) / 1e4);
+            if (std::isfinite(value)) {
+                append_shortest(text, std::round(value * 1e4) / 1e4);
+            } else {
+                text = "none";  // of nothing that was laid there is no least and no most
+            }
             out << "  " << name << ' ' << text;
         }
         out << '\n';
@@ -115,6 +125,10 @@ void print_checks(std::ostream& out, const std::vector<Check>& checks) {
             out << "          " << check.words << '\n';
         }
     }
+}
+
+std::string json_text(const json& value) {
+    return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace meshwind

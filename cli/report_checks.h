@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -20,6 +21,10 @@ namespace meshwind {
 
 /// A line for each check, a second one with the words of a failed one.
 void print_checks(std::ostream& out, const std::vector<Check>& checks);
+
+/// Indented by one, with a line break at the end. Bytes of names that are no UTF-8 become U+FFFD,
+/// as JSON has no other place for them.
+[[nodiscard]] std::string json_text(const nlohmann::json& json);
 
 /// Numbers of a report: finer than any tolerance, free of rounding noise in the last digits.
 [[nodiscard]] double report_number(double value);

@@ -169,7 +169,7 @@ std::string design_json(const DesignOutcome& outcome) {
     for (const VesselAngle& row : outcome.rows) {
         report["angles"].push_back(row_json(outcome, row));
     }
-    return report.dump(1) + '\n';
+    return json_text(report);
 }
 
 void print_design(std::ostream& out, const DesignOutcome& outcome) {

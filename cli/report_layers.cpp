@@ -134,7 +134,7 @@ void add_laminate_report(json& report, const WindResult& result) {
         transitions += layer.plan.pieces.size() - static_cast<std::size_t>(layer.plan.courses);
         fibres += layer.plan.fibres - (layer.plan.goes_on ? 1 : 0);
         for (const FibreProgram& program : layer.programs) {
-            blocks += program.made.blocks.blocks.size();
+            blocks += program.made.blocks.moves();
             files.push_back(program.file);
         }
         json row = {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/report_checks.h"
 #include "cli/study_advice.h"
 #include "cli/study_files.h"
 #include "version.h"
@@ -62,7 +63,7 @@ std::string study_json(const StudyOutcome& outcome) {
         json["advice"].push_back(
             {{"claim", advice.claim}, {"holds", advice.holds}, {"because", advice.because}});
     }
-    return json.dump(1) + '\n';
+    return json_text(json);
 }
 
 }  // namespace meshwind

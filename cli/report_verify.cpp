@@ -20,14 +20,14 @@ std::string verify_json(const VerifyOutcome& outcome) {
         {"checks", checks_report(outcome.checks)},
         {"ok", outcome.passed()},
         {"timing_s", {{"import", outcome.reading_s}, {"verify", outcome.verifying_s}}}};
-    return report.dump(1) + "\n";
+    return json_text(report);
 }
 
 void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
     const Verification& verification = outcome.verification;
     out << outcome.program << " on " << outcome.setup.machine.name << " lays "
         << fixed(verification.fibre_length_mm / 1000.0, 1) << " m of fibre on "
-        << outcome.setup.mandrel.file << " in " << outcome.blocks.blocks.size() << " blocks, "
+        << outcome.setup.mandrel.file << " in " << outcome.blocks.moves() << " blocks, "
         << fixed(verification.duration_s / 60.0, 1) << " min\n";
     print_checks(out, outcome.checks);
     if (verification.first_wrong_block) {

@@ -1,8 +1,36 @@
 #include "cli/run_files.h"
 
+#include <algorithm>
 #include <regex>
+#include <system_error>
+
+#include "cli/disk_file.h"
+#include "cli/report_carry.h"
+#include "postproc/dialect.h"
+#include "postproc/krl.h"
 
 namespace meshwind {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string>& program_extensions() {
+    static const std::vector<std::string> kAll = [] {
+        std::vector<std::string> all{kKrlExtension};
+        for (const std::string& name : dialect_names()) {
+            all.push_back(make_dialect(name)->extension());
+        }
+        return all;
+    }();
+    return kAll;
+}
+
+bool has_program_extension(const fs::path& name) {
+    const std::vector<std::string>& all = program_extensions();
+    return std::find(all.begin(), all.end(), name.extension().string()) != all.end();
+}
+
+}  // namespace
 
 std::string fibre_suffix(std::size_t fibre) {
     return fibre == 0 ? "" : "-" + std::to_string(fibre + 1);
@@ -12,24 +40,60 @@ std::string layer_suffix(std::size_t layer) {
     return layer == 0 ? "" : "-layer-" + std::to_string(layer + 1);
 }
 
-std::string suffix_of(const std::filesystem::path& program) {
+std::string suffix_of(const fs::path& program) {
     static const std::regex kSuffix("(-layer-[0-9]+)?(-[0-9]+)?$");
     const std::string stem = program.stem().string();
     std::smatch found;
     return std::regex_search(stem, found, kSuffix) ? found.str() : "";
 }
 
-bool is_run_file(const std::filesystem::path& name, std::string_view program_extension) {
+FileRole role_of(const fs::path& name) {
+    if (name == "report.json" || name == "report.html" || name == "verify.json") {
+        return FileRole::Report;
+    }
+    return has_program_extension(name) ? FileRole::Program : FileRole::Table;
+}
+
+bool is_run_file(const fs::path& name) {
     static const std::regex kTable("(path|motion)(-layer-[0-9]+)?(-[0-9]+)?\\.csv");
     static const std::regex kFibre("fibre(-layer-[0-9]+)?(-[0-9]+)?\\.(obj|step)");
     static const std::regex kProgram("program(-layer-[0-9]+)?(-[0-9]+)?");
     static const std::regex kMandrel("mandrel-layer-[0-9]+\\.obj");
     const std::string text = name.filename().string();
     return text == "layup.vtu" || text == "layup.json" || text == "report.html" ||
-           std::regex_match(text, kTable) || std::regex_match(text, kFibre) ||
-           std::regex_match(text, kMandrel) ||
-           (name.extension() == program_extension &&
-            std::regex_match(name.stem().string(), kProgram));
+           text == "report.json" || std::regex_match(text, kTable) ||
+           std::regex_match(text, kFibre) || std::regex_match(text, kMandrel) ||
+           (has_program_extension(name) && std::regex_match(name.stem().string(), kProgram));
+}
+
+std::string carried_back(const std::string& program) {
+    return program + "_back";
+}
+
+std::vector<std::string> files_of_earlier_run(const fs::path& folder) {
+    std::vector<std::string> names;
+    std::error_code error;
+    const auto add_if_there = [&](const std::string& name) {
+        if (fs::is_regular_file(folder / name, error)) {
+            names.push_back(name);
+        }
+    };
+    const std::vector<std::string> carried = files_of_carry(folder / "report.json");
+    std::for_each(carried.begin(), carried.end(), add_if_there);
+    add_if_there("verify.json");
+    add_if_there("laid.csv");
+    fs::directory_iterator entries(folder, error);
+    if (error) {
+        throw_unwritable(folder, error.message());
+    }
+    for (const fs::directory_entry& entry : entries) {
+        if (is_run_file(entry.path()) && entry.is_regular_file(error)) {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
 }
 
 }  // namespace meshwind

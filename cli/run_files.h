@@ -1,12 +1,12 @@
-/// Names of what belongs to one of several layers and fibres: "program.ngc" and "path.csv" for the
-/// first of both, "program-2.ngc" for the second fibre, "program-layer-3-2.ngc" for the second
-/// fibre of the third layer.
+/// Names of what a run writes. "program.ngc" and "path.csv" belong to the first layer and fibre,
+/// "program-2.ngc" to the second fibre, "program-layer-3-2.ngc" to the second fibre of the third
+/// layer.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace meshwind {
 
@@ -19,8 +19,26 @@ namespace meshwind {
 /// Layer and fibre in the name of a program; empty where there is none.
 [[nodiscard]] std::string suffix_of(const std::filesystem::path& program);
 
-/// Whether a run writes files of this name. \param program_extension with the point
-[[nodiscard]] bool is_run_file(const std::filesystem::path& name,
-                               std::string_view program_extension);
+/// Name of the program that winds on the way back, for that of `carry`'s way forth; both without
+/// extension.
+[[nodiscard]] std::string carried_back(const std::string& program);
+
+/// What a file of an output folder is to the others.
+enum class FileRole {
+    Report,   ///< says what the others are worth
+    Program,  ///< what a machine may run, of any controller language
+    Table,    ///< all else
+};
+
+[[nodiscard]] FileRole role_of(const std::filesystem::path& name);
+
+/// Whether the main job writes files of this name, with a machine of whatever controller.
+[[nodiscard]] bool is_run_file(const std::filesystem::path& name);
+
+/// Files in an output folder that an earlier run has left there, be it of the main job, `post`,
+/// `carry` or `verify`: those with names that only runs give, and the programs that the report
+/// there names. Sorted; without folder. \throws IoError output.unwritable where the folder cannot
+/// be listed
+[[nodiscard]] std::vector<std::string> files_of_earlier_run(const std::filesystem::path& folder);
 
 }  // namespace meshwind

@@ -1,9 +1,12 @@
 #include "cli/setup.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "cli/carry_command.h"
+#include "cli/project_files.h"
 #include "core/error.h"
 #include "core/text_number.h"
 #include "core/units.h"
@@ -27,6 +30,9 @@ constexpr double kTableReach_mm = 60.0;
 
 // Reports tell clearances up to so much more than is kept; to measure larger ones takes time.
 constexpr double kToldClearance_mm = 20.0;
+
+// A distance is written with so many digits at least.
+constexpr double kSameDistance_mm = 1e-3;
 
 MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     MandrelOptions options;
@@ -96,6 +102,11 @@ void check_free_length(const FreeFibreRule& free, double length_mm, const std::s
     }
 }
 
+// With the other rules the free length follows from where the eye is.
+bool reads_free_length(EyeRule rule) {
+    return rule == EyeRule::Adaptive || rule == EyeRule::EqualFreeLength;
+}
+
 CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     CollisionRule rule;
     rule.clearance_mm = setup.job.tolerance.clearance_mm;
@@ -105,7 +116,10 @@ CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     free.max_mm = setup.machine.fibre.max_free_length_mm;
     free.preferred_mm = setup.job.eye.free_length_mm;
     const std::string eye = job_file.string() + ": /eye/";
-    check_free_length(free, free.preferred_mm, eye + "free_length");
+    if (reads_free_length(setup.job.eye.rule)) {
+        check_free_length(free, free.preferred_mm, eye + "free_length");
+    }
+    free.preferred_mm = std::clamp(free.preferred_mm, free.min_mm, free.max_mm);
     const std::vector<LengthPiece>& lengths = setup.job.eye.lengths;
     for (std::size_t i = 0; i < lengths.size(); ++i) {
         check_free_length(free, lengths[i].free_length_mm,
@@ -139,6 +153,25 @@ std::unique_ptr<RayQuery> obstacles_of(const Machine& machine, const Mandrel& ma
     return std::make_unique<RayQuery>(parts, kTableReach_mm);
 }
 
+// An eye that a carriage alone moves keeps its distance from the spindle axis: that is the rule,
+// unless the job names another one, which is refused later.
+bool take_rule_of_machine(const Machine& machine, EyeLaw& eye) {
+    const double kept_mm = machine_class(machine).eye_distance_mm;
+    if (kept_mm == 0.0) {
+        return false;
+    }
+    if (eye.rule == EyeRule::Cylinder && std::abs(eye.radius_mm - kept_mm) <= kSameDistance_mm) {
+        eye.radius_mm = kept_mm;
+        return false;
+    }
+    if (eye.rule != EyeRule::Adaptive) {
+        return false;
+    }
+    eye.rule = EyeRule::Cylinder;
+    eye.radius_mm = kept_mm;
+    return true;
+}
+
 // What follows from machine, job and mandrel.
 void complete(Setup& setup, const fs::path& job_file) {
     setup.rule = collision_rule(setup, job_file);
@@ -150,15 +183,36 @@ void complete(Setup& setup, const fs::path& job_file) {
 
 }  // namespace
 
+std::unique_ptr<Dialect> dialect_of(const Machine& machine, const fs::path& file) {
+    const std::string& name = machine.controller.dialect;
+    const std::string place = file.string() + ": /controller/dialect";
+    if (name == kCarryDialect) {
+        throw InputError("dialect.unknown", place,
+                         "is \"" + name +
+                             "\", which meshwind carry writes; for this command choose a machine "
+                             "with another");
+    }
+    try {
+        return make_dialect(name);
+    } catch (const InputError& error) {
+        throw InputError(error.code(), place, error.what());
+    }
+}
+
 Setup read_setup(const SetupRequest& request) {
     Setup setup;
+    require_machine_file(request.machine);
     setup.machine = read_machine(request.machine.string());
     if (!request.job.empty()) {
         setup.job = read_job(request.job);
     }
-    setup.dialect = make_dialect(setup.machine.controller.dialect);
+    setup.rule_of_machine = take_rule_of_machine(setup.machine, setup.job.eye);
+    setup.dialect = dialect_of(setup.machine, request.machine);
     setup.envelope = head_envelope(setup.machine, read_triangles_of);
     setup.mandrel = load_mandrel(request.mandrel, mandrel_options(setup.job, request.unit_mm));
+    if (request.look_ahead) {
+        request.look_ahead(setup);
+    }
     complete(setup, request.job);
     return setup;
 }
@@ -167,6 +221,7 @@ Setup setup_for(const Setup& setup, Mandrel mandrel) {
     Setup next;
     next.machine = setup.machine;
     next.job = setup.job;
+    next.rule_of_machine = setup.rule_of_machine;
     next.dialect = make_dialect(next.machine.controller.dialect);
     next.envelope = setup.envelope;
     next.mandrel = std::move(mandrel);
@@ -192,17 +247,17 @@ bool wants_least_time(const Setup& setup) {
            machine_class(setup.machine).free_turn;
 }
 
-Verification verify_program(const Setup& setup, const BlockList& program,
-                            const PlannedFibre& plan) {
+Verification verify_program(const Setup& setup, const BlockList& program, const PlannedFibre& plan,
+                            const std::function<void(double share)>& progress) {
     const Job& job = setup.job;
     const VerifyRules rules{.collision = setup.rule,
                             .friction = job.tow.friction,
                             .bridging_tolerance_mm = job.tow.bridging_tolerance_mm,
                             .tow_width_mm = job.tow.width_mm,
-                            .corner_mm = setup.dialect->corner_tolerance_mm(setup.machine),
+                            .path_mode = setup.dialect->path_mode(setup.machine),
                             .laydown = {.deviation_mm = job.tolerance.laydown_mm,
                                         .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},
-                            .simulation = {}};
+                            .simulation = {.progress = progress}};
     return verify({.program = program,
                    .machine = setup.machine,
                    .envelope = setup.envelope,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -17,16 +18,22 @@
 
 namespace meshwind {
 
+struct Setup;
+
 struct SetupRequest {
     std::filesystem::path mandrel;
     std::filesystem::path machine;
     std::filesystem::path job;  ///< empty: the defaults
     double unit_mm = 0.0;       ///< overrides the job's units where > 0
+    /// Called before what takes longer than a second on large parts: rule, obstacles and wall are
+    /// not there yet. May refuse.
+    std::function<void(const Setup&)> look_ahead{};
 };
 
 struct Setup {
     Machine machine;
     Job job;
+    bool rule_of_machine = false;  ///< the job's eye rule is what the machine keeps to by itself
     Mandrel mandrel;
     std::unique_ptr<Dialect> dialect;
     HeadEnvelope envelope;
@@ -37,6 +44,10 @@ struct Setup {
 
 /// \throws InputError, IoError for input that cannot be used; machine and job are read first
 [[nodiscard]] Setup read_setup(const SetupRequest& request);
+
+/// The dialect that a machine file names. \throws InputError dialect.unknown with its place
+[[nodiscard]] std::unique_ptr<Dialect> dialect_of(const Machine& machine,
+                                                  const std::filesystem::path& file);
 
 /// The same machine and job for another mandrel: what the layers before have made of the first.
 [[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel);
@@ -53,8 +64,10 @@ void put_pins(Setup& setup, std::span<const PinRing> rings);
 inline constexpr double kBetweenBlocks_mm = 0.5;
 
 /// Winds a program again and judges it by the job's tolerances. \param program as read from its
-/// text, with the place of its tie-on \param plan to compare with; may be empty
+/// text, with the place of its tie-on \param plan to compare with; may be empty \param progress is
+/// told the share that is laid
 [[nodiscard]] Verification verify_program(const Setup& setup, const BlockList& program,
-                                          const PlannedFibre& plan);
+                                          const PlannedFibre& plan,
+                                          const std::function<void(double share)>& progress = {});
 
 }  // namespace meshwind

@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "cli/before_planning.h"
+#include "cli/check_controller.h"
 #include "cli/digest.h"
 #include "cli/layup_files.h"
 #include "cli/output_files.h"
@@ -143,20 +145,37 @@ private:
     void read() {
         tell("import", 0.0);
         WoundLayer& first = result_.layers.emplace_back();
-        first.setup =
-            read_setup({request_.mandrel, request_.machine, request_.job, request_.unit_mm});
+        first.setup = read_setup({.mandrel = request_.mandrel,
+                                  .machine = request_.machine,
+                                  .job = request_.job,
+                                  .unit_mm = request_.unit_mm,
+                                  .look_ahead = [this](const Setup& setup) { look_ahead(setup); }});
         const Setup& setup = first.setup;
-        setup.dialect->check(setup.machine);
-        refuse_what_is_not_offered(setup.job, request_.job, !request_.import);
-        const EyeLaw& eye = setup.job.eye;
-        require_main_job(setup.machine, eye.rule == EyeRule::Cylinder ? eye.radius_mm : 0.0);
-        refuse_turns_not_free(setup.job, request_.job, setup.machine);
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         header_.version = kVersion;
         header_.mandrel = setup.mandrel.file;
         header_.mandrel_digest = "sha256 " + sha256_hex(read_text_file(request_.mandrel));
         header_.job_digest = "sha256 " + sha256_hex(job_text(setup.job));
         watch_.stage("import");
+    }
+
+    // What no plan can change is refused before there is one.
+    void look_ahead(const Setup& setup) {
+        check_controller(setup.machine, request_.machine);
+        refuse_what_is_not_offered(setup.job, request_.job, !request_.import);
+        const EyeLaw& eye = setup.job.eye;
+        require_main_job(setup.machine, eye.rule == EyeRule::Cylinder ? eye.radius_mm : 0.0);
+        refuse_turns_not_free(setup.job, request_.job, setup.machine);
+        if (request_.import) {
+            return;
+        }
+        const PlannedTask task{setup.machine, setup.envelope,   setup.mandrel,
+                               setup.job,     request_.machine, request_.job};
+        require_can_be_wound(task);
+        result_.remarks = remarks_before_planning(task);
+        if (request_.remark) {
+            std::for_each(result_.remarks.begin(), result_.remarks.end(), request_.remark);
+        }
     }
 
     // Winds the last layer that is there; adds the next one where there is one and this one can be
@@ -185,6 +204,7 @@ private:
         options.progress = [&](const std::string& step, double share) {
             tell(jobs.size() > 1 ? layer_words(number) + ", " + step : step, share);
         };
+        options.remark = request_.remark;
         options.stage_done = [this](const char* stage) { watch_.stage(stage); };
         wind_layer(layer, options);
         for (Check check : layer.checks) {
@@ -240,13 +260,9 @@ private:
     }
 
     void write() {
+        tell("write", 0.0);
         OutputFolder& folder = *folder_;
-        for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
-            if (entry.is_regular_file() &&
-                is_run_file(entry.path(), result_.layers.front().setup.dialect->extension())) {
-                folder.withdraw(entry.path().filename().string());
-            }
-        }
+        folder.withdraw_earlier_run();
         std::optional<Layup> layup;
         if (result_.planned()) {
             for (std::size_t i = 0; i < result_.layers.size(); ++i) {
@@ -272,7 +288,9 @@ private:
         for (std::size_t fibre = 0; fibre < fibres.size(); ++fibre) {
             const FibreProgram& program = layer.programs[fibre];
             const std::string suffix = layer_suffix(number) + fibre_suffix(fibre);
-            folder_->add("path" + suffix + ".csv", path_csv(fibres[fibre], program.made.eyes.path));
+            folder_->add("path" + suffix + ".csv", [&](const auto& write) {
+                write_path_csv(fibres[fibre], program.made.eyes.path, write);
+            });
             folder_->add("motion" + suffix + ".csv",
                          motion_csv(layer.setup.machine, program.made.blocks));
             if (result_.program_written) {

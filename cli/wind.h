@@ -27,6 +27,8 @@ struct WindRequest {
     int effort = 1;      ///< how long the plan is improved, as a multiple
     bool force = false;  ///< write the program although a check failed
     std::function<void(const std::string& step, double share)> progress;
+    /// Told at once what whoever waits should know, a line each.
+    std::function<void(const std::string& words)> remark{};
 };
 
 /// Everything that was found, for the report.
@@ -34,6 +36,7 @@ struct WindResult {
     std::vector<WoundLayer> layers;  ///< >= 1, in winding order, as far as they could be wound
     /// Of all layers: those of a further one end in its number, "slip-layer-2".
     std::vector<Check> checks;
+    std::vector<std::string> remarks;  ///< what may be meant otherwise, one line each
     std::map<std::string, double> timing_s;
     bool program_written = false;
 

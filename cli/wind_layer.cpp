@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "cli/code_digest.h"
 #include "cli/pattern_checks.h"
 #include "cli/plan_layer.h"
 #include "cli/run_files.h"
@@ -58,6 +59,13 @@ private:
             plan.refused = [this](std::span<const Piece> pieces) {
                 return wind_whole(pieces, false);
             };
+            plan.why_refused = [this] { return why_refused(); };
+            plan.no_pattern = [this](const std::string& why) {
+                layer_.no_pattern = why;
+                if (options_.remark) {
+                    options_.remark("no pattern is laid: " + why + "; courses are planned instead");
+                }
+            };
             plan.progress = [this](const std::string& step, double share) { tell(step, share); };
             layer_.plan = plan_layer(setup_, layer_.job, plan);
         }
@@ -91,6 +99,24 @@ private:
         return refused;
     }
 
+    // The commonest reason, and what the first check that failed says.
+    [[nodiscard]] std::string why_refused() const {
+        std::map<Rejection, int> count;
+        std::string words;
+        for (const FibreProgram& program : layer_.programs) {
+            for (const auto& [piece, reason] : program.made.refused) {
+                ++count[reason];
+            }
+            for (const Check& check : program.made.verification.checks) {
+                words = words.empty() && !check.ok ? " (" + check.words + ")" : words;
+            }
+        }
+        const auto most =
+            std::max_element(count.begin(), count.end(),
+                             [](const auto& a, const auto& b) { return a.second < b.second; });
+        return most == count.end() ? words : name_of(most->first) + words;
+    }
+
     [[nodiscard]] std::string program_file(std::size_t fibre) const {
         return "program" + options_.suffix + fibre_suffix(fibre) + setup_.dialect->extension();
     }
@@ -109,6 +135,9 @@ private:
             options.spindle_rad = joints_at(blocks, blocks.blocks.size() - 1)[spindle()];
         }
         program.made = program_of(setup_, pieces, options);
+        if (!program.made.read.blocks.empty()) {
+            program.made.duration_s = program.made.verification.duration_s;  // F has six digits
+        }
     }
 
     // With the fibre of the layer before.
@@ -144,7 +173,20 @@ private:
         check_closure();
         for (FibreProgram& program : layer_.programs) {
             program.text = text_of(program, program.made);  // with what failed, for --force
+            forget_laid(program.made);
         }
+    }
+
+    // What was laid has been judged; of a long fibre it takes as much memory as the plan.
+    static void forget_laid(PieceProgram& made) {
+        LaidPath& laid = made.verification.laid;
+        LaidPath kept;
+        kept.peeled_mm = laid.peeled_mm;
+        kept.peeled_block = laid.peeled_block;
+        kept.failure = std::move(laid.failure);
+        kept.failed_block = laid.failed_block;
+        laid = std::move(kept);
+        made.exact = {};
     }
 
     void check_closure() {
@@ -256,7 +298,7 @@ private:
 
     [[nodiscard]] static Check rounding_check(const PieceProgram& made) {
         Check check{"rounding", made.read.nano == made.blocks.nano, {}, {}};
-        check.numbers["blocks"] = static_cast<double>(made.read.blocks.size());
+        check.numbers["blocks"] = static_cast<double>(made.read.moves());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";
         }
@@ -275,7 +317,7 @@ private:
                 header.notes.push_back("CHECK FAILED, written by force: " + check.name);
             }
         }
-        return setup_.dialect->write(setup_.machine, made.blocks, made.layout, header);
+        return write_with_digest(*setup_.dialect, setup_.machine, made.blocks, made.layout, header);
     }
 
     WoundLayer& layer_;

@@ -29,6 +29,7 @@ struct WoundLayer {
     LayerJob job;
     Setup setup;  ///< its mandrel is what the layers before have left
     Plan plan;
+    std::string no_pattern;  ///< in words why courses cover a body that has patterns; else empty
     std::optional<ImportFit> import;     ///< of landing points
     std::vector<FibreProgram> programs;  ///< one for each fibre of the plan
     std::vector<Check> checks;  ///< of the plan, then of each program: those of a further fibre end
@@ -51,7 +52,8 @@ struct WindLayerOptions {
     std::uint64_t seed = 1;
     int effort = 1;
     std::function<void(const std::string& step, double share)> progress;
-    std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
+    std::function<void(const std::string& words)> remark;  ///< as in WindRequest
+    std::function<void(const char* stage)> stage_done;     ///< "plan", "post", "verify"
 };
 
 /// Plans the layer on its setup's mandrel, makes the programs and winds them again. What cannot be

@@ -5,10 +5,35 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_scheduler_observer.h>
 
 #include "core/interrupt.h"
 
 namespace meshwind {
+namespace {
+
+class WorkerStart : public tbb::task_scheduler_observer {
+public:
+    explicit WorkerStart(void (*enter)()) : enter_(enter) { observe(true); }
+
+    void on_scheduler_entry(bool worker) override {
+        thread_local bool entered = false;
+        if (worker && !entered) {
+            entered = true;
+            enter_();
+        }
+    }
+
+private:
+    void (*enter_)();
+};
+
+}  // namespace
+
+void on_worker_start(void (*enter)()) {
+    static auto* const kOnly = new WorkerStart(enter);  // as long as the workers
+    (void)kOnly;
+}
 
 void set_thread_count(int threads) {
     static std::unique_ptr<tbb::global_control> control;

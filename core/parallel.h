@@ -10,6 +10,10 @@ namespace meshwind {
 /// \pre no parallel loop is running
 void set_thread_count(int threads);
 
+/// Has every further worker thread of parallel loops call `enter` when it begins. Once in a
+/// process.
+void on_worker_start(void (*enter)());
+
 /// Calls `body(begin, end)` on consecutive chunks of [0, count), each at most `chunk` long.
 /// The chunks depend on `count` and `chunk` alone; a body that writes only to its own indices gives
 /// the same bytes for any number of threads. Exceptions of the bodies reach the caller. Each chunk

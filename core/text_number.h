@@ -15,6 +15,16 @@ void append_shortest(std::string& text, double value);
 /// `append_fixed` on an empty string.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
+/// A value and the limit that it breaks, as texts that differ.
+struct FixedPair {
+    std::string value;
+    std::string limit;
+};
+
+/// Both with `decimals` digits after the point, or with as many more as show which is larger; with
+/// 17 digits in all they are shown as they are. \pre both are finite
+[[nodiscard]] FixedPair fixed_apart(double value, double limit, int decimals);
+
 /// "54.74 deg". \pre angle_rad is finite
 [[nodiscard]] std::string degrees(double angle_rad, int decimals = 2);
 

@@ -37,6 +37,10 @@ constexpr double kShortStep = 0.15;
 // Faces across so many edges from a path get wider fits too, as paths on them go elsewhere.
 constexpr int kMarginFaces = 2;
 
+// Steps of a path: three times what one of kMostEdges takes by short steps. Over triangles that are
+// far smaller than the mean one a path ends after these, and is as long as it came.
+constexpr int kMostSteps = 10'000;
+
 struct Start {
     SurfacePoint at;
     Vector3d direction;
@@ -146,6 +150,9 @@ struct Sum {
 
 PathAccuracy estimate_path_accuracy(const Surface& surface) {
     PathAccuracy accuracy;
+    if (surface.face.empty()) {
+        return accuracy;
+    }
     Eigen::AlignedBox3d box;
     for (const Vector3d& p : surface.position_mm) {
         box.extend(p);
@@ -160,7 +167,9 @@ PathAccuracy estimate_path_accuracy(const Surface& surface) {
             }
         });
     };
-    const TraceOptions patches{.max_length_mm = accuracy.length_mm, .method = TraceMethod::Patches};
+    const TraceOptions patches{.max_length_mm = accuracy.length_mm,
+                               .max_faces = kMostSteps,
+                               .method = TraceMethod::Patches};
     for_each_path([&](std::size_t i) {
         best[i] = trace(surface, starts[i].at, starts[i].direction, {}, patches);
     });
@@ -184,7 +193,7 @@ PathAccuracy estimate_path_accuracy(const Surface& surface) {
         });
         return std::accumulate(sums.begin(), sums.end(), Sum{});
     };
-    const Sum walk = drifts(surface, {.method = TraceMethod::Walk});
+    const Sum walk = drifts(surface, {.max_faces = kMostSteps, .method = TraceMethod::Walk});
     const Sum wide = drifts(with_wider_fits(surface, best), patches);
     TraceOptions short_steps = patches;
     short_steps.max_step_mm = kShortStep * surface.mean_edge_mm;

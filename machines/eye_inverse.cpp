@@ -117,6 +117,15 @@ struct Judged {
     std::string code;
 };
 
+// Where a carriage along the spindle is the only linear axis; 0: none, or the eye is on the axis.
+double kept_distance_mm(const Machine& machine, const SpindleWristInverse& inverse) {
+    const Vector3d& carriage = machine.eye_chain.front().direction;
+    const double distance_mm = machine.eye.position_mm.head<2>().norm();
+    const bool along = carriage.cross(Vector3d::UnitZ()).norm() < kParallel;
+    return inverse.linear_axes() == 1 && along && distance_mm > kPointTolerance_mm ? distance_mm
+                                                                                   : 0.0;
+}
+
 Judged judge(const Machine& machine) {
     Judged judged;
     judged.what.spindle = is_spindle(machine);
@@ -126,16 +135,13 @@ Judged judge(const Machine& machine) {
         judged.what.free_turn = inverse.linear_axes() == 3;
         judged.what.words = spindle_words(inverse);
         if (!inverse.reaches_all()) {
-            judged.code = "machine.missing_axis";
-            judged.what.refusal =
-                "the linear axes do not bring the eye to every height and distance; the main job "
-                "needs a carriage along the spindle and a cross feed towards it";
-            if (inverse.linear_axes() == 1) {
-                const Eigen::Vector3d& eye = machine.eye.position_mm;
-                judged.what.eye_distance_mm = std::hypot(eye.x(), eye.y());
-                judged.what.refusal +=
-                    ", or a job whose eye rule is \"cylinder\" with the radius " +
-                    fixed(judged.what.eye_distance_mm, 3);
+            judged.what.eye_distance_mm = kept_distance_mm(machine, inverse);
+            if (judged.what.eye_distance_mm == 0.0) {
+                judged.code = "machine.missing_axis";
+                judged.what.refusal =
+                    "the linear axes do not bring the eye to every height and distance; the main "
+                    "job needs a carriage along the spindle and a cross feed towards it, or an eye "
+                    "that a carriage alone keeps at one distance from the spindle axis";
             }
         }
     } catch (const InputError& error) {
@@ -155,10 +161,16 @@ MachineClass machine_class(const Machine& machine) {
 
 void require_main_job(const Machine& machine, double eye_distance_mm) {
     const Judged judged = judge(machine);
-    const bool kept = eye_distance_mm > 0.0 &&
-                      std::abs(eye_distance_mm - judged.what.eye_distance_mm) < kReached_mm;
-    if (!judged.what.refusal.empty() && !kept) {
+    if (!judged.what.refusal.empty()) {
         throw InputError(judged.code, machine.name, judged.what.refusal);
+    }
+    const double kept_mm = judged.what.eye_distance_mm;
+    if (kept_mm > 0.0 && std::abs(eye_distance_mm - kept_mm) > kReached_mm) {
+        throw InputError("machine.missing_axis", machine.name,
+                         "a carriage alone keeps the eye " + fixed(kept_mm, 3) +
+                             " mm from the spindle axis; leave the job's \"eye\" out, or ask for "
+                             "the rule \"cylinder\" with the radius " +
+                             fixed(kept_mm, 3));
     }
 }
 

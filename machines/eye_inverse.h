@@ -15,7 +15,8 @@ struct MachineClass {
     bool spindle = false;      ///< the mandrel turns about the machine's Z axis alone
     bool closed_form = false;  ///< SpindleWristInverse holds
     bool free_turn = false;    ///< and any turn of the mandrel lets the eye reach any place
-    /// With a carriage alone: the one distance of the eye from the spindle axis; else 0.
+    /// With a carriage along the spindle alone: the one distance of the eye from the spindle axis,
+    /// at which the main job keeps it (EyeRule::Cylinder); else 0.
     double eye_distance_mm = 0.0;
     /// Why the main job cannot be run with it; empty: it can.
     std::string refusal;
@@ -24,8 +25,9 @@ struct MachineClass {
 [[nodiscard]] MachineClass machine_class(const Machine& machine);
 
 /// \throws InputError machine.missing_axis, machine.unsupported_chain with the words of
-/// MachineClass::refusal when the main job cannot be run with the machine \param eye_distance_mm of
-/// a rule that keeps the eye at one distance from the spindle axis; 0: of none
+/// MachineClass::refusal when the main job cannot be run with the machine, and where the machine
+/// keeps the eye at another distance \param eye_distance_mm of a rule that keeps the eye at one
+/// distance from the spindle axis; 0: of none
 void require_main_job(const Machine& machine, double eye_distance_mm = 0.0);
 
 /// Inverse of a machine that is no spindle class: damped least squares on the product of

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/error.h"
@@ -91,18 +92,13 @@ Eigen::Isometry3d base_from_mandrel(const Machine& machine, std::span<const doub
 
 Eigen::Isometry3d base_from_link(const Machine& machine, std::span<const double> q, char link) {
     assert(q.size() == machine.axis_count());
+    const std::optional<std::size_t> last = machine.joint_of(link);
+    assert(last && "link is in neither chain");
     const std::size_t eye = machine.mandrel_chain.size();
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
-        if (joint == eye) {
-            pose.setIdentity();
-        }
+    for (std::size_t joint = *last < eye ? 0 : eye; joint <= *last; ++joint) {
         append(pose, machine.axis(joint), q[joint]);
-        if (machine.axis(joint).letter == link) {
-            return pose;
-        }
     }
-    assert(false && "link is in neither chain");
     return pose;
 }
 

@@ -309,8 +309,14 @@ JsonDocument JsonDocument::parse(std::string_view text, const std::string& file)
     } catch (const Json::parse_error& error) {
         // `byte` counts from 1 and points at the last byte read; the one before it is surely read.
         const std::size_t line = line_of_byte(text, error.byte > 0 ? error.byte - 1 : 0);
+        const bool comment =
+            error.byte > 0 && error.byte <= text.size() &&
+            std::string_view("/#").find(text[error.byte - 1]) != std::string_view::npos;
         throw InputError("json.syntax", file + ":" + std::to_string(line),
-                         "not valid JSON: " + words_of(error));
+                         "not valid JSON: " + words_of(error) +
+                             (comment ? "; JSON has no comments: leave it out, or in a machine "
+                                        "file write \"description\" or \"note\""
+                                      : ""));
     } catch (const Json::exception& error) {
         throw InputError("json.syntax", file, "not valid JSON: " + words_of(error));
     }

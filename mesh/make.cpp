@@ -207,7 +207,7 @@ ShapeFoot foot(const Profile& profile, const Eigen::Vector3d& p) {
 
 template <class Surface>
 TriangleSoup wall_on(const Surface& surface, const MakeOptions& options, std::uint64_t seed) {
-    Wall wall = wall_of(surface, options.edge_mm);
+    MadeWall wall = wall_of(surface, options.edge_mm);
     if (!options.irregular) {
         return std::move(wall.soup);
     }

@@ -44,8 +44,8 @@ private:
     double turn_ = 0.0;
 };
 
-Wall closed_torus(const TorusShape& shape, double edge_mm) {
-    Wall wall;
+MadeWall closed_torus(const TorusShape& shape, double edge_mm) {
+    MadeWall wall;
     Rings rings(wall.soup, edge_mm);
     // An even number, so that the half steps match where the rows close.
     const std::int32_t rows = 2 * steps_of(kPi * shape.tube_radius_mm, row_step_mm(edge_mm), 2);
@@ -150,8 +150,8 @@ void add_leg(TriangleSoup& soup, VertexRow ring, const Leg& leg, double edge_mm)
 
 }  // namespace
 
-Wall wall_of(const Profile& profile, double edge_mm) {
-    Wall wall;
+MadeWall wall_of(const Profile& profile, double edge_mm) {
+    MadeWall wall;
     Rings rings(wall.soup, edge_mm);
     VertexRow last = rings.add(profile.front().point_mm(0.0));
     wall.sharp.assign(wall.soup.points_mm.size(), 0);
@@ -167,11 +167,11 @@ Wall wall_of(const Profile& profile, double edge_mm) {
     return wall;
 }
 
-Wall wall_of(const TorusShape& shape, double edge_mm) {
+MadeWall wall_of(const TorusShape& shape, double edge_mm) {
     if (shape.angle_rad == 2.0 * kPi) {
         return closed_torus(shape, edge_mm);
     }
-    Wall wall;
+    MadeWall wall;
     const BendFrame frame{Eigen::Vector3d::Zero(),  Eigen::Vector3d::UnitX(),
                           Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ(),
                           shape.ring_radius_mm,     shape.tube_radius_mm};
@@ -179,8 +179,8 @@ Wall wall_of(const TorusShape& shape, double edge_mm) {
     return wall;
 }
 
-Wall wall_of(const ElbowShape& shape, double edge_mm) {
-    Wall wall;
+MadeWall wall_of(const ElbowShape& shape, double edge_mm) {
+    MadeWall wall;
     const BendFrame frame{{shape.bend_radius_mm, 0.0, shape.leg1_mm},
                           -Eigen::Vector3d::UnitX(),
                           Eigen::Vector3d::UnitZ(),

@@ -27,6 +27,7 @@ struct Sheet {
     std::vector<Vector2d> flat;      // contact curve first, then the lattice; arc within one period
     std::vector<std::int32_t> ids;   // of the points in the soup
     std::int32_t contact_count = 0;  // the curve closes over the period or within it
+    std::vector<std::vector<std::int32_t>> by_arc;  // segments of the curve, by stripes of arc
 };
 
 constexpr int kTable = 512;
@@ -129,23 +130,61 @@ Vector2d step_between(const Sheet& sheet, const Vector2d& a, const Vector2d& b) 
     return step;
 }
 
-double contact_distance(const Sheet& sheet, const Vector2d& p) {
-    double distance = std::numeric_limits<double>::max();
+std::size_t stripe_of(const Sheet& sheet, double arc_mm) {
+    const double turns = into_period(arc_mm, sheet.period_mm) / sheet.period_mm;
+    const auto stripes = static_cast<double>(sheet.by_arc.size());
+    return static_cast<std::size_t>(std::min(std::floor(turns * stripes), stripes - 1.0));
+}
+
+// Sorts the segments of the contact curve by the stripes of arc that they start in. Stripes are a
+// little wider than the curve's longest segment and `reach_mm` together: a segment that comes so
+// near to a place along the arc starts in its stripe or in one beside it.
+void sort_contact(Sheet& sheet, double reach_mm) {
+    double longest = 0.0;
     for (std::int32_t i = 0; i < sheet.contact_count; ++i) {
+        const Vector2d& next = sheet.flat[at((i + 1) % sheet.contact_count)];
+        longest = std::max(longest, step_between(sheet, sheet.flat[at(i)], next).norm());
+    }
+    constexpr double kWider = 1.001;
+    const double stripes = std::floor(sheet.period_mm / (kWider * (longest + reach_mm)));
+    sheet.by_arc.assign(static_cast<std::size_t>(std::max(1.0, stripes)), {});
+    for (std::int32_t i = 0; i < sheet.contact_count; ++i) {
+        sheet.by_arc[stripe_of(sheet, sheet.flat[at(i)].x())].push_back(i);
+    }
+}
+
+// Calls `visit` for the segments that may start within a stripe's width of a place along the arc,
+// each once.
+template <typename Visit>
+void for_segments_near(const Sheet& sheet, double arc_mm, const Visit& visit) {
+    const std::size_t stripes = sheet.by_arc.size();
+    const std::size_t middle = stripe_of(sheet, arc_mm);
+    const std::size_t sides = std::min<std::size_t>(stripes, 3);
+    for (std::size_t k = 0; k < sides; ++k) {
+        for (const std::int32_t i : sheet.by_arc[(middle + stripes - 1 + k) % stripes]) {
+            visit(i);
+        }
+    }
+}
+
+// Whether the contact curve is nearer than what it was sorted for.
+bool is_near_contact(const Sheet& sheet, const Vector2d& p, double distance_mm) {
+    bool near = false;
+    for_segments_near(sheet, p.x(), [&](std::int32_t i) {
         const Vector2d& a = sheet.flat[at(i)];
         const Vector2d& b = sheet.flat[at((i + 1) % sheet.contact_count)];
         const Vector2d start = step_between(sheet, p, a);
-        distance = std::min(
-            distance, segment_distance(Vector2d::Zero(), start, start + step_between(sheet, a, b)));
-    }
-    return distance;
+        near = near || segment_distance(Vector2d::Zero(), start,
+                                        start + step_between(sheet, a, b)) <= distance_mm;
+    });
+    return near;
 }
 
 // Crossings of the curve by the ray from p towards smaller axial values: odd means p is above it (a
 // curve around the period) or within it (a closed one).
 bool is_across(const Sheet& sheet, const Vector2d& p) {
     bool odd = false;
-    for (std::int32_t i = 0; i < sheet.contact_count; ++i) {
+    for_segments_near(sheet, p.x(), [&](std::int32_t i) {
         const Vector2d& first = sheet.flat[at(i)];
         const Vector2d a = step_between(sheet, p, first);
         const Vector2d b =
@@ -154,7 +193,7 @@ bool is_across(const Sheet& sheet, const Vector2d& p) {
             const double height = a.y() - a.x() * (b.y() - a.y()) / (b.x() - a.x());
             odd = odd != (height < 0.0);
         }
-    }
+    });
     return odd;
 }
 
@@ -169,6 +208,7 @@ void add_lattice(TriangleSoup& soup, Sheet& sheet, const Lattice& lattice, doubl
                  const std::function<Vector3d(const Vector2d&)>& roll) {
     // Nearer to the curve than this a point would only be collapsed again.
     const double clearance = 0.6 * edge_mm;
+    sort_contact(sheet, clearance);
     const std::int32_t around = std::max(6, count_of(sheet.period_mm, edge_mm));
     const double length = lattice.to_mm - lattice.from_mm;
     const std::int32_t rows = std::max(1, count_of(length, edge_mm * std::sqrt(0.75)));
@@ -177,7 +217,7 @@ void add_lattice(TriangleSoup& soup, Sheet& sheet, const Lattice& lattice, doubl
             const double arc = sheet.period_mm * (i + 0.5 * (row % 2)) / around;
             const Vector2d flat(arc, lattice.to_mm - length * row / rows);
             if (is_across(sheet, flat) == lattice.piece_across &&
-                contact_distance(sheet, flat) > clearance) {
+                !is_near_contact(sheet, flat, clearance)) {
                 sheet.ids.push_back(static_cast<std::int32_t>(soup.points_mm.size()));
                 sheet.flat.push_back(flat);
                 soup.points_mm.push_back(roll(flat));
@@ -273,7 +313,7 @@ void add_branch(TriangleSoup& soup, const TeeShape& shape, const std::vector<std
 
 }  // namespace
 
-Wall wall_of(const TeeShape& shape, double edge_mm) {
+MadeWall wall_of(const TeeShape& shape, double edge_mm) {
     TriangleSoup soup;
     const std::vector<double> angles = contact_angles(shape, edge_mm);
     const auto rows = add_blend_rows(soup, shape, angles, edge_mm);

@@ -11,21 +11,21 @@
 namespace meshwind {
 
 /// A wall with the vertices that lie on its sharp rings.
-struct Wall {
+struct MadeWall {
     TriangleSoup soup;
     std::vector<std::uint8_t> sharp;  ///< per vertex, 1 on a sharp ring; empty: none
 };
 
 /// Rings of nearly equilateral triangles around z. \pre edge_mm is small against the profile
-[[nodiscard]] Wall wall_of(const Profile& profile, double edge_mm);
+[[nodiscard]] MadeWall wall_of(const Profile& profile, double edge_mm);
 
 /// Strips along the pipe, half a right-angled grid on the bend, equilateral on the legs.
-[[nodiscard]] Wall wall_of(const ElbowShape& shape, double edge_mm);
+[[nodiscard]] MadeWall wall_of(const ElbowShape& shape, double edge_mm);
 
 /// Closed torus: rings around z; open: strips as for the elbow.
-[[nodiscard]] Wall wall_of(const TorusShape& shape, double edge_mm);
+[[nodiscard]] MadeWall wall_of(const TorusShape& shape, double edge_mm);
 
 /// See make_tee.
-[[nodiscard]] Wall wall_of(const TeeShape& shape, double edge_mm);
+[[nodiscard]] MadeWall wall_of(const TeeShape& shape, double edge_mm);
 
 }  // namespace meshwind

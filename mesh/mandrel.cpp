@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/text_number.h"
 #include "core/units.h"
 #include "mesh/crease_rings.h"
@@ -112,6 +113,34 @@ void keep_named_regions(Segmentation& segmentation, const std::vector<std::int32
     for (Region& region : segmentation.regions) {
         region.kept = wanted.count(region.id) != 0;
     }
+}
+
+std::string words_of(const Region& region) {
+    const std::string why = region.kind == RegionKind::EndCap
+                                ? std::string("a flat end")
+                                : "taken for a bore, " + percent(region.visible_fraction, 0) +
+                                      " of it sees the outside";
+    return std::to_string(region.id) + " (" + std::string(name_of(region.kind)) + ", " +
+           fixed(region.area_mm2, 1) + " mm2, " + why + ")";
+}
+
+// Nothing that follows means anything without a surface to wind.
+void check_wall(const std::vector<Region>& regions, const std::string& name) {
+    constexpr std::size_t kNamed = 5;  // the largest; inspect has no more to say of the others
+    if (std::any_of(regions.begin(), regions.end(), [](const Region& r) { return r.kept; })) {
+        return;
+    }
+    std::string words;
+    for (std::size_t i = 0; i < std::min(kNamed, regions.size()); ++i) {
+        words += (i > 0 ? ", " : " ") + words_of(regions[i]);
+    }
+    if (regions.size() > kNamed) {
+        words += " and " + std::to_string(regions.size() - kNamed) + " smaller ones";
+    }
+    throw InputError("mesh.no_wall", name,
+                     "none of its regions is an outer wall:" + words +
+                         "; if one is to be wound, name it in the job, \"mandrel\": "
+                         "{\"keep_regions\": [0]}, else export the part's outside");
 }
 
 // What is wound, still in the file's frame, with the per-face arrays the freezing needs.
@@ -226,10 +255,13 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     Mandrel mandrel;
     mandrel.file = std::filesystem::path(name).filename().string();
     mandrel.whole = std::move(file_units);
+    check_interrupt();
     const WeldReport welded = weld(mandrel.whole);
     mandrel.repairs.welded_points = welded.welded_points;
     mandrel.repairs.edges_stitched = welded.edges_stitched;
+    check_interrupt();
     repair(mandrel.whole, name, mandrel.repairs);
+    check_interrupt();
     decide_unit(mandrel, options, stated_mm);
     for (Eigen::Vector3d& p : mandrel.whole.points_mm) {
         p *= mandrel.unit_mm;
@@ -237,6 +269,8 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
 
     Segmentation segmentation = segment(mandrel.whole);
     keep_named_regions(segmentation, options.keep_regions, name);
+    check_wall(segmentation.regions, name);
+    check_interrupt();
     Kept kept = kept_part(mandrel.whole, segmentation);
     const Rims rims = find_rims(kept.soup);
     std::optional<MandrelOptions::Axis> given = options.axis;
@@ -248,7 +282,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     move(mandrel.whole, frame.mandrel_from_file);
     move(kept.soup, frame.mandrel_from_file);
     const FreezeInput frozen{.feature = kept.feature, .region = kept.region, .rim = rims.of_edge};
+    check_interrupt();
     mandrel.surface = freeze_surface(kept.soup, frozen);
+    check_interrupt();
     mandrel.whole_region = std::move(segmentation.region);
     mandrel.regions = std::move(segmentation.regions);
     mandrel.rims = rims.rims;

@@ -1,8 +1,7 @@
 /// OpenMesh in double precision, for topology edits. Included by .cpp files of this folder only.
 #pragma once
 
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-
+#include "mesh/open_mesh_kernel.h"
 #include "mesh/triangle_soup.h"
 
 namespace meshwind {

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "mesh/radial_reach.h"
 
 namespace meshwind {
 namespace {
@@ -24,6 +25,12 @@ constexpr double kFarthest_mm = 1000.0;
 // Nodes of a distance table: some 5 mm apart around a mandrel of half a metre, built in under a
 // second.
 constexpr double kTableNodes = 4e5;
+
+// Room around the Z axis is known for needs in such steps.
+constexpr double kNeedStep_mm = 5.0;
+
+// What rounding may take from an interpolated distance.
+constexpr double kTableRounding_mm = 1e-3;
 
 // Keeps a bound a bound in spite of rounding.
 constexpr double kRoundUp = 1.0 + 1e-12;
@@ -152,6 +159,10 @@ struct DistanceTable {
     double cell_mm = 0.0;
     Eigen::Array3i nodes = Eigen::Array3i::Zero();
     std::vector<float> distance_mm;
+    // Per layer of cells and need: the radius about the Z axis within which all cells lie of which
+    // a node has less.
+    std::size_t needs = 0;
+    std::vector<double> room_from_mm;
     double cap_mm = 0.0;    // distances from here on are not told apart
     bool complete = false;  // all nodes have their distance
 
@@ -186,10 +197,52 @@ struct DistanceTable {
         // Embree's boxes and points are in single precision.
         return near->there_mm + near->off_mm + kSingle * (parts.diagonal().norm() + query.norm());
     }
+
+    [[nodiscard]] double radius_mm(int x, int y) const {
+        return std::hypot(origin.x() + cell_mm * x, origin.y() + cell_mm * y);
+    }
+
+    // Of a cell, by its node nearest to the origin of the table.
+    [[nodiscard]] double least_mm(const Eigen::Array3i& cell) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (int corner = 0; corner < 8; ++corner) {
+            const Eigen::Array3i node =
+                cell + Eigen::Array3i(corner & 1, corner >> 1 & 1, corner >> 2);
+            least = std::min(least, static_cast<double>(distance_mm[index(node)]));
+        }
+        return least;
+    }
+
+    void find_room(double reach_mm) {
+        needs = static_cast<std::size_t>(std::floor(reach_mm / kNeedStep_mm));
+        const auto layers = static_cast<std::size_t>(nodes.z() - 1);
+        room_from_mm.assign(layers * needs, 0.0);
+        parallel_for(layers, 1, [&](std::size_t layer, std::size_t) {
+            const std::span<double> room(room_from_mm.data() + layer * needs, needs);
+            Eigen::Array3i cell(0, 0, static_cast<int>(layer));
+            for (; cell.y() < nodes.y() - 1; ++cell.y()) {
+                for (cell.x() = 0; cell.x() < nodes.x() - 1; ++cell.x()) {
+                    // The least need that it does not give.
+                    const auto need =
+                        static_cast<std::size_t>(std::floor(least_mm(cell) / kNeedStep_mm)) + 1;
+                    if (need < needs) {
+                        const int x = cell.x();
+                        const int y = cell.y();
+                        room[need] = std::max({room[need], radius_mm(x, y), radius_mm(x + 1, y),
+                                               radius_mm(x, y + 1), radius_mm(x + 1, y + 1)});
+                    }
+                }
+            }
+            for (std::size_t need = 1; need < needs; ++need) {
+                room[need] = std::max(room[need], room[need - 1]);
+            }
+        });
+    }
 };
 
 struct RayQuery::Impl {
     DistanceTable table;
+    RadialReach reach;
 
     std::vector<TriangleSoup> parts;
     std::vector<std::vector<Ball>> balls;  // per part and face
@@ -247,6 +300,7 @@ RayQuery::RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm)
         impl_->balls.push_back(balls_around(impl_->parts[i]));
     }
     rtcCommitScene(impl_->scene);
+    impl_->reach = RadialReach(impl_->parts);
     if (field_reach_mm > 0.0) {
         tabulate(field_reach_mm);
     }
@@ -281,6 +335,7 @@ void RayQuery::tabulate(double reach_mm) {
         }
     });
     table.complete = true;
+    table.find_room(reach_mm);
 }
 
 double RayQuery::distance_at_least_mm(const Eigen::Vector3d& query) const {
@@ -331,11 +386,34 @@ ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) c
     return search.best;
 }
 
+bool RayQuery::is_beyond(const Eigen::Vector3d& query, double distance_mm) const {
+    return distance_at_least_mm(query) >= distance_mm || impl_->reach.is_beyond(query, distance_mm);
+}
+
+bool RayQuery::has_table() const {
+    return !impl_->table.distance_mm.empty();
+}
+
+double RayQuery::room_from_mm(double z_mm, double need_mm) const {
+    const DistanceTable& table = impl_->table;
+    const auto need = static_cast<std::size_t>(
+        std::ceil((std::max(need_mm, 0.0) + kTableRounding_mm) / kNeedStep_mm));
+    if (need >= table.needs) {
+        return std::numeric_limits<double>::infinity();
+    }
+    // As distance_estimate_mm() finds the cells; beyond the table all is further than its reach.
+    const double layer = (z_mm - table.origin.z()) / table.cell_mm;
+    if (!(layer >= 0.0 && layer < table.nodes.z() - 1)) {
+        return 0.0;
+    }
+    return table.room_from_mm[static_cast<std::size_t>(layer) * table.needs + need];
+}
+
 bool RayQuery::capsule_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                              double radius_mm) const {
     const Eigen::Vector3d centre = 0.5 * (from + to);
     const double reach = 0.5 * (to - from).norm();
-    if (distance_at_least_mm(centre) >= reach + radius_mm) {
+    if (is_beyond(centre, reach + radius_mm)) {
         return true;
     }
     if (!impl_->table.distance_mm.empty() && reach > impl_->table.cell_mm) {
@@ -357,13 +435,17 @@ double RayQuery::distance_estimate_mm(const Eigen::Vector3d& query) const {
     if (table.distance_mm.empty()) {
         return closest(query, kFarthest_mm).distance_mm;
     }
-    const Eigen::Array3d scaled = ((query - table.origin) / table.cell_mm).array();
+    const double x = (query.x() - table.origin.x()) / table.cell_mm;
+    const double y = (query.y() - table.origin.y()) / table.cell_mm;
+    const double z = (query.z() - table.origin.z()) / table.cell_mm;
     // The cast cuts towards 0, so what is below it is looked for by itself.
-    const Eigen::Array3i node = scaled.cast<int>();
-    if ((scaled < 0.0).any() || (node + 1 >= table.nodes).any()) {
+    const bool within = x >= 0.0 && y >= 0.0 && z >= 0.0 && x < table.nodes.x() - 1 &&
+                        y < table.nodes.y() - 1 && z < table.nodes.z() - 1;
+    if (!within) {
         return table.parts.exteriorDistance(query);
     }
-    const Eigen::Array3d t = scaled - node.cast<double>();
+    const Eigen::Array3i node(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
+    const Eigen::Array3d t(x - node.x(), y - node.y(), z - node.z());
     const auto nx = static_cast<std::size_t>(table.nodes.x());
     const std::size_t nxy = nx * static_cast<std::size_t>(table.nodes.y());
     const float* d = table.distance_mm.data() + table.index(node);

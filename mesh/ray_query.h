@@ -49,11 +49,22 @@ public:
     /// true distance; 0 without one.
     [[nodiscard]] double distance_at_least_mm(const Eigen::Vector3d& query) const;
 
+    /// True when it is known that no triangle is nearer than `distance_mm`: from the table and from
+    /// how far the parts reach from the Z axis. False says nothing.
+    [[nodiscard]] bool is_beyond(const Eigen::Vector3d& query, double distance_mm) const;
+
+    /// True when distances are tabulated.
+    [[nodiscard]] bool has_table() const;
+
     /// Distance to the nearest triangle interpolated in the table, in mm; without one the true
     /// distance, up to 1000. Off by about cell^2 / 8 of the surface's curvature at that distance:
     /// some tenths of a mm around a pipe. For searching; what must hold is checked by the functions
     /// above and below.
     [[nodiscard]] double distance_estimate_mm(const Eigen::Vector3d& query) const;
+
+    /// A radius: further from the Z axis, at this height, distance_estimate_mm() tells `need_mm` at
+    /// least. Infinite where that is not known.
+    [[nodiscard]] double room_from_mm(double z_mm, double need_mm) const;
 
     /// True when no triangle is nearer than `radius_mm` to the straight segment.
     /// Conservative: a triangle that is up to 1 % of the radius further away may count as too near.

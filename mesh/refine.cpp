@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/text_number.h"
 #include "core/units.h"
@@ -319,6 +320,7 @@ RefinedMesh refined(const Surface& surface, double edge_mm) {
     }
     Refiner refiner(surface, edge_mm);
     while (refiner.halve()) {
+        check_interrupt();
     }
     return std::move(refiner).mesh();
 }

@@ -6,7 +6,8 @@
 #include <random>
 
 #include <Eigen/Geometry>
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+
+#include "mesh/open_mesh_kernel.h"
 
 namespace meshwind {
 namespace {
@@ -68,12 +69,14 @@ Vector3d normal_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return (b - a).cross(c - a).normalized();
 }
 
-// Largest cosine of a triangle's angles: the smaller, the better its smallest angle.
-double worst_cosine(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    const Vector3d ab = (b - a).normalized();
-    const Vector3d bc = (c - b).normalized();
-    const Vector3d ca = (a - c).normalized();
+// Largest cosine of the angles of a triangle with these unit sides, one after the other round it:
+// the smaller, the better its smallest angle.
+double worst_cosine_of_sides(const Vector3d& ab, const Vector3d& bc, const Vector3d& ca) {
     return std::max({-ab.dot(ca), -ab.dot(bc), -bc.dot(ca)});
+}
+
+double worst_cosine(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    return worst_cosine_of_sides((b - a).normalized(), (c - b).normalized(), (a - c).normalized());
 }
 
 // Triangles after an operation must not turn away from those before it by more than 60 degrees.
@@ -114,6 +117,7 @@ bool collapse_is_good(const Mesh& mesh, Mesh::HalfedgeHandle half, double limit)
 }
 
 void collapse_short(Mesh& mesh, double lower, double upper) {
+    bool any = false;
     for (const auto edge : mesh.edges()) {
         if (mesh.status(edge).deleted() || mesh.calc_edge_length(edge) >= lower) {
             continue;
@@ -123,11 +127,14 @@ void collapse_short(Mesh& mesh, double lower, double upper) {
             if (!mesh.is_boundary(mesh.from_vertex_handle(half)) && mesh.is_collapse_ok(half) &&
                 collapse_is_good(mesh, half, upper)) {
                 mesh.collapse(half);
+                any = true;
                 break;
             }
         }
     }
-    mesh.garbage_collection();
+    if (any) {
+        mesh.garbage_collection();
+    }
 }
 
 // The two triangles on an edge: a and b its ends, c and d the corners left and right of a -> b.
@@ -143,52 +150,99 @@ Diamond diamond_of(const Mesh& mesh, Mesh::EdgeHandle edge) {
             mesh.to_vertex_handle(mesh.next_halfedge_handle(other))};
 }
 
+// The corners of a diamond.
 struct FlipView {
-    bool folds;
-    double worst_before;
-    double worst_after;
+    Vector3d a, b, c, d;
+
+    FlipView(const Mesh& mesh, const Diamond& diamond)
+        : a(eigen(mesh.point(diamond.a))),
+          b(eigen(mesh.point(diamond.b))),
+          c(eigen(mesh.point(diamond.c))),
+          d(eigen(mesh.point(diamond.d))) {}
+
+    [[nodiscard]] bool folds() const {
+        const Vector3d before = normal_of(a, b, c) + normal_of(b, a, d);
+        return before.dot(normal_of(a, d, c)) < 2.0 * kTurnCosine ||
+               before.dot(normal_of(d, b, c)) < 2.0 * kTurnCosine;
+    }
+
+    struct Worst {
+        double before;
+        double after;
+    };
+
+    [[nodiscard]] Worst worst() const {
+        const Vector3d ab = (b - a).normalized();
+        const Vector3d bc = (c - b).normalized();
+        const Vector3d ca = (a - c).normalized();
+        const Vector3d ad = (d - a).normalized();
+        const Vector3d db = (b - d).normalized();
+        const Vector3d dc = (c - d).normalized();
+        return {std::max(worst_cosine_of_sides(ab, bc, ca), worst_cosine_of_sides(-ab, ad, db)),
+                std::max(worst_cosine_of_sides(ad, dc, ca), worst_cosine_of_sides(db, bc, -dc))};
+    }
 };
 
-FlipView look_at_flip(const Mesh& mesh, const Diamond& diamond) {
-    const Vector3d a = eigen(mesh.point(diamond.a));
-    const Vector3d b = eigen(mesh.point(diamond.b));
-    const Vector3d c = eigen(mesh.point(diamond.c));
-    const Vector3d d = eigen(mesh.point(diamond.d));
-    const Vector3d before = normal_of(a, b, c) + normal_of(b, a, d);
-    const bool folds = before.dot(normal_of(a, d, c)) < 2.0 * kTurnCosine ||
-                       before.dot(normal_of(d, b, c)) < 2.0 * kTurnCosine;
-    return {folds, std::max(worst_cosine(a, b, c), worst_cosine(b, a, d)),
-            std::max(worst_cosine(a, d, c), worst_cosine(d, b, c))};
-}
+// How many edges meet at each vertex, and how many should.
+class Valences {
+public:
+    explicit Valences(const Mesh& mesh) : gap_(mesh.n_vertices()) {
+        for (const auto vertex : mesh.vertices()) {
+            gap_[at(vertex)] =
+                static_cast<int>(mesh.valence(vertex)) - (mesh.is_boundary(vertex) ? 4 : 6);
+        }
+    }
 
-int valence_gap(const Mesh& mesh, Mesh::VertexHandle vertex, int change) {
-    const int target = mesh.is_boundary(vertex) ? 4 : 6;
-    return std::abs(static_cast<int>(mesh.valence(vertex)) + change - target);
-}
+    [[nodiscard]] bool are_evened_by_flip(const Diamond& v) const {
+        const int before = gap(v.a, 0) + gap(v.b, 0) + gap(v.c, 0) + gap(v.d, 0);
+        const int after = gap(v.a, -1) + gap(v.b, -1) + gap(v.c, 1) + gap(v.d, 1);
+        return after < before;
+    }
 
-bool flip_evens_valence(const Mesh& mesh, const Diamond& v) {
-    const int before = valence_gap(mesh, v.a, 0) + valence_gap(mesh, v.b, 0) +
-                       valence_gap(mesh, v.c, 0) + valence_gap(mesh, v.d, 0);
-    const int after = valence_gap(mesh, v.a, -1) + valence_gap(mesh, v.b, -1) +
-                      valence_gap(mesh, v.c, 1) + valence_gap(mesh, v.d, 1);
-    return after < before;
-}
+    void note_flip(const Diamond& v) {
+        --gap_[at(v.a)];
+        --gap_[at(v.b)];
+        ++gap_[at(v.c)];
+        ++gap_[at(v.d)];
+    }
 
-enum class FlipFor { Valence, Angle };
+private:
+    static std::size_t at(Mesh::VertexHandle vertex) {
+        return static_cast<std::size_t>(vertex.idx());
+    }
+    [[nodiscard]] int gap(Mesh::VertexHandle vertex, int change) const {
+        return std::abs(gap_[at(vertex)] + change);
+    }
 
-void flip_edges(Mesh& mesh, FlipFor aim) {
-    // Angles closer than this count as equal, so that symmetric diamonds do not flip for rounding.
-    constexpr double kCosineGain = 1e-6;
+    std::vector<int> gap_;
+};
+
+// Flips make no vertex one of the boundary, nor the contrary.
+void flip_for_valence(Mesh& mesh) {
+    Valences valences(mesh);
     for (const auto edge : mesh.edges()) {
-        if (mesh.is_boundary(edge) || !mesh.is_flip_ok(edge)) {
+        if (mesh.is_boundary(edge)) {
             continue;
         }
         const Diamond diamond = diamond_of(mesh, edge);
-        const FlipView view = look_at_flip(mesh, diamond);
-        const bool wanted = aim == FlipFor::Valence
-                                ? flip_evens_valence(mesh, diamond)
-                                : view.worst_after < view.worst_before - kCosineGain;
-        if (wanted && !view.folds) {
+        if (valences.are_evened_by_flip(diamond) && mesh.is_flip_ok(edge) &&
+            !FlipView(mesh, diamond).folds()) {
+            mesh.flip(edge);
+            valences.note_flip(diamond);
+        }
+    }
+}
+
+void flip_for_angle(Mesh& mesh) {
+    // Angles closer than this count as equal, so that symmetric diamonds do not flip for rounding.
+    constexpr double kCosineGain = 1e-6;
+    for (const auto edge : mesh.edges()) {
+        if (mesh.is_boundary(edge)) {
+            continue;
+        }
+        const FlipView view(mesh, diamond_of(mesh, edge));
+        const auto [before, after] = view.worst();
+        if (after < before - kCosineGain && mesh.is_flip_ok(edge) && !view.folds()) {
             mesh.flip(edge);
         }
     }
@@ -212,10 +266,12 @@ void smooth(Mesh& mesh, const Project& project) {
             continue;
         }
         Vector3d sum = Vector3d::Zero();
+        int count = 0;
         for (const auto near : mesh.vv_range(vertex)) {
             sum += eigen(mesh.point(near));
+            ++count;
         }
-        const Vector3d target = project(sum / static_cast<double>(mesh.valence(vertex)));
+        const Vector3d target = project(sum / static_cast<double>(count));
         if (!move_folds(mesh, vertex, target)) {
             mesh.set_point(vertex, open(target));
         }
@@ -255,9 +311,9 @@ bool move_spoils(const Mesh& mesh, Mesh::VertexHandle vertex, const Vector3d& ta
 
 bool flip_spoils(const Mesh& mesh, Mesh::EdgeHandle edge, const Limits& limits) {
     const Diamond diamond = diamond_of(mesh, edge);
-    const FlipView view = look_at_flip(mesh, diamond);
+    const FlipView view(mesh, diamond);
     const double length = (mesh.point(diamond.c) - mesh.point(diamond.d)).norm();
-    return view.folds || view.worst_after > limits.cosine || length > limits.edge_mm;
+    return view.folds() || view.worst().after > limits.cosine || length > limits.edge_mm;
 }
 
 Vector3d random_in_ball(Dice& dice) {
@@ -281,14 +337,14 @@ TriangleSoup remesh_onto(const TriangleSoup& soup, const Project& project,
     for (int sweep = 0; sweep < options.sweeps; ++sweep) {
         split_long(mesh, project, upper);
         collapse_short(mesh, lower, upper);
-        flip_edges(mesh, FlipFor::Valence);
+        flip_for_valence(mesh);
         smooth(mesh, project);
     }
     for (int sweep = 0; sweep < options.polish; ++sweep) {
-        flip_edges(mesh, FlipFor::Angle);
+        flip_for_angle(mesh);
         smooth(mesh, project);
     }
-    flip_edges(mesh, FlipFor::Angle);
+    flip_for_angle(mesh);
     return soup_of(mesh);
 }
 

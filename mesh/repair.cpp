@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/text_number.h"
 #include "mesh/degenerate_faces.h"
 #include "mesh/edge_table.h"
@@ -370,12 +371,15 @@ void repair(TriangleSoup& soup, const std::string& name, RepairReport& report) {
     report.duplicate_faces_removed += drop_duplicates(soup.faces);
     require_faces(soup, name);
     const double diagonal = diagonal_mm(soup);
+    check_interrupt();
     std::vector<Joint> joints = joints_of(soup);
+    check_interrupt();
     std::vector<std::int8_t> turned(soup.faces.size(), 0);
     Components components = orient(soup, Links(soup.faces.size(), joints), name, turned);
     report.non_manifold_vertices_split += split_fans(soup, joints);
     for (bool parted = false; part_doubled_edges(soup, parted ? joints_of(soup) : joints);) {
         parted = true;
+        check_interrupt();
     }
     if (turned.size() < soup.faces.size()) {
         joints = joints_of(soup);
@@ -383,14 +387,17 @@ void repair(TriangleSoup& soup, const std::string& name, RepairReport& report) {
         std::vector<std::int8_t> unturned(soup.faces.size(), 0);
         components = orient(soup, Links(soup.faces.size(), joints), name, unturned);
     }
+    check_interrupt();
     const Links links(soup.faces.size(), joints);
     turn_outward(soup, components, links, turned);
     report.faces_flipped += static_cast<int>(std::count(turned.begin(), turned.end(), 1));
     report.components = static_cast<int>(components.faces.size());
+    check_interrupt();
     report.degenerate_faces_removed +=
         remove_degenerate_faces(soup, kDegenerateHeightShare * diagonal);
     require_faces(soup, name);
     drop_unused_points(soup);
+    check_interrupt();
     report.self_intersecting_faces = count_self_intersecting_faces(soup);
 }
 

@@ -125,7 +125,7 @@ void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& n
                                           samples[i].bary[1] * soup.points_mm[at(b)] +
                                           samples[i].bary[2] * soup.points_mm[at(c)];
             sees[i] = static_cast<char>(
-                visibility.escape_fraction(point, normals[at(samples[i].face)]) > kMostDirections);
+                visibility.escapes(point, normals[at(samples[i].face)], kMostDirections));
         }
     });
     std::vector<int> asked(regions.size(), 0);

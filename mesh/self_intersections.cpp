@@ -4,11 +4,32 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
+#include "core/interrupt.h"
+
 namespace meshwind {
+namespace {
+
+using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+using Mesh = CGAL::Surface_mesh<Point>;
+
+// The points of a mesh. Reading one is a cancellation point: CGAL offers no other.
+struct WatchedPoints {
+    using key_type = Mesh::Vertex_index;
+    using value_type = Point;
+    using reference = const Point&;
+    using category = boost::readable_property_map_tag;
+
+    const Mesh* mesh;
+
+    friend const Point& get(const WatchedPoints& points, Mesh::Vertex_index vertex) {
+        check_interrupt();
+        return points.mesh->point(vertex);
+    }
+};
+
+}  // namespace
 
 int count_self_intersecting_faces(const TriangleSoup& soup) {
-    using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-    using Mesh = CGAL::Surface_mesh<Point>;
     using Face = Mesh::Face_index;
     Mesh mesh;
     mesh.reserve(static_cast<Mesh::size_type>(soup.points_mm.size()),
@@ -24,7 +45,8 @@ int count_self_intersecting_faces(const TriangleSoup& soup) {
         mesh.add_face(vertex(0), vertex(1), vertex(2));
     }
     std::vector<std::pair<Face, Face>> pairs;
-    CGAL::Polygon_mesh_processing::self_intersections(mesh, std::back_inserter(pairs));
+    CGAL::Polygon_mesh_processing::self_intersections(
+        mesh, std::back_inserter(pairs), CGAL::parameters::vertex_point_map(WatchedPoints{&mesh}));
     std::vector<char> crossed(soup.faces.size(), 0);
     for (const auto& [a, b] : pairs) {
         crossed[a] = 1;

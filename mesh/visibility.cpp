@@ -11,6 +11,7 @@
 namespace meshwind {
 namespace {
 
+constexpr int kEvery = -1;       // no number of rays is enough
 constexpr int kDirections = 64;  // resolves a share of 2 %, half of them decide "most"
 
 // Rays start this share of the diagonal off the surface: a hundred times Embree's single precision.
@@ -33,18 +34,35 @@ std::array<Eigen::Vector3d, kDirections> make_directions() {
 Visibility::Visibility(const TriangleSoup& soup)
     : rays_(std::span<const TriangleSoup>(&soup, 1)), diagonal_mm_(diagonal_mm(soup)) {}
 
-double Visibility::escape_fraction(const Eigen::Vector3d& point,
-                                   const Eigen::Vector3d& normal) const {
+// Rays that escape. With `enough` of them, or once there cannot be so many, the rest is not asked.
+int Visibility::escaped(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                        int enough) const {
     static const std::array<Eigen::Vector3d, kDirections> kRays = make_directions();
     const Eigen::Vector3d side = normal.unitOrthogonal();
     const Eigen::Vector3d up = normal.cross(side);
     const Eigen::Vector3d start = point + kLiftShare * diagonal_mm_ * normal;
-    int escaped = 0;
+    int count = 0;
+    int left = kDirections;
     for (const Eigen::Vector3d& d : kRays) {
+        if (enough != kEvery && (count >= enough || count + left < enough)) {
+            break;
+        }
         const Eigen::Vector3d direction = d.x() * side + d.y() * up + d.z() * normal;
-        escaped += rays_.occluded(start, start + 2.0 * diagonal_mm_ * direction) ? 0 : 1;
+        count += rays_.occluded(start, start + 2.0 * diagonal_mm_ * direction) ? 0 : 1;
+        --left;
     }
-    return static_cast<double>(escaped) / kDirections;
+    return count;
+}
+
+double Visibility::escape_fraction(const Eigen::Vector3d& point,
+                                   const Eigen::Vector3d& normal) const {
+    return static_cast<double>(escaped(point, normal, kEvery)) / kDirections;
+}
+
+bool Visibility::escapes(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                         double share) const {
+    const int enough = static_cast<int>(share * kDirections) + 1;
+    return escaped(point, normal, enough) >= enough;
 }
 
 }  // namespace meshwind

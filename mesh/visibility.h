@@ -18,7 +18,13 @@ public:
     [[nodiscard]] double escape_fraction(const Eigen::Vector3d& point,
                                          const Eigen::Vector3d& normal) const;
 
+    /// escape_fraction(point, normal) > share, without the rays that cannot change that.
+    [[nodiscard]] bool escapes(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                               double share) const;
+
 private:
+    [[nodiscard]] int escaped(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                              int enough) const;
     RayQuery rays_;
     double diagonal_mm_;
 };

@@ -13,6 +13,7 @@
 #include "machines/machine.h"
 #include "postproc/eye_path.h"
 #include "postproc/joint_path.h"
+#include "postproc/program_head.h"
 #include "postproc/time_law.h"
 
 namespace meshwind {
@@ -46,6 +47,8 @@ struct BlockList {
     /// Where the fibre is tied on, in the mandrel frame, as the program's head says; unset when it
     /// does not, and in a list that was planned.
     std::optional<Eigen::Vector3d> tie_on_mm{};
+    /// What else a program's text says; unset in a list that was planned.
+    std::optional<ProgramHead> head{};
 
     [[nodiscard]] std::span<const std::int64_t> row(std::size_t block) const {
         return {nano.data() + block * axes.size(), axes.size()};
@@ -56,6 +59,9 @@ struct BlockList {
                static_cast<double>(kNanoPerUnit);
     }
     [[nodiscard]] double duration_s() const;
+    /// Blocks that move, which is what people are told: the number of the last one; the start
+    /// position is none.
+    [[nodiscard]] std::size_t moves() const { return blocks.empty() ? 0 : blocks.size() - 1; }
 };
 
 /// Absolute position of block `block` as a joint vector (mm, rad).
@@ -66,6 +72,16 @@ struct BlockList {
 
 /// "block 17 (line 40)"; without the line where it is unknown.
 [[nodiscard]] std::string block_words(const BlockList& list, std::size_t block);
+
+/// What one block can ask for: more turns than the longest stroke of the narrowest tow winds (10 m
+/// at 0.5 mm), and a longer way than any bed. Whatever goes beyond has lost its point, and winding
+/// it again would take hours.
+inline constexpr double kMostBlock_deg = 20'000 * 360.0;
+inline constexpr double kMostBlock_mm = 100'000.0;
+
+/// Words when an axis goes further than that from one position to the next; else empty.
+[[nodiscard]] std::string beyond_one_block(const BlockAxis& axis, std::int64_t from_nano,
+                                           std::int64_t to_nano);
 
 /// The machine with other steps. \pre steps has an entry for each axis, in the joints' order
 [[nodiscard]] Machine with_steps(Machine machine, std::span<const BlockAxis> steps);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/text_number.h"
 #include "core/units.h"
 
 namespace meshwind {
@@ -59,6 +60,20 @@ std::string block_words(const BlockList& list, std::size_t block) {
     const std::int32_t line = list.blocks[block].line;
     return "block " + std::to_string(block) +
            (line > 0 ? " (line " + std::to_string(line) + ")" : std::string());
+}
+
+std::string beyond_one_block(const BlockAxis& axis, std::int64_t from_nano, std::int64_t to_nano) {
+    const bool rotary = axis.type == AxisType::Rotary;
+    const double most = rotary ? kMostBlock_deg : kMostBlock_mm;
+    const double way = (static_cast<double>(to_nano) - static_cast<double>(from_nano)) /
+                       static_cast<double>(kNanoPerUnit);
+    if (std::abs(way) <= most) {
+        return "";
+    }
+    const std::string unit = rotary ? " deg" : " mm";
+    return std::string("axis ") + axis.letter + " goes " + fixed(way, 3) + unit +
+           " in one block, more than " + fixed(most, 0) + unit +
+           "; is a point missing? Else split the block";
 }
 
 int decimals_of(std::int64_t resolution_nano) {

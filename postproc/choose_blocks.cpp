@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "machines/kinematics.h"
 #include "postproc/fibre_curve.h"
@@ -440,6 +441,7 @@ BlockChoice choose_blocks(const Machine& machine, const BlockTask& task,
         while (choice.ends.back() < fixed[i]) {
             const std::size_t first = choice.ends.back();
             const std::size_t limit = furthest(task.path, first, fixed[i], tolerance.most_mm);
+            check_interrupt();
             const FoundBlock block = longest_block(check, first, limit, length, offset_mm);
             add_block(choice, block, check.within(block.worst, offset_mm));
             offset_mm = block.worst.offset_mm;

@@ -26,9 +26,9 @@ struct LaidClosure {
     std::size_t parallels = 0;      ///< on which circuits were compared
     std::string failure;            ///< empty, or why nothing can be compared
 
-    [[nodiscard]] bool holds() const {
-        return failure.empty() && closure_rad <= kClosureLimit_rad + resolution_rad;
-    }
+    /// Of `closure_rad`. `drift_rad` has none: what follows the plan is off by more in places.
+    [[nodiscard]] double limit_rad() const { return kClosureLimit_rad + resolution_rad; }
+    [[nodiscard]] bool holds() const { return failure.empty() && closure_rad <= limit_rad(); }
 };
 
 /// The azimuths at which the fibre crosses parallels, held against the circuits' places. By how

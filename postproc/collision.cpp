@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "machines/kinematics.h"
 #include "postproc/chunk.h"
@@ -19,6 +20,11 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t kStepChunk = 64;
+
+// Pieces and steps larger than this are divided without a search where the table, which is good to
+// some mm, says that it would not settle them.
+constexpr double kLeastUndecided_mm = 1.0;
+constexpr double kGuess_mm = 2.0;
 
 struct LinkedChunk {
     char link = '?';
@@ -79,11 +85,37 @@ public:
     // axis counts with the ball's distance from it as those before have placed the ball. Linear
     // axes in a row add up as vectors.
     [[nodiscard]] double motion_mm(const Joints& q, std::span<const double> from,
-                                   std::span<const double> to, double half_share, Vector3d point_mm,
-                                   double ball_mm) const {
+                                   std::span<const double> to, double half_share,
+                                   const Vector3d& point_mm, double ball_mm) const {
+        return motion_mm(q, turns_of(q), from, to, half_share, point_mm, ball_mm);
+    }
+
+    // Sine and versine of a rotary axis.
+    struct Turn {
+        double sine = 0.0;
+        double versine = 0.0;
+    };
+
+    // Per axis on the way.
+    [[nodiscard]] std::vector<Turn> turns_of(const Joints& q) const {
+        std::vector<Turn> turns(steps_.size());
+        for (std::size_t i = 0; i < turns.size(); ++i) {
+            const auto& [joint, sign] = steps_[i];
+            if (machine_.axis(joint).type == AxisType::Rotary) {
+                turns[i] = {std::sin(sign * q[joint]), 1.0 - std::cos(sign * q[joint])};
+            }
+        }
+        return turns;
+    }
+
+    // The same where the turns at `q` are known.
+    [[nodiscard]] double motion_mm(const Joints& q, std::span<const Turn> turns,
+                                   std::span<const double> from, std::span<const double> to,
+                                   double half_share, Vector3d point_mm, double ball_mm) const {
         double moved = 0.0;
         Vector3d slide = Vector3d::Zero();
-        for (const auto& [joint, sign] : steps_) {
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            const auto& [joint, sign] = steps_[i];
             const Axis& axis = machine_.axis(joint);
             const double change = half_share * (to[joint] - from[joint]);
             if (axis.type == AxisType::Linear) {
@@ -96,9 +128,7 @@ public:
             const Vector3d arm = point_mm - axis.point_mm;
             const Vector3d across = axis.direction.cross(arm);
             moved += std::abs(change) * (across.norm() + ball_mm);
-            const double sine = std::sin(sign * q[joint]);
-            const double versine = 1.0 - std::cos(sign * q[joint]);
-            point_mm += sine * across + versine * axis.direction.cross(across);
+            point_mm += turns[i].sine * across + turns[i].versine * axis.direction.cross(across);
         }
         return moved + slide.norm();
     }
@@ -126,37 +156,68 @@ public:
         : machine_(machine), obstacles_(obstacles), need_mm_(need_mm), from_(from), to_(to) {}
 
     [[nodiscard]] bool clear(const LinkedChunk& part) const {
-        return clear(part, Way(machine_, part.link, std::nullopt), part.chunk, 0.0, 1.0);
+        const Way way(machine_, part.link, std::nullopt);
+        return clear_within(part, way, part.chunk, 0.0, 1.0);
     }
 
 private:
-    [[nodiscard]] bool clear(const LinkedChunk& part, const Way& way, const Chunk& chunk,
-                             double low, double high) const {
-        const Joints q = between(from_, to_, 0.5 * (low + high));
-        const Isometry3d pose =
-            base_from_mandrel(machine_, q).inverse() * base_from_part(machine_, q, part.link);
+    // The middle of a share of the step.
+    struct Middle {
+        double low;
+        double high;
+        Joints q;
+        std::vector<Way::Turn> turns;
+        Isometry3d pose;
+    };
+
+    [[nodiscard]] bool clear_within(const LinkedChunk& part, const Way& way, const Chunk& chunk,
+                                    double low, double high) const {
+        Middle at{low, high, between(from_, to_, 0.5 * (low + high)), {}, {}};
+        at.turns = way.turns_of(at.q);
+        at.pose =
+            base_from_mandrel(machine_, at.q).inverse() * base_from_part(machine_, at.q, part.link);
+        return clear_at(part, way, chunk, at);
+    }
+
+    [[nodiscard]] bool clear_at(const LinkedChunk& part, const Way& way, const Chunk& chunk,
+                                const Middle& at) const {
         const double reach = chunk.reach_mm();
-        const double move = way.motion_mm(q, from_, to_, 0.5 * (high - low), chunk.centre(),
-                                          reach + chunk.radius_mm);
+        const double move = way.motion_mm(at.q, at.turns, from_, to_, 0.5 * (at.high - at.low),
+                                          chunk.centre(), reach + chunk.radius_mm);
         const double need = chunk.radius_mm + need_mm_;
         const double search = reach + need + move;
-        const Vector3d centre = pose * chunk.centre();
-        if (obstacles_.distance_at_least_mm(centre) >= search) {
+        const Vector3d centre = at.pose * chunk.centre();
+        if (obstacles_.is_beyond(centre, search)) {
             return true;
         }
-        const double distance = obstacles_.closest(centre, search).distance_mm;
-        if (distance >= search) {
-            return true;
-        }
-        if (distance < need || std::max(move, reach) < kSweepResolution_mm) {
-            return false;
+        if (!is_undecided(centre, need, search, std::max(move, reach))) {
+            const double distance = obstacles_.closest(centre, search).distance_mm;
+            if (distance >= search) {
+                return true;
+            }
+            if (distance < need || std::max(move, reach) < kSweepResolution_mm) {
+                return false;
+            }
         }
         if (move > reach) {
-            const double middle = 0.5 * (low + high);
-            return clear(part, way, chunk, low, middle) && clear(part, way, chunk, middle, high);
+            const double middle = 0.5 * (at.low + at.high);
+            return clear_within(part, way, chunk, at.low, middle) &&
+                   clear_within(part, way, chunk, middle, at.high);
         }
         const auto halves = chunk.halves();
-        return clear(part, way, halves[0], low, high) && clear(part, way, halves[1], low, high);
+        return clear_at(part, way, halves[0], at) && clear_at(part, way, halves[1], at);
+    }
+
+    // True where a search would hardly settle a large piece: by what is tabulated the distance is
+    // between what is needed and what would do. Its parts are looked at at once, which finds the
+    // same.
+    [[nodiscard]] bool is_undecided(const Vector3d& centre, double need, double search,
+                                    double size) const {
+        if (size < kLeastUndecided_mm || !obstacles_.has_table()) {
+            return false;
+        }
+        const double guess = obstacles_.distance_estimate_mm(centre);
+        return guess > need && guess + kGuess_mm < search;
     }
 
     const Machine& machine_;
@@ -256,7 +317,7 @@ double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const C
                       double best) {
     const double reach = chunk.reach_mm();
     const double search = best + reach + chunk.radius_mm;
-    if (obstacles.distance_at_least_mm(pose * chunk.centre()) >= search) {
+    if (obstacles.is_beyond(pose * chunk.centre(), search)) {
         return best;
     }
     const double distance = obstacles.closest(pose * chunk.centre(), search).distance_mm;
@@ -267,7 +328,13 @@ double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const C
     if (reach < kSweepResolution_mm) {
         return best;
     }
-    for (const Chunk& half : chunk.halves()) {
+    // The nearer half first: it may rule the other one out.
+    auto halves = chunk.halves();
+    if (obstacles.distance_at_least_mm(pose * halves[1].centre()) <
+        obstacles.distance_at_least_mm(pose * halves[0].centre())) {
+        std::swap(halves[0], halves[1]);
+    }
+    for (const Chunk& half : halves) {
         best = least_distance(obstacles, pose, half, best);
     }
     return best;
@@ -438,6 +505,32 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
         }
     }
     return report;
+}
+
+bool head_strikes(const Machine& machine, const HeadEnvelope& envelope, const RayQuery& obstacles,
+                  const JointPath& step, double clearance_mm) {
+    const std::span<const double> from = step.row(0);
+    const std::span<const double> to = step.row(1);
+    const Capsule eye{machine.eye.position_mm, machine.eye.position_mm, 0.0};
+    const char eye_link = machine.eye_chain.empty() ? kBaseLink : machine.eye_chain.back().letter;
+    const std::vector<LinkedChunk> parts = chunks_of(envelope.parts);
+    const auto strikes = [&](double need_mm, const LinkedChunk& part) {
+        return !StepSweep(machine, obstacles, need_mm, from, to).clear(part);
+    };
+    bool any = strikes(0.0, {eye_link, chunk_of(eye)});
+    for (const LinkedChunk& part : parts) {
+        check_interrupt();
+        any = any || strikes(clearance_mm, part);
+    }
+    for (const LinkedChunk& body : chunks_of(envelope.bodies)) {
+        check_interrupt();
+        any = any || strikes(0.0, body);
+        const BodySweep sweep(machine, body, from, to);
+        for (const LinkedChunk& part : parts) {
+            any = any || !sweep.clear(part, clearance_mm);
+        }
+    }
+    return any;
 }
 
 }  // namespace meshwind

@@ -78,6 +78,13 @@ struct CollisionReport {
                                                const RayQuery& obstacles, const EyePath& path,
                                                const JointPath& joints, const CollisionRule& rule);
 
+/// Whether in one step of a motion without fibre the head comes within the clearance of anything,
+/// the eye meets it, or a body touches what turns with the mandrel; swept in the same way.
+/// \pre step has two points
+[[nodiscard]] bool head_strikes(const Machine& machine, const HeadEnvelope& envelope,
+                                const RayQuery& obstacles, const JointPath& step,
+                                double clearance_mm);
+
 /// Pieces and steps smaller than this are not split further and count as a hit.
 inline constexpr double kSweepResolution_mm = 0.03;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 
@@ -84,6 +85,17 @@ double CsvTable::number(std::size_t column) const {
                                  std::string(names_[column]) + " is not a number");
     }
     return value;
+}
+
+std::int32_t CsvTable::whole_number(std::size_t column) const {
+    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+    const double value = number(column);
+    if (std::abs(value) > kMost) {
+        fail(errors_.number, "'" + std::string(cells_[column]) + "' in column " +
+                                 std::string(names_[column]) +
+                                 " is no number of a course or point");
+    }
+    return static_cast<std::int32_t>(value);
 }
 
 Eigen::Vector3d CsvTable::vector(const std::array<std::size_t, 3>& columns) const {

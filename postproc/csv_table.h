@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,8 @@ public:
     /// Cells of the line.
     [[nodiscard]] std::string_view cell(std::size_t column) const { return cells_[column]; }
     [[nodiscard]] double number(std::size_t column) const;
+    /// A whole number of 32 bits; what stands behind its point is cut off.
+    [[nodiscard]] std::int32_t whole_number(std::size_t column) const;
     [[nodiscard]] Eigen::Vector3d vector(const std::array<std::size_t, 3>& columns) const;
 
     [[nodiscard]] int line() const { return line_; }  ///< counted from 1

@@ -40,7 +40,18 @@ void Dialect::check(const Machine& machine) const {
     for (std::size_t a = 0; a < list.axes.size(); ++a) {
         list.nano[list.axes.size() + a] = list.axes[a].resolution_nano;
     }
-    (void)write(machine, list, ProgramHeader{});
+    // A name that no controller takes for a command: it may stand in comments alone.
+    const ProgramHeader header{.version = "version", .mandrel = "part.stl"};
+    (void)write(machine, list, header);
+}
+
+std::vector<std::string> dialect_names() {
+    std::vector<std::string> names;
+    names.reserve(std::size(kDialects));
+    for (const auto& [word, maker] : kDialects) {
+        names.emplace_back(word);
+    }
+    return names;
 }
 
 std::unique_ptr<Dialect> make_dialect(std::string_view name) {

@@ -1,7 +1,6 @@
 /// What every controller language offers: blocks to text and text to blocks.
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +22,7 @@ struct ProgramHeader {
     std::string mandrel{};         ///< file name
     std::string mandrel_digest{};  ///< e.g. "sha256 1f2e.."
     std::string job_digest{};
+    std::string code_digest{};  ///< of code_of() what is written
     double fibre_length_mm = 0.0;
     std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
     /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is
@@ -41,10 +41,13 @@ public:
     /// With the point, e.g. ".ngc".
     [[nodiscard]] virtual std::string extension() const = 0;
 
+    /// How the machine's header lines make the controller go past corners; no words where the
+    /// language has none.
+    [[nodiscard]] virtual PathMode path_mode(const Machine&) const { return {}; }
     /// How far the controller may leave the corners between blocks, mm of the linear axes, as the
     /// machine's header lines tell it; infinite when they do not say, for then it keeps the feed.
-    [[nodiscard]] virtual double corner_tolerance_mm(const Machine&) const {
-        return std::numeric_limits<double>::infinity();
+    [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const {
+        return path_mode(machine).corner_mm;
     }
     /// Blocks last whole ticks of this length; 0: any time.
     [[nodiscard]] virtual double tick_s() const { return 0.0; }
@@ -86,7 +89,16 @@ public:
     /// \throws InputError nc.* with the place "file:line" for anything else
     [[nodiscard]] virtual BlockList read(std::string_view text, const std::string& file,
                                          const Machine& machine) const = 0;
+
+    /// What a program is but for its looks, to tell whether it was changed: its code in lower case
+    /// without blanks, line numbers and comments, and the comment that ties the fibre on; lines end
+    /// in \n. \throws InputError nc.comment
+    [[nodiscard]] virtual std::string code_of(std::string_view text,
+                                              const std::string& file) const = 0;
 };
+
+/// Names of all languages, in the order in which messages list them.
+[[nodiscard]] std::vector<std::string> dialect_names();
 
 /// \throws InputError dialect.unknown with the names that exist
 [[nodiscard]] std::unique_ptr<Dialect> make_dialect(std::string_view name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include "core/text_number.h"
@@ -88,16 +89,31 @@ private:
     int next_ = 1;
 };
 
-// In quotes; within them a quote is doubled, and so is a backslash.
+// In quotes; within them a quote is doubled, and so is a backslash. Other characters than plain
+// ASCII are written byte by byte, "\X\E4" (ISO 10303-21, 6.4.3.2).
 std::string step_text(const std::string& raw) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
     std::string text = "'";
     for (const char c : raw) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c < ' ' || c > '~') {
+            text += {'\\', 'X', '\\', kDigits[code / 16U], kDigits[code % 16U]};
+            continue;
+        }
         text += c;
         if (c == '\'' || c == '\\') {
             text += c;
         }
     }
     return text + '\'';
+}
+
+// One line, without what a reader of OBJ takes for more than a name.
+std::string obj_name(std::string name) {
+    for (char& c : name) {
+        c = c <= ' ' || c > '~' || c == '#' || c == '\\' ? '_' : c;
+    }
+    return name;
 }
 
 int add_context(StepData& data) {
@@ -176,7 +192,7 @@ std::string fibre_obj(std::span<const FibreLine> lines) {
     std::string text = "# Fibre by meshwind, mandrel frame, mm\n";
     std::size_t next = 1;
     for (const FibreLine& line : lines) {
-        text += "o " + line.name + '\n';
+        text += "o " + obj_name(line.name) + '\n';
         for (const Vector3d& point : line.points_mm) {
             text += "v ";
             append_point(text, point, ' ');

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/interrupt.h"
 #include "machines/eye_inverse.h"
 
 namespace meshwind {
@@ -84,6 +85,7 @@ JointPath solve_from(const Machine& machine, const EyeInverse& inverse, const Ey
     result.axis_count = machine.axis_count();
     result.joints.resize(path.size() * result.axis_count);
     for (std::size_t i = 0; i < path.size(); ++i) {
+        check_interrupt();
         const WristState state = inverse.solve(target_of(path[i]), turns_rad[i], joints, joints);
         std::copy(joints.begin(), joints.end(),
                   result.joints.begin() + static_cast<std::ptrdiff_t>(i * result.axis_count));

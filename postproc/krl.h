@@ -31,6 +31,9 @@
 
 namespace meshwind {
 
+/// Of the program's file, with the point.
+inline constexpr const char* kKrlExtension = ".src";
+
 /// Decimals of a program: 0.05 um, and 9e-8 rad, which is 0.1 um at a metre.
 inline constexpr int kKrlLengthDecimals = 4;
 inline constexpr int kKrlAngleDecimals = 5;

@@ -9,7 +9,9 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/text_number.h"
+#include "core/units.h"
 #include "geodesic/bridge.h"
 #include "geodesic/field_walk.h"
 #include "machines/kinematics.h"
@@ -51,6 +53,11 @@ constexpr double kLeastFree_mm = 1e-3;
 // Stations closer than this to the one before are not recorded.
 constexpr double kStation_mm = 1e-6;
 constexpr double kSameNormal = 1.0 - 1e-9;
+
+// Progress is told after so many blocks; whether an end is asked for is looked at after so many
+// samples of one: milliseconds.
+constexpr std::size_t kBlocksPerReport = 256;
+constexpr int kSamplesPerLook = 256;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
@@ -164,12 +171,18 @@ public:
     }
 
     LaidPath lay() {
+        check_extent();
         laid_.joints.axis_count = list_.axes.size();
         std::vector<double> from = joints_at(list_, 0);
         eye_mm_ = eye_at(from);
         record(walker_.station(eye_mm_ - walker_.position_mm()), 0.0, false);
         record_sample(from);
         for (block_ = 1; block_ < list_.blocks.size(); ++block_) {
+            check_interrupt();
+            if (options_.progress && block_ % kBlocksPerReport == 0) {
+                options_.progress(static_cast<double>(block_) /
+                                  static_cast<double>(list_.blocks.size()));
+            }
             const std::vector<double> to = joints_at(list_, block_);
             if (!move(from, to)) {
                 laid_.failed_block = block_;
@@ -185,8 +198,29 @@ private:
         return mandrel_from_eye(machine_, joints).translation();
     }
 
-    [[nodiscard]] int samples_of(const std::vector<double>& from,
-                                 const std::vector<double>& to) const {
+    // Whole programs that cannot be held are refused before they are begun.
+    void check_extent() const {
+        double samples = 0.0;
+        std::vector<double> from = joints_at(list_, 0);
+        for (std::size_t block = 1; block < list_.blocks.size(); ++block) {
+            const std::vector<double> to = joints_at(list_, block);
+            samples += samples_of(from, to, eye_at(from));
+            if (samples > kMostSamples) {
+                throw InputError(
+                    "verify.too_long", "",
+                    "up to " + block_words(list_, block) +
+                        " the axes go further than can be wound again, " +
+                        fixed(kMostSamples * options_.sample_mm / 1e6, 0) +
+                        " km of the eye's way or " +
+                        fixed(kMostSamples * options_.sample_rad / (2.0 * kPi), 0) +
+                        " turns; split the program, or mend a block that goes too far");
+            }
+            from = to;
+        }
+    }
+
+    [[nodiscard]] double samples_of(const std::vector<double>& from, const std::vector<double>& to,
+                                    const Vector3d& eye_mm) const {
         double turned = 0.0;
         double linear_squared = 0.0;
         double spindle = 0.0;
@@ -199,14 +233,13 @@ private:
                 spindle += j < machine_.mandrel_chain.size() ? change : 0.0;
             }
         }
-        const double way = std::sqrt(linear_squared) + spindle * eye_mm_.head<2>().norm();
-        return 1 +
-               static_cast<int>(std::max(way / options_.sample_mm, turned / options_.sample_rad));
+        const double way = std::sqrt(linear_squared) + spindle * eye_mm.head<2>().norm();
+        return 1.0 + std::floor(std::max(way / options_.sample_mm, turned / options_.sample_rad));
     }
 
     // One block; false where the fibre cannot be followed.
     bool move(const std::vector<double>& from, const std::vector<double>& to) {
-        const int samples = samples_of(from, to);
+        const auto samples = static_cast<int>(samples_of(from, to, eye_mm_));
         std::vector<double> joints(from.size());
         const auto joints_of = [&](double share) {
             for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -215,6 +248,9 @@ private:
             return joints;
         };
         for (int k = 0; k < samples; ++k) {
+            if (k % kSamplesPerLook == kSamplesPerLook - 1) {
+                check_interrupt();
+            }
             std::array<Vector3d, 4> nodes{eye_mm_};
             for (std::size_t i = 1; i < 4; ++i) {
                 nodes[i] = eye_at(joints_of((k + static_cast<double>(i) / 3.0) / samples));

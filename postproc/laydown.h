@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,12 @@ struct LaydownOptions {
     /// The eye moves no further and the rotary axes turn no further between two samples.
     double sample_mm = 10.0;
     double sample_rad = 0.1;
+    std::function<void(double share)> progress{};  ///< told of the blocks now and then
 };
+
+/// Samples of a program at most: 100 km of fibre at 10 mm, five times what a vessel of 3 m takes; a
+/// sample takes 400 bytes.
+inline constexpr double kMostSamples = 1e7;
 
 /// What fibre is laid on: a wall, with what laying looks up there. Built once for any number of
 /// programs and threads.
@@ -94,7 +100,9 @@ struct LaidPath {
 /// about the pin's foot as the fibre sinks to the wall there. Samples then begin on the flank, with
 /// the fibre up to there counted as laid.
 /// \param tie_on_mm within an edge of the wall
-/// \throws InputError verify.tie_on where it is not
+/// A cancellation point at each block, and a few times a second within one.
+/// \throws InputError verify.tie_on where it is not; verify.too_long for more than kMostSamples,
+/// before anything is laid
 /// Accuracy: tests/postproc/laydown_test.cpp.
 [[nodiscard]] LaidPath lay_down(const LaydownWall& wall, const Machine& machine,
                                 const BlockList& list, const Eigen::Vector3d& tie_on_mm,

@@ -32,8 +32,6 @@ namespace meshwind {
 class LinuxCnc final : public NcDialect {
 public:
     LinuxCnc() : NcDialect(linuxcnc_flavour()) {}
-    /// P of the last G64 of the header lines; without it, and with P0, there is none.
-    [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const override;
 };
 
 /// Characters of a line that the interpreter still reads, comments included.

@@ -1,5 +1,6 @@
 #include "postproc/mend_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -64,28 +65,33 @@ void MotionImprover::optimise(std::span<const char> free, bool mending) {
                             .fixed_lengths = fixed_lengths_});
 }
 
-void MotionImprover::mark(std::size_t station, double reach_mm, std::vector<char>& marks) const {
+MotionImprover::Range MotionImprover::about(std::size_t station, double reach_mm) const {
     const double s_mm = path_[station].s_mm;
-    for (std::size_t i = station + 1; i-- > 0 && s_mm - path_[i].s_mm <= reach_mm;) {
-        marks[i] = 1;
+    Range range{station, station};
+    while (range.first > 0 && s_mm - path_[range.first - 1].s_mm <= reach_mm) {
+        --range.first;
     }
-    for (std::size_t i = station; i < path_.size() && path_[i].s_mm - s_mm <= reach_mm; ++i) {
-        marks[i] = 1;
+    while (range.second + 1 < path_.size() && path_[range.second + 1].s_mm - s_mm <= reach_mm) {
+        ++range.second;
     }
+    return range;
+}
+
+void MotionImprover::mark(std::size_t station, double reach_mm, std::vector<char>& marks) const {
+    const auto [first, last] = about(station, reach_mm);
+    std::fill(marks.begin() + static_cast<std::ptrdiff_t>(first),
+              marks.begin() + static_cast<std::ptrdiff_t>(last) + 1, 1);
 }
 
 bool MotionImprover::mark_back(std::size_t station, double reach_mm,
                                std::vector<char>& marks) const {
     const double path_mm = path_.back().s_mm - path_.front().s_mm;
     for (double reach = reach_mm; reach < 2.0 * path_mm; reach *= 2.0) {
-        std::vector<char> more(path_.size(), 0);
-        mark(station, reach, more);
-        bool any = false;
-        for (std::size_t i = 0; i < path_.size(); ++i) {
-            any = any || (more[i] != 0 && given_up_[i] == 0);
-            marks[i] = static_cast<char>(marks[i] | more[i]);
-        }
-        if (any) {
+        mark(station, reach, marks);
+        const auto [first, last] = about(station, reach);
+        const auto given_up = given_up_.begin() + static_cast<std::ptrdiff_t>(first);
+        if (std::find(given_up, given_up_.begin() + static_cast<std::ptrdiff_t>(last) + 1, 0) !=
+            given_up_.begin() + static_cast<std::ptrdiff_t>(last) + 1) {
             return true;
         }
     }

@@ -45,6 +45,9 @@ private:
     void optimise(std::span<const char> free, bool mending);
     /// Marks what is put back about a station. False where all of the path was already.
     bool mark_back(std::size_t station, double reach_mm, std::vector<char>& marks) const;
+    using Range = std::pair<std::size_t, std::size_t>;
+    /// First and last station no further from one than so much fibre.
+    [[nodiscard]] Range about(std::size_t station, double reach_mm) const;
     void mark(std::size_t station, double reach_mm, std::vector<char>& marks) const;
     void put_back(const std::vector<char>& marks, std::vector<char>& changed);
     void note_changes(const std::vector<char>& changed);

@@ -39,6 +39,9 @@ constexpr std::size_t kChunk = 32;
 // States that are so much later than the best one are given up.
 constexpr double kBeam_s = 0.5;
 
+// Far more than sums of times are rounded by.
+constexpr double kRounding_s = 1e-9;
+
 // States of a knot: a grid of turns and lengths, and the given motion.
 constexpr std::size_t kGiven = std::size_t{kTurns} * kLengths;
 constexpr std::size_t kStates = kGiven + 1;
@@ -91,22 +94,7 @@ public:
             if (k + 1 < n) {
                 fill(k + 1, now, after);
             }
-            from[k].assign(kStates, 0);
-            std::vector<double> next(kStates, kInfinity);
-            const std::size_t first = knots_[k].kept ? kGiven : 0;
-            parallel_for(kStates - first, kChunk, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t s = first + begin; s < first + end; ++s) {
-                    if (!in_reach(s, cost) || !clear(k, s, now)) {
-                        continue;
-                    }
-                    const auto [best, at] = best_before(k, s, before, now, cost);
-                    if (best == kInfinity) {
-                        continue;
-                    }
-                    from[k][s] = static_cast<std::uint16_t>(at);
-                    next[s] = best + (k + 1 < n ? stay_s(k, s, before, now, after) : 0.0);
-                }
-            });
+            const std::vector<double> next = advance(k, before, now, after, cost, from[k]);
             const double least = *std::min_element(next.begin(), next.end());
             if (least == kInfinity) {
                 return {};
@@ -119,6 +107,55 @@ public:
     }
 
 private:
+    // The times at which the states of a knot are reached at best, and from which states.
+    std::vector<double> advance(std::size_t k, const Column& before, const Column& now,
+                                const Column& after, const std::vector<double>& cost,
+                                std::vector<std::uint16_t>& from) const {
+        from.assign(kStates, 0);
+        std::vector<double> next(kStates, kInfinity);
+        const bool last = k + 1 == knots_.size();
+        const auto stay = [&](std::size_t s) {
+            return last ? 0.0 : stay_s(k, s, before, now, after);
+        };
+        const double latest_s = latest(k, before, now, cost, stay);
+        const std::size_t first = knots_[k].kept ? kGiven : 0;
+        parallel_for(kStates - first, kChunk, [&](std::size_t begin, std::size_t end) {
+            std::vector<Best> steps;
+            for (std::size_t s = first + begin; s < first + end; ++s) {
+                if (!in_reach(s, cost) || !clear(k, s, now)) {
+                    continue;
+                }
+                const double stay_here_s = stay(s);
+                const Best best =
+                    best_before(k, s, before, now, cost,
+                                s == kGiven ? kInfinity : latest_s - stay_here_s, steps);
+                if (best.cost < kInfinity) {
+                    from[s] = static_cast<std::uint16_t>(best.state);
+                    next[s] = best.cost + stay_here_s;
+                }
+            }
+        });
+        return next;
+    }
+
+    // States that are reached later than this are given up: those that stay as they are, the given
+    // one and the first of all, are reached by then.
+    template <typename Stay>
+    [[nodiscard]] double latest(std::size_t k, const Column& before, const Column& now,
+                                const std::vector<double>& cost, const Stay& stay) const {
+        const auto arrival = [&](std::size_t s) {
+            return cost[s] + step_cost(k, s, s, before, now) + stay(s);
+        };
+        double least = cost[kGiven] < kInfinity ? arrival(kGiven) : kInfinity;
+        const auto first =
+            static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+        if (first != kGiven && !knots_[k].kept && arrival(first) < least && clear(k, first, now) &&
+            passes(k, before.choice[first], now.choice[first])) {
+            least = arrival(first);
+        }
+        return least + kBeam_s + kRounding_s;
+    }
+
     [[nodiscard]] KnotChoice choice(std::size_t k, std::size_t s) const {
         if (s == kGiven) {
             return knots_[k].given;
@@ -159,7 +196,8 @@ private:
     [[nodiscard]] double move(const Column& a, std::size_t from, const Column& b, std::size_t to,
                               std::size_t axis) const {
         const double d = b.joints[to * axes_ + axis] - a.joints[from * axes_ + axis];
-        return wraps_[axis] ? std::remainder(d, 2.0 * kPi) : d;
+        // Within half a turn the remainder is the difference itself.
+        return wraps_[axis] && std::abs(d) >= kPi ? std::remainder(d, 2.0 * kPi) : d;
     }
 
     // How much longer the accelerations make a step, were the state to stay as it is.
@@ -179,6 +217,7 @@ private:
     struct Best {
         double cost = kInfinity;
         std::size_t state = 0;
+        std::size_t order = 0;
     };
 
     [[nodiscard]] double step_cost(std::size_t k, std::size_t from, std::size_t to,
@@ -212,21 +251,33 @@ private:
         return knots_.clear_between(k - 1, from, near);
     }
 
+    // Whether a step is clear costs much more to know than how long it takes: the cheapest are
+    // asked first, and the first that is clear is the best. None where that would be later than the
+    // latest.
     [[nodiscard]] Best best_before(std::size_t k, std::size_t s, const Column& before,
-                                   const Column& now, const std::vector<double>& cost) const {
-        Best best;
-        const auto consider = [&](std::size_t from) {
-            if (cost[from] == kInfinity) {
-                return;
+                                   const Column& now, const std::vector<double>& cost,
+                                   double latest, std::vector<Best>& steps) const {
+        steps.clear();
+        for_states_before(s, [&](std::size_t from) {
+            if (cost[from] + knots_.step_s(k - 1) <= latest) {
+                const double c = cost[from] + step_cost(k, from, s, before, now);
+                if (c < kInfinity && c <= latest) {
+                    steps.push_back({c, from, steps.size()});
+                }
             }
-            const double c = cost[from] + step_cost(k, from, s, before, now);
-            const bool given = from == kGiven && s == kGiven;
-            if (c < best.cost && (given || passes(k, before.choice[from], now.choice[s]))) {
-                best = {c, from};
+        });
+        for (auto first = steps.begin(); first != steps.end(); ++first) {
+            // Of equals the one that was thought of first.
+            std::iter_swap(first,
+                           std::min_element(first, steps.end(), [](const Best& a, const Best& b) {
+                               return a.cost < b.cost || (a.cost == b.cost && a.order < b.order);
+                           }));
+            const bool given = first->state == kGiven && s == kGiven;
+            if (given || passes(k, before.choice[first->state], now.choice[s])) {
+                return *first;
             }
-        };
-        for_states_before(s, consider);
-        return best;
+        }
+        return {};
     }
 
     // The states from which a step to this one is thought of.

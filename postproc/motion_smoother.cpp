@@ -118,21 +118,27 @@ public:
     std::vector<KnotChoice> run() {
         evaluate();
         std::vector<KnotChoice> best = choices_;
+        std::vector<double> best_joints = joints_;
         double best_s = time_s();
         double damping = kFirstDamping;
+        bool moved = true;
         for (int round = 0; round < kRounds; ++round) {
-            find_ranges();
-            differentiate();
+            if (moved) {
+                find_ranges();
+                differentiate();
+            }
             step(damping);
             evaluate();
             const double now = time_s();
-            if (now < best_s) {
+            moved = now < best_s;
+            if (moved) {
                 best_s = now;
                 best = choices_;
+                best_joints = joints_;
                 damping *= kLessDamping;
             } else {
                 choices_ = best;
-                evaluate();
+                joints_ = best_joints;
                 damping *= kMoreDamping;
             }
         }

@@ -1,11 +1,8 @@
 #include "postproc/nc_dialects.h"
 
-#include <limits>
 #include <utility>
 
 #include "postproc/float32_steps.h"
-#include "postproc/linuxcnc.h"
-#include "postproc/linuxcnc_words.h"
 #include "postproc/nc_reader.h"
 #include "postproc/nc_writer.h"
 
@@ -48,25 +45,12 @@ BlockList NcDialect::read(std::string_view text, const std::string& file,
     return read_nc(flavour_, text, file, machine);
 }
 
-double LinuxCnc::corner_tolerance_mm(const Machine& machine) const {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    double tolerance_mm = kNone;
-    for (const std::string& text : machine.controller.header) {
-        NcLine line;
-        line.file = &machine.name;
-        line.split(text);
-        bool blends = false;
-        std::int64_t nano = 0;
-        for (const NcWord& word : line.words) {
-            blends = blends || (word.letter == 'G' && line.code(word) == 640);
-            nano = word.letter == 'P' ? line.nano(word) : nano;
-        }
-        if (blends) {
-            tolerance_mm =
-                nano > 0 ? static_cast<double>(nano) / static_cast<double>(kNanoPerUnit) : kNone;
-        }
-    }
-    return tolerance_mm;
+std::string NcDialect::code_of(std::string_view text, const std::string& file) const {
+    return code_of_nc(flavour_.comments, text, file);
+}
+
+PathMode NcDialect::path_mode(const Machine& machine) const {
+    return path_mode_of(flavour_, machine);
 }
 
 }  // namespace meshwind

@@ -26,6 +26,7 @@ public:
 
     [[nodiscard]] std::string name() const override { return std::string(flavour_.dialect); }
     [[nodiscard]] std::string extension() const override { return std::string(flavour_.extension); }
+    [[nodiscard]] PathMode path_mode(const Machine& machine) const override;
     [[nodiscard]] BlockList prepare(BlockList list) const override;
     [[nodiscard]] FoldedProgram fold(BlockList list) const override;
     using Dialect::write;
@@ -34,6 +35,8 @@ public:
                                     const ProgramHeader& header) const override;
     [[nodiscard]] BlockList read(std::string_view text, const std::string& file,
                                  const Machine& machine) const override;
+    [[nodiscard]] std::string code_of(std::string_view text,
+                                      const std::string& file) const override;
 
 private:
     const NcFlavour& flavour_;

@@ -12,29 +12,29 @@ namespace {
 constexpr std::string_view kTieOn = "tie the fibre on at the landing point, then start again";
 
 constexpr std::array<NcHarmless, 8> kLinuxCncG = {
-    {{170}, {210}, {400}, {490}, {540}, {610}, {611}, {640, "PQ"}}};
+    {{170}, {210}, {400}, {490}, {540}, {610, "", true}, {611, "", true}, {640, "PQ", true}}};
 
 // G05.1 and G08 are look-ahead.
 constexpr std::array<NcHarmless, 9> kFanucG = {
-    {{51, "Q"}, {80, "P"}, {170}, {210}, {400}, {490}, {540}, {610}, {640}}};
+    {{51, "Q"}, {80, "P"}, {170}, {210}, {400}, {490}, {540}, {610, "", true}, {640, "", true}}};
 
 constexpr std::array<NcHarmless, 13> kSiemensG = {{{170},
                                                    {400},
                                                    {540},
-                                                   {600},
-                                                   {640},
+                                                   {600, "", true},
+                                                   {640, "", true},
                                                    {710},
                                                    {5000},
-                                                   {6410},
-                                                   {6420},
-                                                   {6430},
-                                                   {6440},
-                                                   {6450},
+                                                   {6410, "", true},
+                                                   {6420, "", true},
+                                                   {6430, "", true},
+                                                   {6440, "", true},
+                                                   {6450, "", true},
                                                    {7100}}};
 constexpr std::array<std::string_view, 8> kSiemensWords = {"SOFT",  "BRISK",  "DRIVE", "FFWON",
                                                            "FFWOF", "COMPOF", "ADIS=", "ADISPOS="};
 
-constexpr std::array<NcHarmless, 6> kGrblG = {{{170}, {210}, {400}, {490}, {540}, {610}}};
+constexpr std::array<NcHarmless, 6> kGrblG = {{{170}, {210}, {400}, {490}, {540}, {610, "", true}}};
 
 constexpr std::array<NcHarmless, 1> kMarlinG = {{{210}}};
 // Motors on, kinds of E, speeds, accelerations, jerk.
@@ -144,7 +144,7 @@ const NcFlavour& grbl_flavour() {
         .not_in_comments = "!?~",  // hold, status and start, wherever they come in the stream
         .stand_in = '_',
         .line_length = 79,
-        .blanks_count = false,
+        .counted = NcCounted::Code,
         .most_digits = 8,
         .first_modes = "G21 G90 G94 G17 G40 G49 G80\n",
         .absolute = "G90 ",
@@ -171,6 +171,7 @@ const NcFlavour& marlin_flavour() {
         .free_xyz = true,
         .comments = NcComments::Semicolon,
         .line_length = 95,
+        .counted = NcCounted::UpToComment,  // queue.cpp stores no character behind ;
         .one_command = true,
         .first_modes = "G21\nG90\n",
         .absolute = "G90\n",

@@ -16,6 +16,14 @@ namespace meshwind {
 struct NcHarmless {
     int tenths = 0;  ///< G61.1 is 611
     std::string_view parameters{};
+    bool path = false;  ///< it says how corners are passed (PathMode)
+};
+
+/// What a controller counts of a line that may be too long for it.
+enum class NcCounted {
+    All,
+    UpToComment,  ///< what stands behind ; is dropped before
+    Code,         ///< nor do blanks and comments in brackets count
 };
 
 /// How circuits that repeat are written.
@@ -49,12 +57,12 @@ struct NcFlavour {
     std::string_view not_in_comments{};  ///< characters with a meaning even there
     char stand_in = '?';                 ///< written in their place
     std::size_t line_length = 252;       ///< characters of a line
-    bool blanks_count = true;            ///< so do blanks and comments
-    std::size_t most_digits = 0;         ///< of a number, leading zeros as well; 0: any
-    bool needs_point = false;            ///< in every number of an axis and F
-    bool one_command = false;            ///< one G or M a line, in front, in upper case
-    bool percent = false;                ///< % in the first and in the last line
-    bool o_number = false;               ///< O0001 (TITLE) in the second
+    NcCounted counted = NcCounted::All;
+    std::size_t most_digits = 0;  ///< of a number, leading zeros as well; 0: any
+    bool needs_point = false;     ///< in every number of an axis and F
+    bool one_command = false;     ///< one G or M a line, in front, in upper case
+    bool percent = false;         ///< % in the first and in the last line
+    bool o_number = false;        ///< O0001 (TITLE) in the second
 
     // Modes.
     std::string_view first_modes;    ///< lines

@@ -56,9 +56,10 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
     append_if(lines, "mandrel digest: ", header.mandrel_digest);
     lines.push_back("machine: " + machine.name);
     append_if(lines, "job digest: ", header.job_digest);
+    append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
     lines.push_back("time: " + fixed(list.duration_s(), 1) + " s");
-    lines.push_back("blocks: " + std::to_string(list.blocks.size() - 1));
+    lines.push_back("blocks: " + std::to_string(list.moves()));
     if (header.tie_on_mm) {
         const Eigen::Vector3d& p = *header.tie_on_mm;
         lines.push_back("tie on at X" + fixed(p.x(), 3) + " Y" + fixed(p.y(), 3) + " Z" +
@@ -84,7 +85,7 @@ LineValues line_values(const NcFlavour& flavour, const Machine& machine, const B
             .machine = plain(machine.name),
             .time_s = fixed(list.duration_s(), 1),
             .fibre_m = fixed(header.fibre_length_mm / kMmPerM, 3),
-            .blocks = std::to_string(list.blocks.size() - 1),
+            .blocks = std::to_string(list.moves()),
             .version = plain(header.version)};
 }
 

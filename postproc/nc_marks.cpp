@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -6,6 +7,8 @@
 
 namespace meshwind {
 namespace {
+
+constexpr std::string_view kTieOn = "tie on";
 
 [[noreturn]] void bad_tie_on(const NcLine& line) {
     line.fail("nc.tie_on",
@@ -17,6 +20,7 @@ namespace {
 void NcMarks::read(const NcLine& line, BlockList& list) {
     for (std::string_view comment : line.comments) {
         tie_on(line, comment, list);
+        head(line, comment, list);
         constexpr std::string_view kCourse = "course ";
         if (comment.substr(0, kCourse.size()) == kCourse) {
             comment.remove_prefix(kCourse.size());
@@ -30,9 +34,24 @@ void NcMarks::read(const NcLine& line, BlockList& list) {
     }
 }
 
+void NcMarks::head(const NcLine& line, std::string_view comment, BlockList& list) {
+    if (!list.head) {
+        return;
+    }
+    constexpr std::string_view kMadeBy = "meshwind ";
+    // Behind "%" and the title at most.
+    constexpr std::int32_t kLastOfMaker = 3;
+    if (line.number <= kLastOfMaker && comment.substr(0, kMadeBy.size()) == kMadeBy) {
+        list.head->by_meshwind = true;
+    }
+    if (comment.substr(0, kCodeDigest.size()) == kCodeDigest) {
+        list.head->code_digest = comment.substr(kCodeDigest.size());
+    }
+}
+
 void NcMarks::tie_on(const NcLine& line, std::string_view comment, BlockList& list) {
     static constexpr std::array<std::string_view, 3> kBefore = {"tie on at X", " Y", " Z"};
-    if (comment.substr(0, 6) != "tie on") {
+    if (comment.substr(0, kTieOn.size()) != kTieOn) {
         return;
     }
     if (list.tie_on_mm) {
@@ -54,6 +73,27 @@ void NcMarks::tie_on(const NcLine& line, std::string_view comment, BlockList& li
         bad_tie_on(line);
     }
     list.tie_on_mm = place;
+}
+
+std::string code_of_nc(NcComments comments, std::string_view text, const std::string& file) {
+    NcLine line;
+    line.file = &file;
+    line.style = comments;
+    std::string all;
+    for (const std::string_view words : lines_of_text(text)) {
+        ++line.number;
+        std::string code = line.split_comments(words);
+        if (!code.empty() && code.front() == 'n') {
+            code.erase(0, std::min(code.find_first_not_of("0123456789", 1), code.size()));
+        }
+        for (const std::string_view comment : line.comments) {
+            if (comment.substr(0, kTieOn.size()) == kTieOn) {
+                code += comment.substr(0, comment.find_last_not_of(" \t") + 1);
+            }
+        }
+        all += code.empty() || code == "%" ? "" : code + '\n';
+    }
+    return all;
 }
 
 std::vector<std::string_view> lines_of_text(std::string_view text) {

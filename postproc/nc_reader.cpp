@@ -8,12 +8,21 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/interrupt.h"
+#include "core/text_number.h"
 #include "postproc/float32_steps.h"
+#include "postproc/header_lines.h"
 
 namespace meshwind {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
+
+// A program needs two to get to its start; each that is kept takes some hundred bytes.
+constexpr std::size_t kMostRapidMoves = 1000;
+
+// Lines are run between two looks at whether an end is asked for: some milliseconds.
+constexpr std::int64_t kLinesPerLook = 4096;
 
 const NcHarmless* harmless(std::span<const NcHarmless> codes, int tenths) {
     const auto found = std::find_if(codes.begin(), codes.end(),
@@ -24,7 +33,7 @@ const NcHarmless* harmless(std::span<const NcHarmless> codes, int tenths) {
 class Reader {
 public:
     Reader(const NcFlavour& flavour, std::string file, const Machine& machine)
-        : flavour_(flavour), file_(std::move(file)) {
+        : flavour_(flavour), file_(std::move(file)), machine_name_(machine.name) {
         line_.file = &file_;
         line_.style = flavour.comments;
         axis_of_.fill(-1);
@@ -35,12 +44,23 @@ public:
         }
         position_.assign(list_.axes.size(), 0);
         placed_.assign(list_.axes.size(), false);
+        list_.head.emplace().has_approach = true;
+    }
+
+    // Of lines that were read.
+    [[nodiscard]] PathMode path_mode() const {
+        const std::vector<PathModeFrom>& modes = list_.head->path_modes;
+        return modes.empty() ? PathMode{} : modes.back().mode;
     }
 
     BlockList program(std::string_view text) && {
         const std::vector<std::string_view> lines = lines_of_text(text);
         const ProgramFlow flow = flow_of(lines);
+        std::int64_t run = 0;
         run_flow(flow, file_, [&](std::int32_t number, FlowLine kind) {
+            if (++run % kLinesPerLook == 0) {
+                check_interrupt();
+            }
             line_.number = number;
             const std::string_view words = lines[static_cast<std::size_t>(number) - 1];
             if (kind == FlowLine::Code) {
@@ -55,7 +75,7 @@ public:
         if (!ended_) {
             fail("nc.no_end", "the program has no " + end_words() + "; the file may be cut off");
         }
-        if (list_.blocks.empty()) {
+        if (list_.blocks.size() < 2) {
             fail("nc.no_motion", "the program has no feed move; there is nothing to wind");
         }
         if (flavour_.float32 != Float32Text::None) {
@@ -102,11 +122,13 @@ private:
         return flow;
     }
 
-    // Where blanks and comments count for nothing, `text` is taken without them.
+    // Without what the controller drops before it counts.
     void check_length(std::string_view text) {
         std::size_t length = text.size();
-        if (length > flavour_.line_length && !flavour_.blanks_count) {
+        if (length > flavour_.line_length && flavour_.counted == NcCounted::Code) {
             length = line_.split_comments(text).size();
+        } else if (length > flavour_.line_length && flavour_.counted == NcCounted::UpToComment) {
+            length = std::min(text.find(';'), length);
         }
         if (length > flavour_.line_length) {
             fail("nc.long_line", "has " + std::to_string(length) +
@@ -210,6 +232,8 @@ private:
     void execute() {
         feed_word_.reset();
         parameters_.clear();
+        path_code_ = nullptr;
+        stops_ = false;
         int motions = 0;
         for (const NcWord& word : line_.words) {
             if (word.letter == 'G') {
@@ -229,7 +253,7 @@ private:
             } else if (axis_of(word) >= 0) {
                 axes = true;
             } else if (word.letter != 'G' && word.letter != 'M') {
-                line_.not_understood(word);
+                no_such_word(word);
             }
         }
         if (motions > 1) {
@@ -238,8 +262,50 @@ private:
         if (feed_word_ && !inverse_time_) {
             feed_per_minute_ = *feed_word_;
         }
+        if (path_code_ != nullptr) {
+            set_path_mode();
+        }
         if (axes) {
             move();
+        }
+        if (stops_ && list_.blocks.empty()) {
+            list_.head->stop_line = line_.number;
+        }
+    }
+
+    [[noreturn]] void no_such_word(const NcWord& word) const {
+        if (flavour_.letters.find(word.letter) == std::string_view::npos) {
+            line_.not_understood(word);
+        }
+        fail("nc.no_axis", std::string("\"") + word.letter + std::string(word.number) +
+                               "\" moves an axis that the machine \"" + machine_name_ +
+                               "\" does not have; is it the machine of this program?");
+    }
+
+    // The code with its parameters, numbers as short as they can be.
+    void set_path_mode() {
+        PathMode mode;
+        mode.words = "G" + std::to_string(path_code_->tenths / 10);
+        mode.words +=
+            path_code_->tenths % 10 == 0 ? "" : "." + std::to_string(path_code_->tenths % 10);
+        for (const char letter : path_code_->parameters) {
+            for (const NcWord& word : line_.words) {
+                if (word.letter == letter) {
+                    const double value =
+                        static_cast<double>(line_.nano(word)) / static_cast<double>(kNanoPerUnit);
+                    mode.words += std::string(" ") + letter;
+                    append_shortest(mode.words, value);
+                    mode.corner_mm = letter == 'P' && value > 0.0 ? value : mode.corner_mm;
+                }
+            }
+        }
+        std::vector<PathModeFrom>& modes = list_.head->path_modes;
+        if (!modes.empty() && modes.back().block >= list_.blocks.size()) {
+            modes.pop_back();  // nothing has run in it
+        }
+        if (path_mode().words != mode.words) {
+            modes.push_back(
+                {std::move(mode), std::max<std::size_t>(list_.blocks.size(), 1), line_.number});
         }
     }
 
@@ -247,6 +313,7 @@ private:
         const NcHarmless* known = harmless(flavour_.harmless_g, number);
         if (known != nullptr) {
             parameters_ += known->parameters;
+            path_code_ = known->path ? known : path_code_;
         } else if (number == 0 || number == 10) {
             motion_ = number == 0 ? Motion::Rapid : Motion::Feed;
         } else if (number == 800 && flavour_.has_feed_modes) {
@@ -271,6 +338,7 @@ private:
         } else if (number != 0 && number != 10) {
             line_.not_understood(word);
         }
+        stops_ = stops_ || number == 0;
     }
 
     void move() {
@@ -288,15 +356,35 @@ private:
             }
         }
         if (motion_ == Motion::Rapid) {
-            if (!list_.blocks.empty()) {
-                fail("nc.rapid", "a rapid move after the first feed move would tear the fibre");
-            }
-            any_placed_ = true;
+            rapid();
             return;
+        }
+        if (!inverse_time_ && position_ == before) {
+            return;  // no way, no time: nothing is run
         }
         list_.blocks.push_back(
             {.duration_s = duration_s(before), .piece = marks_.piece(), .line = line_.number});
         list_.nano.insert(list_.nano.end(), position_.begin(), position_.end());
+    }
+
+    void rapid() {
+        if (!list_.blocks.empty()) {
+            fail("nc.rapid", "a rapid move after the first feed move would tear the fibre");
+        }
+        any_placed_ = true;
+        if (list_.head->approach.size() == kMostRapidMoves) {
+            fail("nc.too_many_lines", "more than " + std::to_string(kMostRapidMoves) +
+                                          " rapid moves lead to the start; leave some out");
+        }
+        RapidMove move{position_, placed_, std::vector<bool>(position_.size(), false),
+                       line_.number};
+        for (const NcWord& word : line_.words) {
+            if (axis_of(word) >= 0) {
+                move.named[static_cast<std::size_t>(axis_of(word))] = true;
+            }
+        }
+        list_.head->approach.push_back(std::move(move));
+        list_.head->stop_line = 0;
     }
 
     // The place where the first feed move begins is block 0.
@@ -324,6 +412,11 @@ private:
         if (incremental_ && __builtin_add_overflow(position_[axis], value, &sum)) {
             line_.bad_number(word);
         }
+        if (const std::string words =
+                beyond_one_block(list_.axes[axis], placed_[axis] ? position_[axis] : sum, sum);
+            !words.empty()) {
+            fail("nc.too_far", words);
+        }
         position_[axis] = sum;
         placed_[axis] = placed_[axis] || !incremental_;
     }
@@ -347,6 +440,7 @@ private:
 
     const NcFlavour& flavour_;
     const std::string file_;
+    const std::string machine_name_;
     BlockList list_;
     std::array<int, 26> axis_of_{};
     std::vector<std::int64_t> position_;
@@ -359,21 +453,32 @@ private:
     bool any_placed_ = false;
     double feed_per_minute_ = 0.0;
     std::optional<double> feed_word_;
-    std::string parameters_;  // letters that belong to a harmless code of the line
-    std::string kept_;        // the line without harmless words
+    const NcHarmless* path_code_ = nullptr;  // of the line
+    bool stops_ = false;                     // the line has M0
+    std::string parameters_;                 // letters that belong to a harmless code of the line
+    std::string kept_;                       // the line without harmless words
     NcMarks marks_;
 };
 
 }  // namespace
 
 void check_own_line(const NcFlavour& flavour, const Machine& machine, const std::string& line) {
-    Reader reader(flavour, machine.name, machine);
     std::string trouble;
-    try {
-        reader.line(line);
-        trouble = reader.moved() ? "it moves, ends the program or ties the fibre on" : "";
-    } catch (const InputError& error) {
-        trouble = error.what();
+    const auto plain = [](char c) { return c >= ' ' && c <= '~'; };
+    if (!std::all_of(line.begin(), line.end(), plain)) {
+        trouble = "it has characters that are not plain ASCII";
+    } else if (line.find_first_not_of(" %") == std::string::npos && !line.empty() &&
+               line.find('%') != std::string::npos) {
+        trouble = "% begins or ends the program";
+    } else {
+        Reader reader(flavour, machine.name, machine);
+        try {
+            reader.line(line);
+            trouble = reader.moved() ? "it moves, ends the program or ties the fibre on" : "";
+        } catch (const InputError& error) {
+            // The place is that of the line in no file.
+            trouble = std::string(error.what()).substr(error.place().size() + 2);
+        }
     }
     if (!trouble.empty()) {
         throw InputError("dialect.header_line", machine.name,
@@ -382,6 +487,19 @@ void check_own_line(const NcFlavour& flavour, const Machine& machine, const std:
                              .append("\" cannot be used: ")
                              .append(trouble));
     }
+}
+
+PathMode path_mode_of(const NcFlavour& flavour, const Machine& machine) {
+    Reader reader(flavour, machine.name, machine);
+    for (const std::string& line :
+         filled_lines(machine.controller.header, LineValues{}, machine.name)) {
+        try {
+            reader.line(line);
+        } catch (const InputError&) {
+            // Said by check_own_line when it is written.
+        }
+    }
+    return reader.path_mode();
 }
 
 BlockList read_nc(const NcFlavour& flavour, std::string_view text, const std::string& file,

@@ -23,10 +23,19 @@ namespace meshwind {
 /// the program nor tie the fibre on. \throws InputError dialect.header_line
 void check_own_line(const NcFlavour& flavour, const Machine& machine, const std::string& line);
 
+/// How the machine's own header lines make the controller go past corners. Lines that cannot be
+/// used (check_own_line) say nothing. \throws InputError dialect.placeholder
+[[nodiscard]] PathMode path_mode_of(const NcFlavour& flavour, const Machine& machine);
+
+/// Dialect::code_of. \throws InputError nc.comment
+[[nodiscard]] std::string code_of_nc(NcComments comments, std::string_view text,
+                                     const std::string& file);
+
 /// Text as lines without their ends.
 [[nodiscard]] std::vector<std::string_view> lines_of_text(std::string_view text);
 
-/// The comments with a meaning: "course 3" and "tie on at X1.000 Y2.000 Z3.000 on the mandrel".
+/// The comments with a meaning: "course 3", "tie on at X1.000 Y2.000 Z3.000 on the mandrel",
+/// "code digest: 0f.." and, in the first line, "meshwind 1.0".
 class NcMarks {
 public:
     /// \throws InputError nc.tie_on
@@ -35,6 +44,7 @@ public:
 
 private:
     static void tie_on(const NcLine& line, std::string_view comment, BlockList& list);
+    static void head(const NcLine& line, std::string_view comment, BlockList& list);
     std::int32_t piece_ = -1;
 };
 

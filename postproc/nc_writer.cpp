@@ -264,6 +264,11 @@ private:
         const std::span<const std::int64_t> now = list_.row(i);
         const std::span<const std::int64_t> before = list_.row(i - 1);
         const std::size_t begin = text_.size();
+        if (std::equal(now.begin(), now.end(), before.begin())) {
+            throw InputError("dialect.duration", "block " + std::to_string(i),
+                             "moves no axis, so that no feed tells its time; join it with the "
+                             "next one");
+        }
         text_ += "G1";
         for (const std::size_t a : order_) {
             if (now[a] != before[a]) {

@@ -172,9 +172,13 @@ void MotionKnots::joints(std::size_t knot, const KnotChoice& choice,
 
 bool MotionKnots::head_clear(std::size_t station, const KnotChoice& choice) const {
     const EyePoint& at = task_.path[station];
-    const Eigen::Vector3d outward(std::cos(choice.turn_rad), -std::sin(choice.turn_rad), 0.0);
-    return head_spare_mm(task_.obstacles, task_.rule, at.landing_mm + choice.length_mm * at.tangent,
-                         outward, task_.more_mm[station]) >= 0.0;
+    const Eigen::Vector3d eye = at.landing_mm + choice.length_mm * at.tangent;
+    const auto outward = [&] {
+        return Eigen::Vector3d(std::cos(choice.turn_rad), -std::sin(choice.turn_rad), 0.0);
+    };
+    return is_head_clear(task_.obstacles, task_.rule, eye,
+                         task_.rule.arm.empty() ? Eigen::Vector3d::UnitX() : outward(),
+                         task_.more_mm[station]);
 }
 
 bool MotionKnots::clear(std::size_t knot, const KnotChoice& choice) const {

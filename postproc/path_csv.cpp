@@ -1,5 +1,6 @@
 #include "postproc/path_csv.h"
 
+#include "core/interrupt.h"
 #include "core/text_number.h"
 
 namespace meshwind {
@@ -9,6 +10,9 @@ constexpr int kLengthDecimals = 4;     // 0.1 um
 constexpr int kDirectionDecimals = 7;  // 0.1 urad
 constexpr int kCurvatureDecimals = 8;  // a radius of 100 m is seen
 constexpr int kRatioDecimals = 5;
+
+// Handed on at once.
+constexpr std::size_t kWritten_bytes = std::size_t{4} << 20;
 
 void append_vector(std::string& text, const Eigen::Vector3d& v, int decimals) {
     for (const double x : v) {
@@ -25,10 +29,18 @@ void append_cell(std::string& text, double value, int decimals) {
 }  // namespace
 
 std::string path_csv(std::span<const Piece> pieces, const EyePath& path) {
+    std::string text;
+    write_path_csv(pieces, path, [&text](std::string_view more) { text += more; });
+    return text;
+}
+
+void write_path_csv(std::span<const Piece> pieces, const EyePath& path,
+                    const std::function<void(std::string_view)>& write) {
     std::string text =
         "course,kind,point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,"
         "bridge_mm,free_length_mm\n";
     for (const EyePoint& eye : path) {
+        check_interrupt();
         const Piece& piece = pieces[static_cast<std::size_t>(eye.piece)];
         const auto i = static_cast<std::size_t>(eye.point);
         const PathPoint& station = piece.path[i];
@@ -45,8 +57,12 @@ std::string path_csv(std::span<const Piece> pieces, const EyePath& path) {
         append_cell(text, piece.string.gap_mm[i], kLengthDecimals);
         append_cell(text, eye.free_length_mm, kLengthDecimals);
         text += '\n';
+        if (text.size() > kWritten_bytes) {
+            write(text);
+            text.clear();
+        }
     }
-    return text;
+    write(text);
 }
 
 }  // namespace meshwind

@@ -55,6 +55,29 @@ std::optional<std::string> block_difference(const Machine& machine, const BlockL
                      kSameTime_s + kSameTimeShare * duration_s, " s", 6);
 }
 
+// Words where a rapid move takes an axis elsewhere than to the start. Starts of many digits are
+// taken in whole units first.
+std::string approach_difference(const BlockList& list, const PlannedMotion& start) {
+    constexpr double kWholeUnit = 1.0;
+    if (!list.head) {
+        return "";
+    }
+    for (const RapidMove& move : list.head->approach) {
+        for (std::size_t a = 0; a < list.axes.size(); ++a) {
+            const double is = static_cast<double>(move.nano[a]) / static_cast<double>(kNanoPerUnit);
+            if (move.named[a] && move.known[a] && std::abs(is - start.value[a]) >= kWholeUnit) {
+                const std::string unit = list.axes[a].type == AxisType::Rotary ? " deg" : " mm";
+                std::string words = "the rapid move of line " + std::to_string(move.line);
+                words +=
+                    std::string(" takes ") + list.axes[a].letter + " to " + fixed(is, 3) + unit;
+                words += ", planned is " + fixed(start.value[a], 3) + unit;
+                return words;
+            }
+        }
+    }
+    return "";
+}
+
 }  // namespace
 
 PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
@@ -67,9 +90,8 @@ PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
     const std::array tangent = {table.column("tx"), table.column("ty"), table.column("tz")};
     PlannedFibre fibre;
     while (table.next()) {
-        fibre.push_back({static_cast<std::int32_t>(table.number(course)),
-                         static_cast<std::int32_t>(table.number(point)), table.vector(position),
-                         table.vector(normal), table.vector(tangent),
+        fibre.push_back({table.whole_number(course), table.whole_number(point),
+                         table.vector(position), table.vector(normal), table.vector(tangent),
                          table.number(bridge) > kLifted_mm});
     }
     if (fibre.size() < 2) {
@@ -102,6 +124,11 @@ std::vector<PlannedMotion> read_motion_csv(std::string_view text, const std::str
 MotionDifference first_difference(const Machine& machine, const BlockList& list,
                                   const std::vector<PlannedMotion>& planned) {
     const std::size_t both = std::min(list.blocks.size(), planned.size());
+    if (!planned.empty()) {
+        if (const std::string words = approach_difference(list, planned.front()); !words.empty()) {
+            return {0, words};
+        }
+    }
     for (std::size_t b = 0; b < both; ++b) {
         const double duration_s = b == 0 ? 0.0 : planned[b].time_s - planned[b - 1].time_s;
         if (auto words = block_difference(machine, list, b, planned[b], duration_s)) {
@@ -109,8 +136,9 @@ MotionDifference first_difference(const Machine& machine, const BlockList& list,
         }
     }
     if (list.blocks.size() != planned.size()) {
-        return {both, "the program has " + std::to_string(list.blocks.size()) +
-                          " blocks, planned " + std::to_string(planned.size())};
+        return {both,
+                "the program has " + std::to_string(list.moves()) + " blocks, planned " +
+                    std::to_string(planned.size() - std::min<std::size_t>(planned.size(), 1))};
     }
     return {};
 }

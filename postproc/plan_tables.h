@@ -40,7 +40,8 @@ struct MotionDifference {
 
 /// Positions must agree to half a step of each axis, the eye to kSameEye_mm and its roller to
 /// kSameRoller, the time to
-/// kSameTime_s and its millionth part per block, and there must be as many blocks.
+/// kSameTime_s and its millionth part per block, and there must be as many blocks. Rapid moves
+/// before the first lead nowhere but to the start.
 [[nodiscard]] MotionDifference first_difference(const Machine& machine, const BlockList& list,
                                                 const std::vector<PlannedMotion>& planned);
 

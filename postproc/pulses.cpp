@@ -55,6 +55,7 @@ public:
             const Axis& axis = machine.axis(a);
             list_.axes.push_back({axis.letter, axis.type, axis.resolution_nano});
         }
+        list_.head.emplace();
     }
 
     BlockList program(std::string_view text) && {
@@ -249,6 +250,10 @@ private:
                 __builtin_add_overflow(before, move, &place)) {
                 wrong("a position within 9e9 mm or deg");
             }
+            if (const std::string words = beyond_one_block(list_.axes[a], before, place);
+                !words.empty()) {
+                line_.fail("nc.too_far", words);
+            }
             list_.nano.push_back(place);
         }
     }
@@ -310,9 +315,9 @@ private:
             try {
                 Reader(machine_.name, machine_).comment_only(line);
             } catch (const InputError& error) {
-                throw InputError(
-                    "dialect.header_line", machine_.name,
-                    "controller line \"" + line + "\" cannot be used: " + error.what());
+                throw InputError("dialect.header_line", machine_.name,
+                                 "controller line \"" + line + "\" cannot be used: " +
+                                     std::string(error.what()).substr(error.place().size() + 2));
             }
             text_ += line + '\n';
         }
@@ -384,6 +389,25 @@ std::string Pulses::write(const Machine& machine, const BlockList& list,
 BlockList Pulses::read(std::string_view text, const std::string& file,
                        const Machine& machine) const {
     return Reader(file, machine).program(text);
+}
+
+// Blanks stand between numbers here: one of any number of them counts.
+std::string Pulses::code_of(std::string_view text, const std::string& file) const {
+    std::string spaced;
+    for (const std::string_view line : lines_of_text(text)) {
+        const std::size_t end = std::min(line.find(';'), line.size());
+        bool first = true;
+        for (std::size_t i = 0; i < end;) {
+            const std::size_t stop = std::min(line.find(' ', i), end);
+            if (stop > i) {
+                spaced += (first ? "" : "_") + std::string(line.substr(i, stop - i));
+                first = false;
+            }
+            i = stop + 1;
+        }
+        spaced += std::string(line.substr(end)) + '\n';
+    }
+    return code_of_nc(NcComments::Semicolon, spaced, file);
 }
 
 }  // namespace meshwind

@@ -50,6 +50,8 @@ public:
                                     const ProgramHeader& header) const override;
     [[nodiscard]] BlockList read(std::string_view text, const std::string& file,
                                  const Machine& machine) const override;
+    [[nodiscard]] std::string code_of(std::string_view text,
+                                      const std::string& file) const override;
 };
 
 }  // namespace meshwind

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/interrupt.h"
+
 namespace meshwind {
 namespace {
 
@@ -363,6 +365,7 @@ FoldedProgram fold_repeats(BlockList list, const RepeatTolerance& tolerance) {
         Finder finder(list);
         Folder folder(list, tolerance);
         for (std::size_t start = 0; start + 1 < list.blocks.size();) {
+            check_interrupt();
             const std::optional<Run> run = finder.run_at(start);
             if (run) {
                 folder.fold(*run);

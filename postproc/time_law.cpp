@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/text_number.h"
 #include "machines/kinematics.h"
 
@@ -113,6 +114,7 @@ public:
         };
         bool changed = true;
         for (int sweeps = 0; changed && sweeps < kMostSweeps; ++sweeps) {
+            check_interrupt();
             changed = false;
             for (std::size_t m = 1; m <= count_; ++m) {
                 changed = visit(up, m, m - 1) || changed;
@@ -128,6 +130,7 @@ public:
     void slow_down() {
         std::vector<char> open(count_ + 4, 1);  // at 1 + m: to be looked at
         for (bool changed = true; changed;) {
+            check_interrupt();
             changed = false;
             for (std::size_t m = 1; m <= count_; ++m) {
                 if (open[1 + m] == 0) {
@@ -457,6 +460,7 @@ private:
         list_durations(0, factor, three[0]);
         list_durations(1, factor, three[1]);
         measure(0, three[0], three[1], before);
+        check_interrupt();
         for (std::size_t m = 1; m <= count_; ++m) {
             const Choices& last = three[(m - 1) % 3];
             const Choices& here = three[m % 3];

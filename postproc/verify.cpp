@@ -9,6 +9,8 @@
 #include "core/units.h"
 #include "geodesic/measure.h"
 #include "postproc/axis_loads.h"
+#include "postproc/roller_check.h"
+#include "postproc/verify_head.h"
 
 namespace meshwind {
 namespace {
@@ -36,21 +38,27 @@ public:
                              "the program does not say where the fibre is tied on; give --tie-on "
                              "X,Y,Z in the mandrel's frame");
         }
+        coarse_.assign(task_.program.blocks.size(), 0);
         found_.laid = lay_down(task_.wall, task_.machine, task_.program, *task_.program.tie_on_mm,
                                rules_.simulation);
         found_.fibre_length_mm = found_.laid.path.back().s_mm;
         found_.duration_s = task_.program.duration_s();
+        check_head();
         check_laydown();
         check_slip();
         check_bridging();
         check_collision();
         check_free_length();
+        check_roller();
         check_limits();
         check_payout();
-        for (std::vector<std::size_t>* const blocks :
-             {&found_.wrong_blocks, &found_.coarse_blocks}) {
-            std::sort(blocks->begin(), blocks->end());
-            blocks->erase(std::unique(blocks->begin(), blocks->end()), blocks->end());
+        std::vector<std::size_t>& wrong = found_.wrong_blocks;
+        std::sort(wrong.begin(), wrong.end());
+        wrong.erase(std::unique(wrong.begin(), wrong.end()), wrong.end());
+        for (std::size_t block = 0; block < coarse_.size(); ++block) {
+            if (coarse_[block] != 0) {
+                found_.coarse_blocks.push_back(block);
+            }
         }
         return std::move(found_);
     }
@@ -100,25 +108,74 @@ private:
         }
     }
 
-    // Blocks in which finer ones may help.
+    // A block in which finer ones may help.
     void note_coarse(std::size_t block) {
         found_.wrong_blocks.push_back(block);
-        found_.coarse_blocks.push_back(block);
+        coarse_[block] = 1;
     }
 
-    // The blocks that laid the fibre over `back_mm` up to a station.
-    void note_coarse_behind(std::size_t station, double back_mm) {
+    void note_fast(std::size_t block, double ratio) {
+        std::vector<FastBlock>& fast = found_.fast_blocks;
+        if (fast.empty() || fast.back().block != block) {
+            fast.push_back({block, ratio});
+            found_.wrong_blocks.push_back(block);
+        }
+        fast.back().ratio = std::max(fast.back().ratio, ratio);
+    }
+
+    // The blocks that laid the fibre over `back_mm` up to a station. Stations come in ascending
+    // order for a check, so what lies before the one noted last has been noted with it.
+    void note_coarse_behind(std::size_t station, double back_mm,
+                            std::optional<std::size_t>& noted_last) {
         const LaidPath& laid = found_.laid;
         const double from_mm = laid.path[station].s_mm - back_mm;
         found_.wrong_blocks.push_back(laid.at[station].block);
         for (std::size_t i = station;; --i) {
-            if (found_.coarse_blocks.empty() || found_.coarse_blocks.back() != laid.at[i].block) {
-                found_.coarse_blocks.push_back(laid.at[i].block);
-            }
-            if (i == 0 || laid.path[i].s_mm < from_mm) {
+            coarse_[laid.at[i].block] = 1;
+            if (i == 0 || laid.path[i].s_mm < from_mm || (noted_last && i <= *noted_last)) {
                 break;
             }
         }
+        noted_last = station;
+    }
+
+    // What fails before the first block is no matter of blocks.
+    void add_head_check(Check check, std::size_t block) {
+        if (!check.ok && block < found_.first_wrong_block.value_or(block + 1)) {
+            found_.first_wrong_block = block;
+        }
+        found_.checks.push_back(std::move(check));
+    }
+
+    void check_head() {
+        if (!task_.program.head) {
+            return;
+        }
+        add_head_check(tie_on_check(task_, found_.laid.path.front().position_mm), 0);
+        if (task_.program.head->has_approach) {
+            add_head_check(approach_check(task_), 0);
+            PathModeFinding mode = path_mode_check(task_);
+            add_head_check(std::move(mode.check), mode.block);
+        }
+    }
+
+    void check_roller() {
+        const RollerFinding roller = find_roller(task_.machine, found_.laid);
+        Check check{"roller", true, {}, {}};
+        check.numbers = {{"worst_deg", deg_from_rad(roller.worst_rad)},
+                         {"limit_deg", deg_from_rad(kRollerOff_rad)}};
+        put_at_sample(check, roller.wrong_sample.value_or(roller.worst_sample));
+        // Programs from elsewhere may be for an eye without a roller.
+        const bool asked = !task_.program.head || keeps_form(task_);
+        if (roller.wrong_sample && asked) {
+            const std::size_t block = found_.laid.block[*roller.wrong_sample];
+            fail(check, block,
+                 "the fibre leans " + fixed(deg_from_rad(roller.wrong_rad), 2) +
+                     " deg off the square to the roller, " +
+                     fixed(deg_from_rad(roller.wrong_rad - roller.forced_rad), 2) +
+                     " deg more than the machine forces, first in " + words_of(block));
+        }
+        found_.checks.push_back(check);
     }
 
     void check_laydown() {
@@ -132,9 +189,10 @@ private:
                              {"limit_mm", rules_.laydown.deviation_mm},
                              {"limit_deg", deg_from_rad(rules_.laydown.angle_rad)},
                              {"end_gap_mm", off.end_gap_mm}};
+            std::optional<std::size_t> noted;
             for (const std::size_t station : off.wrong) {
-                note_coarse_behind(station,
-                                   kPulledShare * rules_.collision.free_fibre.preferred_mm);
+                note_coarse_behind(station, kPulledShare * rules_.collision.free_fibre.preferred_mm,
+                                   noted);
             }
             const std::size_t last = task_.program.blocks.size() - 1;
             put_at_station(check, off.wrong.empty() ? off.max_at : off.wrong.front());
@@ -185,6 +243,7 @@ private:
         const std::vector<double> to_bridge = distance_to_bridges();
         std::size_t worst = 0;
         std::optional<std::size_t> first;
+        std::optional<std::size_t> noted;
         for (std::size_t i = 0; i < found_.slip.size(); ++i) {
             if (to_bridge[i] <= rules_.tow_width_mm) {
                 found_.slip[i] = 0.0;
@@ -192,17 +251,17 @@ private:
             worst = found_.slip[i] > found_.slip[worst] ? i : worst;
             if (found_.slip[i] > rules_.friction) {
                 first = first.value_or(i);
-                note_coarse_behind(i, 2.0 * rules_.tow_width_mm);
+                note_coarse_behind(i, 2.0 * rules_.tow_width_mm, noted);
             }
         }
         Check check{"slip", true, {}, {}};
         check.numbers = {{"limit", rules_.friction}, {"worst", found_.slip[worst]}};
         put_at_station(check, first.value_or(worst));
         if (first) {
+            const FixedPair shown = fixed_apart(found_.slip[worst], rules_.friction, 4);
             fail(check, laid.at[*first].block,
-                 "the laid fibre slips: ratio " + fixed(found_.slip[worst], 4) +
-                     " exceeds the friction " + fixed(rules_.friction, 4) + ", first in " +
-                     station_words(*first));
+                 "the laid fibre slips: ratio " + shown.value + " exceeds the friction " +
+                     shown.limit + ", first in " + station_words(*first));
         }
         found_.checks.push_back(check);
     }
@@ -223,10 +282,10 @@ private:
         check.numbers = {{"limit_mm", rules_.bridging_tolerance_mm}, {"worst_mm", worst_mm}};
         put_at_station(check, first.value_or(worst));
         if (first) {
+            const FixedPair shown = fixed_apart(worst_mm, rules_.bridging_tolerance_mm, 3);
             fail(check, laid.at[*first].block,
-                 "the laid fibre bridges by " + fixed(worst_mm, 3) + " mm, more than " +
-                     fixed(rules_.bridging_tolerance_mm, 3) + " mm, first in " +
-                     station_words(*first));
+                 "the laid fibre bridges by " + shown.value + " mm, more than " + shown.limit +
+                     " mm, first in " + station_words(*first));
         }
         found_.checks.push_back(check);
     }
@@ -294,17 +353,28 @@ private:
         put_at_sample(check, first.value_or(shortest));
         if (first) {
             fail(check, laid.block[*first],
-                 "the free length is " + fixed(laid.samples[*first].free_length_mm, 1) + " mm in " +
-                     words_of(laid.block[*first]) + ", outside the " + fixed(rule.min_mm, 1) +
-                     " to " + fixed(rule.max_mm, 1) + " mm of the machine");
+                 free_length_words(laid.samples[*first].free_length_mm, laid.block[*first]));
         }
         found_.checks.push_back(check);
     }
 
-    // Value of an axis with its unit.
-    [[nodiscard]] std::string shown(std::size_t joint, double value) const {
+    [[nodiscard]] std::string free_length_words(double length_mm, std::size_t block) const {
+        const FreeFibreRule& rule = rules_.collision.free_fibre;
+        const bool longer = length_mm > rule.max_mm;
+        const FixedPair shown = fixed_apart(length_mm, longer ? rule.max_mm : rule.min_mm, 1);
+        return "the free length is " + shown.value + " mm in " + words_of(block) +
+               ", outside the " + (longer ? fixed(rule.min_mm, 1) : shown.limit) + " to " +
+               (longer ? shown.limit : fixed(rule.max_mm, 1)) + " mm of the machine";
+    }
+
+    [[nodiscard]] std::string past_end_words(const LimitViolation& past) const {
+        const std::size_t joint = task_.machine.joint_of(past.axis).value_or(0);
         const bool rotary = task_.machine.axis(joint).type == AxisType::Rotary;
-        return rotary ? fixed(deg_from_rad(value), 2) + " deg" : fixed(value, 2) + " mm";
+        const double unit = rotary ? deg_from_rad(1.0) : 1.0;
+        const FixedPair shown = fixed_apart(unit * past.value, unit * past.limit, 2);
+        const std::string name = rotary ? " deg" : " mm";
+        return std::string("axis ") + past.axis + " goes to " + shown.value + name +
+               ", past its end at " + shown.limit + name + ", from " + words_of(past.first) + " on";
     }
 
     void check_limits() {
@@ -325,29 +395,26 @@ private:
                          {"acceleration_ratio", loads.acceleration.ratio},
                          {"corner_mm", loads.linear.mm},
                          {"corner_eye_mm", loads.eye.mm}};
-        if (!std::isinf(rules_.corner_mm)) {
-            check.numbers.emplace("limit_corner_mm", rules_.corner_mm);
+        const double corner_limit = corner_limit_mm(task_);
+        if (!std::isinf(corner_limit)) {
+            check.numbers.emplace("limit_corner_mm", corner_limit);
         }
         if (!joints.violations.empty()) {
             const LimitViolation& first = *std::min_element(
                 joints.violations.begin(), joints.violations.end(),
                 [](const LimitViolation& a, const LimitViolation& b) { return a.first < b.first; });
-            const std::size_t joint = task_.machine.joint_of(first.axis).value_or(0);
             put_at_block(check, first.first);
-            fail(check, first.first,
-                 std::string("axis ") + first.axis + " goes to " + shown(joint, first.value) +
-                     ", past its end at " + shown(joint, first.limit) + ", from " +
-                     words_of(first.first) + " on");
+            fail(check, first.first, past_end_words(first));
         }
         say_load(check, loads.velocity, "velocity");
         say_load(check, loads.acceleration, "acceleration");
         const CornerCut& corner = loads.linear.mm > loads.eye.mm ? loads.linear : loads.eye;
-        if (corner.mm > rules_.corner_mm * (1.0 + kLimitSlack) && check.ok) {
+        if (corner.mm > corner_limit * (1.0 + kLimitSlack) && check.ok) {
             put_at_block(check, corner.step);
+            const FixedPair shown = fixed_apart(corner.mm, corner_limit, 3);
             fail(check, corner.step,
-                 "rounding the corner after " + words_of(corner.step) + " takes " +
-                     fixed(corner.mm, 3) + " mm, more than the controller's " +
-                     fixed(rules_.corner_mm, 3) + " mm");
+                 "rounding the corner after " + words_of(corner.step) + " takes " + shown.value +
+                     " mm, more than the controller's " + shown.limit + " mm");
         }
         found_.checks.push_back(check);
     }
@@ -357,7 +424,8 @@ private:
             put_at_block(check, load.step);
             fail(check, load.step,
                  std::string("axis ") + task_.machine.axis(load.joint).letter + " needs " +
-                     fixed(load.ratio, 3) + " times its " + what + " in " + words_of(load.step));
+                     fixed_apart(load.ratio, 1.0, 3).value + " times its " + what + " in " +
+                     words_of(load.step));
         }
     }
 
@@ -376,10 +444,11 @@ private:
             const double paid = laid.samples[i].s_mm + laid.samples[i].free_length_mm;
             const double dt = i > 0 ? laid.time_s[i] - laid.time_s[i - 1] : 0.0;
             if (dt > 0.0) {
-                fastest = std::max(fastest, std::abs(paid - before) / dt);
-                if (!too_fast &&
-                    std::abs(paid - before) / dt > fibre.max_speed_mm_s * (1.0 + kLimitSlack)) {
-                    too_fast = i;
+                const double speed = std::abs(paid - before) / dt;
+                fastest = std::max(fastest, speed);
+                if (speed > fibre.max_speed_mm_s * (1.0 + kLimitSlack)) {
+                    too_fast = too_fast.value_or(i);
+                    note_fast(laid.block[i], speed / fibre.max_speed_mm_s);
                 }
             }
             paid_most = std::max(paid_most, paid);
@@ -398,16 +467,16 @@ private:
                          {"limit_mm_s", fibre.max_speed_mm_s}};
         put_at_sample(check, slack ? *slack : too_fast.value_or(furthest_back));
         if (slack) {
+            const FixedPair shown = fixed_apart(back, fibre.take_up_mm, 1);
             fail(check, laid.block[*slack],
-                 "the fibre goes slack: " + fixed(back, 1) +
-                     " mm would have to be taken back, more than the " +
-                     fixed(fibre.take_up_mm, 1) + " mm of the tensioner, first in " +
-                     words_of(laid.block[*slack]));
+                 "the fibre goes slack: " + shown.value +
+                     " mm would have to be taken back, more than the " + shown.limit +
+                     " mm of the tensioner, first in " + words_of(laid.block[*slack]));
         } else if (too_fast) {
+            const FixedPair shown = fixed_apart(fastest, fibre.max_speed_mm_s, 0);
             fail(check, laid.block[*too_fast],
-                 "the fibre runs at " + fixed(fastest, 0) + " mm/s, faster than the machine's " +
-                     fixed(fibre.max_speed_mm_s, 0) + " mm/s, first in " +
-                     words_of(laid.block[*too_fast]));
+                 "the fibre runs at " + shown.value + " mm/s, faster than the machine's " +
+                     shown.limit + " mm/s, first in " + words_of(laid.block[*too_fast]));
         }
         found_.checks.push_back(check);
     }
@@ -415,6 +484,7 @@ private:
     const VerifyTask& task_;
     const VerifyRules& rules_;
     Verification found_;
+    std::vector<char> coarse_;  // per block
 };
 
 void append_cells(std::string& text, const Eigen::Vector3d& v, int decimals) {

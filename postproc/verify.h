@@ -42,8 +42,8 @@ struct VerifyRules {
     double friction = 0.2;
     double bridging_tolerance_mm = 0.5;
     double tow_width_mm = 6.0;
-    /// How far the controller may leave corners, Dialect::corner_tolerance_mm.
-    double corner_mm = std::numeric_limits<double>::infinity();
+    /// How the machine's own lines make the controller go past corners, Dialect::path_mode.
+    PathMode path_mode{};
     LaydownTolerance laydown;
     LaydownOptions simulation;
 };
@@ -59,6 +59,12 @@ struct VerifyTask {
     const PlannedFibre& plan;  ///< for the last comparison; empty: nothing is compared
 };
 
+/// A block in which the fibre runs faster than the machine can pay out.
+struct FastBlock {
+    std::size_t block = 0;
+    double ratio = 1.0;  ///< of its fastest stretch to the machine's limit, > 1
+};
+
 struct Verification {
     LaidPath laid;
     std::vector<double> slip;  ///< per laid station, |kg| / kn
@@ -67,16 +73,19 @@ struct Verification {
     double duration_s = 0.0;
     double shortest_free_mm = 0.0;
     double longest_free_mm = 0.0;
-    std::vector<Check> checks;  ///< laydown, slip, bridging, collision, free_length, limits, payout
+    std::vector<Check> checks;                     ///< by name as verify() lists them
     std::optional<std::size_t> first_wrong_block;  ///< the first at which a check fails
     std::vector<std::size_t> wrong_blocks;         ///< ascending: all at which a check fails
     /// Blocks, ascending, to be made finer: those of laid stations beyond a tolerance with
     /// the way over which the fibre was pulled there, those in which something is hit, and those
     /// with a free length that the machine cannot wind with.
     std::vector<std::size_t> coarse_blocks;
+    std::vector<FastBlock> fast_blocks;  ///< ascending: to be given more time
 };
 
-/// Lays the fibre (laydown.h) and checks on it:
+/// Lays the fibre (laydown.h) and checks on it, where the program was read from a text:
+///  - tie_on, approach, path_mode: verify_head.h;
+/// and always:
 ///  - laydown: the simulation reaches the end; against the plan, where there is one, sideways
 ///    deviation and angle are within tolerance and the last landing point is the planned one;
 ///  - slip: |kg / kn| of the laid path <= friction, over chords as long as the tow is wide, which
@@ -85,11 +94,13 @@ struct Verification {
 ///  - bridging: height of the straight fibre over the wall;
 ///  - collision: free fibre and head, swept between the samples;
 ///  - free_length: within what the machine can wind with;
+///  - roller: the fibre leaves it at a right angle (roller_check.h);
 ///  - limits: travel, velocity and acceleration of the axes, and corners cut no more than the
 ///    controller may (axis_loads.h);
 ///  - payout: speed of the fibre through the eye, and length to be taken back, which is slack.
 /// The words of a failed check name the block and its line.
-/// \throws InputError verify.tie_on without a tie-on, or with one off the mandrel
+/// A cancellation point again and again. \throws InputError verify.too_long (laydown.h);
+/// verify.tie_on without a tie-on, or with one off the mandrel
 [[nodiscard]] Verification verify(const VerifyTask& task);
 
 /// The landing points that the program lays, as a table with the columns

@@ -12,9 +12,10 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "geodesic/trace.h"
+#include "winding/assemble.h"
 #include "winding/elbow_lines.h"
 #include "winding/measure_plan.h"
-#include "winding/wall.h"
+#include "winding/mesh_projection.h"
 
 namespace meshwind {
 namespace {
@@ -166,15 +167,15 @@ private:
 
     // The same over the mesh. Where layers lie on the tube, the angle to its line changes as much
     // as both parts of the way do that are gone further out.
-    [[nodiscard]] SurfacePath path_on(const Wall& wall, const std::vector<ElbowStation>& line,
-                                      bool down) const {
+    [[nodiscard]] SurfacePath path_on(const MeshProjection& projection,
+                                      const std::vector<ElbowStation>& line, bool down) const {
         SurfacePath path = path_of(line, down);
         if (!options_.on_layers) {
-            wall.put(path);
+            projection.put(path);
             return path;
         }
         const SurfacePath on_tube = path;
-        wall.settle(path, [&](std::size_t i, const Vector3d& position) {
+        projection.settle(path, [&](std::size_t i, const Vector3d& position) {
             const CentrePlace foot = tube_.line.foot(position);
             const Vector3d out = position - foot.position_mm;
             const double radius = out.norm();
@@ -280,7 +281,7 @@ private:
         const std::array<std::size_t, 2> shift = shifts();
         const std::size_t p = shift[0];
         const std::size_t onward = (shift[1] + count - p) % count;
-        const Wall wall(mandrel_.surface);
+        const MeshProjection projection(mandrel_.surface);
         std::vector<Piece> courses(2 * count);
         parallel_for(courses.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
@@ -288,7 +289,7 @@ private:
                 const std::size_t i = k / 2 * onward % count;
                 const bool down = k % 2 == 1;
                 SurfacePath path =
-                    path_on(wall, lines_.line[down ? (p + count - i) % count : i], down);
+                    path_on(projection, lines_.line[down ? (p + count - i) % count : i], down);
                 courses[k] = course_along(mandrel_.surface, std::move(path), options_.tow.friction);
                 courses[k].start_rim = tube_.rim[down ? 1 : 0];
                 courses[k].end_rim = tube_.rim[down ? 0 : 1];

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "geodesic/surface_path.h"
 
@@ -28,23 +29,31 @@ public:
     [[nodiscard]] bool is_neighbour(const CourseShape& other) const;
 
 private:
+    friend class CourseIndex;
+
     static constexpr int kLanes = 8;
     static constexpr std::size_t kPlaces = 24;
     using Lanes = Eigen::Array<float, kLanes, 1>;
 
-    // Points and tangents that are tested at once. Single precision is good to 0.1 um.
+    // Points and tangents that are tested at once, and what lies within reach of them. Single
+    // precision is good to 0.1 um.
     struct Block {
         std::array<Lanes, 3> position_mm;
         std::array<Lanes, 3> tangent;
+        Eigen::AlignedBox3f near_mm;
     };
 
     [[nodiscard]] bool runs_beside(const CourseShape& other) const;
-    [[nodiscard]] bool passes(const Eigen::Vector3f& position_mm,
+    // The points that are tested first are those of block `hint`: where the place before passed.
+    [[nodiscard]] bool passes(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& tangent,
+                              std::size_t& hint) const;
+    [[nodiscard]] bool passes(const Block& block, const Eigen::Vector3f& position_mm,
                               const Eigen::Vector3f& tangent) const;
 
     std::array<Eigen::Vector3f, kPlaces> place_mm_;
     std::array<Eigen::Vector3f, kPlaces> tangent_;
     std::vector<Block> points_;
+    Eigen::AlignedBox3f near_mm_;  // what lies within reach of any
     float most_mm2_;
 };
 
@@ -76,7 +85,9 @@ private:
 };
 
 /// The family of every course, -1 where it belongs to none; numbered by their first members. A
-/// family is joined by neighbours. \param courses in winding order \param band_mm > 0
+/// family is joined by neighbours. Time grows with the courses' length and with how many of them
+/// come near each other, not with their number squared.
+/// \param courses in winding order \param band_mm > 0
 [[nodiscard]] std::vector<std::int32_t> families_of(std::span<const SurfacePath* const> courses,
                                                     double band_mm);
 

@@ -16,10 +16,25 @@ constexpr double kArmStep_mm = 3.0;
 // Longest step of the search: an arm's far end moves faster than the eye.
 constexpr double kLongestStep_mm = 12.0;
 
+// What rounding may take from a distance from the spindle.
+constexpr double kRadiusRounding_mm = 1e-6;
+
+// True when the eye, or what of an arm is from there on outward, is known to have room about it.
+// Its distance from the spindle does not get less along the arm.
+bool has_room(const RayQuery& obstacles, const Eigen::Vector3d& from_mm, double need_mm) {
+    return std::hypot(from_mm.x(), from_mm.y()) >=
+           obstacles.room_from_mm(from_mm.z(), need_mm) + kRadiusRounding_mm;
+}
+
 // Marches along each part of the arm by what is free around it.
 bool arm_clear(const RayQuery& obstacles, const FreeFibreRule& rule, const Eigen::Vector3d& eye_mm,
                const Eigen::Vector3d& outward, double more_mm) {
     for (const ArmPart& part : rule.arm) {
+        const Eigen::Vector3d front = eye_mm + part.from_mm * outward;
+        if (outward.z() == 0.0 && front.dot(outward) >= 0.0 &&
+            has_room(obstacles, front, part.radius_mm + rule.clearance_mm + more_mm)) {
+            continue;
+        }
         for (double along = part.from_mm; along <= part.to_mm;) {
             const double spare = obstacles.distance_estimate_mm(eye_mm + along * outward) -
                                  part.radius_mm - rule.clearance_mm - more_mm;
@@ -38,11 +53,15 @@ public:
            const Eigen::Vector3d& tangent, const FreeFibreRule& rule)
         : obstacles_(obstacles), landing_(landing), tangent_(tangent), rule_(rule) {}
 
-    // With the arm straight away from the spindle.
+    // With the arm straight away from the spindle; where it is more, the longest step.
     [[nodiscard]] double spare(double length) const {
         const Eigen::Vector3d eye = landing_ + length * tangent_;
-        return head_spare_mm(obstacles_, rule_, eye,
-                             Eigen::Vector3d(eye.x(), eye.y(), 0.0).normalized());
+        const Eigen::Vector3d outward = Eigen::Vector3d(eye.x(), eye.y(), 0.0).normalized();
+        if (has_room(obstacles_, eye,
+                     rule_.head_radius_mm + rule_.clearance_mm + kLongestStep_mm)) {
+            return arm_clear(obstacles_, rule_, eye, outward, 0.0) ? kLongestStep_mm : -kStep_mm;
+        }
+        return head_spare_mm(obstacles_, rule_, eye, outward);
     }
 
     // Appends the clear ranges within [from, to].
@@ -141,6 +160,14 @@ double head_spare_mm(const RayQuery& obstacles, const FreeFibreRule& rule,
     const double ball =
         obstacles.distance_estimate_mm(eye_mm) - rule.head_radius_mm - rule.clearance_mm - more_mm;
     return ball >= 0.0 && !arm_clear(obstacles, rule, eye_mm, outward, more_mm) ? -kStep_mm : ball;
+}
+
+bool is_head_clear(const RayQuery& obstacles, const FreeFibreRule& rule,
+                   const Eigen::Vector3d& eye_mm, const Eigen::Vector3d& outward, double more_mm) {
+    if (has_room(obstacles, eye_mm, rule.head_radius_mm + rule.clearance_mm + more_mm)) {
+        return arm_clear(obstacles, rule, eye_mm, outward, more_mm);
+    }
+    return head_spare_mm(obstacles, rule, eye_mm, outward, more_mm) >= 0.0;
 }
 
 double unobstructed_mm(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,

@@ -58,6 +58,11 @@ struct FreeFibreWindow {
                                    const Eigen::Vector3d& eye_mm, const Eigen::Vector3d& outward,
                                    double more_mm = 0.0);
 
+/// True when head_spare_mm() is not negative: cheaper.
+[[nodiscard]] bool is_head_clear(const RayQuery& obstacles, const FreeFibreRule& rule,
+                                 const Eigen::Vector3d& eye_mm, const Eigen::Vector3d& outward,
+                                 double more_mm = 0.0);
+
 /// The longest free fibre that meets nothing, up to the rule's.
 [[nodiscard]] double unobstructed_mm(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm,
                                      const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent,

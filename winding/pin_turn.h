@@ -19,10 +19,10 @@
 #include <optional>
 #include <string>
 
+#include "winding/assemble.h"
 #include "winding/pin.h"
 #include "winding/plan.h"
 #include "winding/turn.h"
-#include "winding/wall.h"
 
 namespace meshwind {
 

@@ -1,6 +1,7 @@
 #include "winding/plan.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace meshwind {
 namespace {
@@ -63,8 +64,10 @@ std::string refused_most(const PlanEffort& effort) {
 
 std::string rejected_most(const PlanEffort& effort) {
     const std::size_t most = commonest(effort.rejections);
-    return std::to_string(effort.rejections[most]) + " of " +
-           std::to_string(effort.rejected_courses) + ": " + name_of(static_cast<Rejection>(most));
+    const std::int64_t all =
+        std::accumulate(effort.rejections.begin(), effort.rejections.end(), std::int64_t{0});
+    return std::to_string(effort.rejections[most]) + " of " + std::to_string(all) + ": " +
+           name_of(static_cast<Rejection>(most));
 }
 
 std::vector<std::span<const Piece>> fibres_of(std::span<const Piece> pieces) {

@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 RevolutionPieces::RevolutionPieces(const Mandrel& mandrel, const BodyOfRevolution& body,
                                    const TurnRule& rule)
-    : mandrel_(mandrel), body_(body), rule_(rule), wall_(mandrel.surface) {}
+    : mandrel_(mandrel), body_(body), rule_(rule), projection_(mandrel.surface) {}
 
 const Rim* RevolutionPieces::rim_of(std::size_t end) const {
     const std::int32_t rim = body_.end[end].rim;
@@ -28,7 +28,7 @@ Piece RevolutionPieces::course(const std::vector<MeridianStation>& stations,
     for (const MeridianStation& station : stations) {
         path.push_back(swept(station, turn_rad));
     }
-    wall_.put(path);
+    projection_.put(path);
     return course_along(mandrel_.surface, std::move(path), rule_.friction);
 }
 

@@ -6,10 +6,11 @@
 
 #include "mesh/mandrel.h"
 #include "mesh/revolution.h"
+#include "winding/assemble.h"
 #include "winding/meridian_path.h"
+#include "winding/mesh_projection.h"
 #include "winding/plan.h"
 #include "winding/turn.h"
-#include "winding/wall.h"
 
 namespace meshwind {
 
@@ -40,7 +41,7 @@ private:
     const Mandrel& mandrel_;
     const BodyOfRevolution& body_;
     const TurnRule& rule_;
-    Wall wall_;
+    MeshProjection projection_;
 };
 
 }  // namespace meshwind

@@ -1,7 +1,6 @@
 #include "winding/samples.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -36,12 +35,10 @@ struct Dart {
 // in those on the nearer sides.
 class Grid {
 public:
-    Grid(double disc, std::uint64_t most) : disc_(disc) {
-        slots_.resize(std::bit_ceil(static_cast<std::size_t>(most)));
-    }
+    explicit Grid(double disc) : disc_(disc), slots_(kFirstSlots) {}
 
-    // Adds a dart unless a sample is nearer than a disc on a surface facing the same way.
-    bool add(const Dart& dart, const CoverageSamples& samples) {
+    // True where no sample is nearer to a dart than a disc on a surface facing the same way.
+    [[nodiscard]] bool is_free(const Dart& dart, const CoverageSamples& samples) const {
         const Eigen::Array3d scaled = dart.position_mm.array() / (2.0 * disc_);
         const Eigen::Array3d cell = scaled.floor();
         const Eigen::Array3d nearer = (scaled - cell < 0.5).select(cell - 1.0, cell + 1.0);
@@ -49,15 +46,24 @@ public:
             const std::uint64_t key = key_of((side & 1U) != 0 ? nearer.x() : cell.x(),
                                              (side & 2U) != 0 ? nearer.y() : cell.y(),
                                              (side & 4U) != 0 ? nearer.z() : cell.z());
-            if (taken(slot(key), dart, samples)) {
+            if (taken(slots_[slot(key)], dart, samples)) {
                 return false;
             }
         }
-        Slot& own = slot(key_of(cell.x(), cell.y(), cell.z()));
+        return true;
+    }
+
+    // Notes that a dart becomes the next sample.
+    void add(const Dart& dart, const CoverageSamples& samples) {
+        const Eigen::Array3d cell = (dart.position_mm.array() / (2.0 * disc_)).floor();
+        Slot& own = slots_[slot(key_of(cell.x(), cell.y(), cell.z()))];
         own.key = key_of(cell.x(), cell.y(), cell.z());
+        cells_ += own.last < 0 ? 1 : 0;
         next_.push_back(own.last);
         own.last = static_cast<std::int32_t>(samples.size());
-        return true;
+        if (2 * cells_ > slots_.size()) {
+            grow();
+        }
     }
 
 private:
@@ -74,14 +80,24 @@ private:
         return (part(x) << 42U) | (part(y) << 21U) | part(z);
     }
 
+    void grow() {
+        std::vector<Slot> old(2 * slots_.size());
+        std::swap(old, slots_);
+        for (const Slot& cell : old) {
+            if (cell.last >= 0) {
+                slots_[slot(cell.key)] = cell;
+            }
+        }
+    }
+
     // Of a cell, or the empty one where it would be: open addressing with linear probing.
-    Slot& slot(std::uint64_t key) {
+    [[nodiscard]] std::size_t slot(std::uint64_t key) const {
         const std::size_t mask = slots_.size() - 1;
         std::size_t i = random_bits(0, key) & mask;
         while (slots_[i].last >= 0 && slots_[i].key != key) {
             i = (i + 1) & mask;
         }
-        return slots_[i];
+        return i;
     }
 
     [[nodiscard]] bool taken(const Slot& slot, const Dart& dart,
@@ -96,8 +112,11 @@ private:
         return false;
     }
 
+    static constexpr std::size_t kFirstSlots = 1U << 14U;  // a power of two, as all that follow
+
     double disc_;
     std::vector<Slot> slots_;
+    std::size_t cells_ = 0;           // that hold samples
     std::vector<std::int32_t> next_;  // per sample
 };
 
@@ -151,21 +170,25 @@ CoverageSamples sample_surface(const Surface& surface, double spacing_mm, std::u
     const double disc = kDiscShare * spacing_mm;
     const auto darts =
         static_cast<std::uint64_t>(kDartsPerDisc * cumulative.back() / (disc * disc)) + 1;
-    Grid grid(disc, darts);
+    Grid grid(disc);
     std::vector<Dart> drawn;
+    std::vector<char> free;  // of the samples before: most darts are not, which is seen in parallel
     for (std::uint64_t first = 0; first < darts; first += kDraw) {
         drawn.resize(std::min(kDraw, darts - first));
+        free.resize(drawn.size());
         parallel_for(drawn.size(), kDrawChunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const SurfacePoint point = dart(cumulative, seed, first + i);
                 drawn[i] = {point, position_mm(surface, point), smooth_normal(surface, point)};
+                free[i] = grid.is_free(drawn[i], samples) ? 1 : 0;
             }
         });
-        for (const Dart& dart : drawn) {
-            if (grid.add(dart, samples)) {
-                samples.at.push_back(dart.at);
-                samples.position_mm.push_back(dart.position_mm);
-                samples.normal.push_back(dart.normal);
+        for (std::size_t i = 0; i < drawn.size(); ++i) {
+            if (free[i] != 0 && grid.is_free(drawn[i], samples)) {
+                grid.add(drawn[i], samples);
+                samples.at.push_back(drawn[i].at);
+                samples.position_mm.push_back(drawn[i].position_mm);
+                samples.normal.push_back(drawn[i].normal);
             }
         }
     }

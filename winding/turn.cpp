@@ -24,6 +24,10 @@ constexpr double kEasyShare = 0.85;
 // Steered with just this share where the extension is short: the rest is the margin of measurement.
 constexpr double kFullShare = 0.98;
 
+// Longer than any machine: a turn that takes more is told as one that no extension makes. Without
+// friction the run is infinite.
+constexpr double kLongestExtension_mm = 1e5;
+
 double usable_run_mm(const TurnRule& rule) {
     return rule.extension_mm - 0.5 * rule.band_mm;
 }
@@ -144,6 +148,10 @@ double turn_run_mm(double radius_mm, double angle_rad, double slip) {
     return radius_mm / slip * (1.0 / std::sin(angle_rad) - 1.0);
 }
 
+double least_run_mm(double radius_mm, double friction) {
+    return turn_run_mm(radius_mm, kMaxTurnAngle_rad, kFullShare * friction);
+}
+
 double turn_angle_rad(double angle_rad, double slip) {
     return -std::log(std::tan(0.5 * angle_rad)) / slip;
 }
@@ -164,9 +172,14 @@ std::string why_no_turn(const std::string& rim_words, const Rim& rim, const RimC
     const double needed_mm =
         turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) +
         0.5 * rule.band_mm;
-    return begin + "and to turn it by a friction of " + fixed(rule.friction, 3) + " takes " +
-           fixed(needed_mm, 1) + " mm of extension where there are " + fixed(rule.extension_mm, 1) +
-           "; a larger angle, more friction or a longer extension would do";
+    const std::string by = begin + "and to turn it by a friction of " + fixed(rule.friction, 3);
+    const std::string mend = ", or \"turn\" by \"pins\" or about a \"pole\" would do";
+    if (!(needed_mm <= kLongestExtension_mm)) {
+        return by + " no extension is long enough; a larger angle, more friction" + mend;
+    }
+    return by + " takes " + fixed(needed_mm, 1) + " mm of extension where there are " +
+           fixed(rule.extension_mm, 1) + "; a larger angle, more friction, a longer extension" +
+           mend;
 }
 
 double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,

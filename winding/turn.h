@@ -43,6 +43,10 @@ struct TurnRule {
 /// docs/winding.md.
 [[nodiscard]] double turn_run_mm(double radius_mm, double angle_rad, double slip);
 
+/// The least run that any turn takes on a rim: that of the steepest fibre that turns with all of
+/// the friction. Infinite without friction.
+[[nodiscard]] double least_run_mm(double radius_mm, double friction);
+
 /// Angle around the axis that it winds meanwhile: (1 / slip) ln cot(beta / 2).
 /// Source: andrianov_2022_machine_path, eq. (4). \pre 0 < angle_rad < pi, slip > 0
 [[nodiscard]] double turn_angle_rad(double angle_rad, double slip);

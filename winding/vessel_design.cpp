@@ -11,6 +11,18 @@
 namespace meshwind {
 namespace {
 
+// From a micrometre to a kilometre: beyond, no vessel is wound, and squares of the numbers leave
+// what a double holds.
+constexpr double kLeast_mm = 1e-3;
+constexpr double kMost_mm = 1e6;
+
+// Narrower openings are points beside the radius; their domes cannot be told from that of a pole.
+constexpr double kLeastOpening = 1e-4;
+
+// Pressures, strengths, stiffnesses and densities of anything that is wound, with room.
+constexpr double kLeastProperty = 1e-6;
+constexpr double kMostProperty = 1e9;
+
 // A count that comes out a whole number but for rounding is that number.
 constexpr double kWhole = 1e-9;
 
@@ -30,17 +42,34 @@ void require_above_zero(const char* name, double value) {
     }
 }
 
+void require_between(const char* name, double value, double least, double most) {
+    require_above_zero(name, value);
+    if (value < least || value > most) {
+        throw InputError(
+            "vessel.out_of_range", name,
+            text_of(value) + " must be between " + text_of(least) + " and " + text_of(most));
+    }
+}
+
+void require_length(const char* name, double value_mm) {
+    require_between(name, value_mm, kLeast_mm, kMost_mm);
+}
+
+void require_property(const char* name, double value) {
+    require_between(name, value, kLeastProperty, kMostProperty);
+}
+
 void check_demand(const VesselDesign& design) {
     if (design.wall_mm && design.pressure_mpa) {
         throw InputError("vessel.demand", "wall",
                          "and a pressure are both wanted; name one of them");
     }
     if (design.wall_mm) {
-        require_above_zero("wall", *design.wall_mm);
+        require_length("wall", *design.wall_mm);
     }
     if (design.pressure_mpa) {
-        require_above_zero("pressure", *design.pressure_mpa);
-        require_above_zero("strength", design.strength_mpa);
+        require_property("pressure", *design.pressure_mpa);
+        require_property("strength", design.strength_mpa);
     }
 }
 
@@ -100,6 +129,9 @@ void add_geodesic(const VesselDesign& design, const IsotensoidDome& dome, Vessel
 
 double stiffness_ratio(const PlyStiffness& ply) {
     const double share = ply.e2_gpa / ply.e1_gpa;
+    if (!std::isfinite(ply.nu12)) {
+        throw InputError("vessel.stiffness", "nu12", "must be a finite number");
+    }
     if (!(ply.e1_gpa > 0.0) || !(ply.e2_gpa > 0.0) || !(share < 1.0) || !std::isfinite(share)) {
         throw InputError("vessel.stiffness", "e1, e2",
                          "must be above 0, and the stiffness along the fibres, e1, the larger");
@@ -119,12 +151,15 @@ IsotensoidDesign VesselDesign::dome() const {
 }
 
 void VesselDesign::validate() const {
-    require_above_zero("radius", radius_mm);
-    require_above_zero("opening", opening_radius_mm);
-    require_above_zero("length", cylinder_length_mm);
-    require_above_zero("band", band_mm);
-    require_above_zero("thickness", ply_mm);
-    require_above_zero("density", density_kg_m3);
+    require_length("radius", radius_mm);
+    require_between("opening", opening_radius_mm, kLeastOpening * radius_mm, kMost_mm);
+    require_length("length", cylinder_length_mm);
+    require_length("band", band_mm);
+    require_length("thickness", ply_mm);
+    require_property("density", density_kg_m3);
+    if (design_radius_mm != 0.0) {
+        require_between("design-radius", design_radius_mm, kLeastOpening * radius_mm, kMost_mm);
+    }
     check_demand(*this);
     if (opening_radius_mm >= radius_mm) {
         throw InputError(

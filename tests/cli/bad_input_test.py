@@ -2,6 +2,7 @@
 import copy
 import json
 import math
+import os
 import struct
 import sys
 import unittest
@@ -36,6 +37,24 @@ def moebius_off(steps=40, width=4):
             faces += [(a, c, b), (b, c, d)]
     return ("OFF\n%d %d 0\n" % (len(points), len(faces)) +
             "".join("%.9f %.9f %.9f\n" % p for p in points) +
+            "".join("3 %d %d %d\n" % f for f in faces))
+
+
+def doubled_coil_off(segments=20, rings=60):
+    """A tube R 20 bent twice around the same circle R 60: half of its wall sees the other half."""
+    points, faces = [], []
+    for j in range(rings + 1):
+        bend = 4.2 * math.pi * j / rings
+        for i in range(segments):
+            turn = 2 * math.pi * i / segments
+            radius = 60.0 + 20.0 * math.cos(turn)
+            points.append((radius * math.cos(bend), 20.0 * math.sin(turn), radius * math.sin(bend)))
+    for j in range(rings):
+        for i in range(segments):
+            a, b = j * segments + i, j * segments + (i + 1) % segments
+            faces += [(a, b, a + segments), (b, b + segments, a + segments)]
+    return ("OFF\n%d %d 0\n" % (len(points), len(faces)) +
+            "".join("%.6f %.6f %.6f\n" % p for p in points) +
             "".join("3 %d %d %d\n" % f for f in faces))
 
 
@@ -106,6 +125,26 @@ class BadInput(program.ProgramTest):
         line = self.refused(file, "-o", self.folder / "out", word="rim", codes=(1, 2))
         self.assertIn(file.name, line)
         self.assertFalse((self.folder / "out" / "program.ngc").exists())
+
+    def test_no_wall(self):
+        self.refused_mandrel("coil.off", doubled_coil_off(), "keep_regions")
+        self.refused("inspect", self.folder / "coil.off", "--refine", "5", "-o",
+                     self.folder / "fine.off", word="keep_regions")
+
+    def test_indices_and_rows_that_are_not_there(self):
+        for name, content, word in (
+                ("a.off", "OFF\n3 1 0\n0 0 0\n9 0 0\n0 9 0\n3 0 1 99999999\n", "a.off:6"),
+                ("b.off", "OFF\n4 4 0\n0 0 0\n1 0\n3 0 1 2\n", "b.off:4"),
+                ("a.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf" + 200000 * " 1 2 3" + "\n", "a.obj:4"),
+                ("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\npropety float x\nend_header\n0\n",
+                 "a.ply:4")):
+            with self.subTest(name):
+                self.refused_mandrel(name, content, word)
+
+    def test_pipe_without_a_writer(self):
+        pipe = self.folder / "pipe.stl"
+        os.mkfifo(pipe)
+        self.refused("inspect", pipe, word="pipe.stl")
 
     def refused_machine(self, machine, word):
         file = self.write("machine.json", json.dumps(machine))
@@ -178,7 +217,7 @@ class BadInput(program.ProgramTest):
                            ('{"eye": {"free_length": 900}}', "/eye/free_length"),
                            ('{"mandrel": {"keep_regions": [77]}}', "77"),
                            ('{"eye": {"rule": "equal-free-length", "lengths": [{"course": 0, '
-                            '"free_length": 900}]}}', "/eye/lengths/0/free_length"),
+                            '"free_length": 900}]}}', "/eye/lengths"),
                            ('{"eye": {"rule": "cylinder"}}', "radius"),
                            ('{"eye": {"radius": 200}}', "/eye/radius"),
                            ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "x.csv"),
@@ -223,7 +262,11 @@ class BadInput(program.ProgramTest):
                                 (["cylinder.stl", "--machine", "none.json"], "none.json"),
                                 (["cylinder.stl", "--job", "none.json"], "none.json"),
                                 (["cylinder.stl", "--threads", "-1"], "threads"),
+                                (["cylinder.stl", "--threads", "99999999999"], "threads"),
                                 (["cylinder.stl", "--seed", "many"], "seed"),
+                                (["cylinder.stl", "--seed", "-1"], "seed"),
+                                (["cylinder.stl", "--seed", "1.5"], "seed"),
+                                (["cylinder.stl", "--seed", "18446744073709551616"], "seed"),
                                 (["cylinder.stl", "--effort", "0"], "effort"),
                                 (["cylinder.stl", "--effort", "2000"], "effort"),
                                 (["cylinder.stl", "--units", "cubit"], "cubit"),
@@ -256,7 +299,15 @@ class BadInput(program.ProgramTest):
                                 (["15", "--angles", "30,x"], "angles"),
                                 (["15", "--band", "0"], "band"),
                                 (["15", "--wall", "1", "--pressure", "1"], "wall"),
-                                (["15", "--wall", "1e300"], "million"),
+                                (["15", "--wall", "1e300"], "wall"),
+                                (["15", "--wall", "1e6"], "million"),
+                                (["1e-300"], "opening"),
+                                (["15", "--length", "1e300"], "length"),
+                                (["15", "--radius", "1e308"], "radius"),
+                                (["15", "--band", "5e-324"], "band"),
+                                (["15", "--density", "1e300"], "density"),
+                                (["15", "--design-radius", "1e-300"], "design-radius"),
+                                (["15", "--e1", "132", "--e2", "10", "--nu12", "inf"], "nu12"),
                                 (["15", "--pressure", "1"], "strength")):
             with self.subTest(" ".join(arguments)):
                 self.refused(*(vessel + arguments if arguments else vessel[:-1]), word=word)
@@ -323,8 +374,8 @@ class BadInput(program.ProgramTest):
             with self.subTest(" ".join(map(str, arguments))):
                 self.refused("study", "mesh-size", *arguments, "-o", out, word=word)
                 self.assertFalse(out.exists())
-        self.refused("study", word="subcommand")
-        self.refused("study", "mesh-shape", word="subcommand")
+        self.refused("study", word="mesh-size")
+        self.refused("study", "mesh-shape", word="mesh-size")
 
     def test_verify(self):
         self.make("cylinder", "--radius", "50", "--length", "200", "--edge", "8")

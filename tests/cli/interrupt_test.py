@@ -22,8 +22,11 @@ def listen_to_signals():
 
 class Interrupt(program.ProgramTest):
     def started(self, *arguments):
-        process = subprocess.Popen([program.PROGRAM, program.SOURCE / "data" / "tee.stl",
-                                    *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+        return self.command(program.SOURCE / "data" / "tee.stl", *arguments)
+
+    def command(self, *arguments):
+        process = subprocess.Popen([program.PROGRAM, *arguments], cwd=self.folder,
+                                   stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                    preexec_fn=listen_to_signals)
         self.addCleanup(process.kill)
@@ -48,6 +51,20 @@ class Interrupt(program.ProgramTest):
                                  ["meshwind: interrupted; nothing unfinished is left"])
                 self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_a_million_triangles_can_be_left(self):
+        """Reading, repair and regions of so many take seconds."""
+        mesh = self.make("cylinder", "--radius", "150", "--length", "1000", "--edge", "1.5")
+        before = sorted(self.folder.iterdir())
+        for arguments, delay_s in ((["inspect", mesh], 1), (["inspect", mesh], 2),
+                                   (["inspect", mesh, "--refine", "1", "-o", "fine.stl"], 3),
+                                   (["trace", mesh, "--start", "150,0,0", "--angle", "45", "-o", "path.csv"], 2)):
+            with self.subTest(command=arguments[0], delay_s=delay_s):
+                process = self.command(*arguments)
+                time.sleep(delay_s)
+                lines = self.ended(process, signal.SIGTERM)
+                self.assertEqual(lines, ["meshwind: interrupted; nothing unfinished is left"])
+                self.assertEqual(sorted(self.folder.iterdir()), before)
+
     def test_earlier_output_stays_as_it_was(self):
         out = self.folder / "out"
         out.mkdir()
@@ -65,6 +82,22 @@ class Interrupt(program.ProgramTest):
         process.send_signal(signal.SIGINT)
         self.ended(process, signal.SIGINT, limit_s=1.0)
         self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_calls_without_a_point_to_end_at(self):
+        """A mesh that takes seconds to make, and a job that never comes."""
+        os.mkfifo(self.folder / "never.json")
+        for arguments, delay_s in ((["make", "tee", "--edge", "0.4", "-o", "a.stl"], 2),
+                                   (["tee.stl", "--job", "never.json", "-o", "out"], 1)):
+            with self.subTest(arguments[0]):
+                process = subprocess.Popen([program.PROGRAM, *arguments, "--quiet"],
+                                           cwd=self.folder, stdin=subprocess.DEVNULL,
+                                           stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                           text=True, preexec_fn=listen_to_signals)
+                self.addCleanup(process.kill)
+                time.sleep(delay_s)
+                lines = self.ended(process, signal.SIGTERM)
+                self.assertEqual(lines, ["meshwind: interrupted; nothing unfinished is left"])
+                self.assertEqual([p.name for p in self.folder.iterdir()], ["never.json"])
 
     def test_ignored_signal_stays_ignored(self):
         process = subprocess.Popen([program.PROGRAM, "make", "cylinder", "--edge", "0.5", "-o",
@@ -103,7 +136,7 @@ class Bar(program.ProgramTest):
         seconds = time.monotonic() - begun
         os.close(terminal)
         drawn = text.decode().split("meshwind: ")[0]
-        self.assertTrue(drawn.startswith(WIPE + "import ["), drawn[:80])
+        self.assertTrue(drawn.startswith(WIPE + "1 of 8: reading the part ["), drawn[:80])
         self.assertTrue(drawn.endswith(WIPE), drawn[-80:])
         bars = drawn.split(WIPE)[1:-1]
         self.assertGreaterEqual(len(bars), 2)

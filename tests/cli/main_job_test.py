@@ -17,6 +17,9 @@ MOTION_HEADER = "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz,course,poin
 PLAN_KEYS = {"planner", "courses", "fibre_length_mm", "coverage", "uncovered"}
 CHECK_KEYS = {"continuity": {"fibres", "limit"}, "coverage": {"limit", "fraction"},
               "eye": {"blocked_points"}, "rounding": {"blocks"},
+              "tie_on": {"off_wall_mm", "off_plan_mm", "limit_mm"},
+              "approach": {"rapid_moves", "swept", "stops"}, "path_mode": {"changes"},
+              "roller": {"worst_deg", "limit_deg"},
               "laydown": {"limit_mm", "max_deviation_mm", "limit_deg", "max_angle_deg",
                           "end_gap_mm"},
               "slip": {"limit", "worst"}, "bridging": {"limit_mm", "worst_mm"},
@@ -25,7 +28,8 @@ CHECK_KEYS = {"continuity": {"fibres", "limit"}, "coverage": {"limit", "fraction
               "limits": {"violations", "velocity_ratio", "acceleration_ratio", "corner_mm",
                          "corner_eye_mm", "limit_corner_mm"},
               "payout": {"limit_mm", "worst_mm", "max_speed_mm_s", "limit_mm_s"}}
-VERIFIED = ["laydown", "slip", "bridging", "collision", "free_length", "limits", "payout"]
+VERIFIED = ["tie_on", "approach", "path_mode", "laydown", "slip", "bridging", "collision",
+            "free_length", "roller", "limits", "payout"]
 TIMES = {"import", "plan", "post", "verify", "write", "total"}
 
 
@@ -137,14 +141,25 @@ class MainJob(program.ProgramTest):
         self.assertRegex(result.stdout, r"lays \d+\.\d m of fibre on tee\.stl in \d+ blocks")
         verified = json.loads((self.folder / "verified/verify.json").read_text())
         report = json.loads((out / "report.json").read_text())
-        self.assertEqual(list(verified["checks"]), sorted(["program", *VERIFIED]))
+        self.assertEqual(list(verified["checks"]), sorted(["program", "code", *VERIFIED]))
         for name in VERIFIED:
             for key, value in report["checks"][name].items():
                 # The plan comes from path.csv now, with four decimals.
                 self.assertAlmostEqual(verified["checks"][name][key], value, delta=2e-3, msg=name)
         with open(self.folder / "verified/laid.csv", newline="") as file:
             laid = list(csv.DictReader(file))
-        self.assertEqual(int(laid[-1]["block"]), report["program"]["blocks"] - 1)
+        self.assertEqual(int(laid[-1]["block"]), report["program"]["blocks"])
+        # One count and one time, wherever they stand.
+        head = (out / "program.ngc").read_text()
+        for count in (re.search(r"\(blocks: (\d+)\)", head)[1],
+                      re.search(r"in (\d+) blocks", result.stdout)[1],
+                      report["verification"]["blocks"], report["checks"]["rounding"]["blocks"],
+                      verified["verification"]["blocks"], verified["checks"]["program"]["blocks"]):
+            self.assertEqual(int(count), report["program"]["blocks"])
+        for part in (report["verification"], verified["verification"]):
+            self.assertEqual(part["duration_s"], report["program"]["duration_s"])
+        self.assertAlmostEqual(float(re.search(r"\(time: ([\d.]+) s\)", head)[1]),
+                               report["program"]["duration_s"], delta=0.0501)
         self.assertAlmostEqual(float(laid[-1]["s_mm"]),
                                verified["verification"]["fibre_length_mm"], 3)
 
@@ -153,7 +168,7 @@ class MainJob(program.ProgramTest):
         lines = (out / "program.ngc").read_text().splitlines()
         start = next(i for i, line in enumerate(lines) if "G91" in line)
         moves = [i for i in range(start, len(lines)) if axis_words(lines[i]) and "G1" in lines[i]]
-        self.assertEqual(len(moves) + 1,
+        self.assertEqual(len(moves),
                          json.loads((out / "report.json").read_text())["program"]["blocks"])
         chance = random.Random(4)
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/phases.h"
 #include "core/interrupt.h"
 
 namespace meshwind {
@@ -67,7 +68,18 @@ TEST(ProgressLine, NamesThePhaseAndLaterHowFarItIs) {
     EXPECT_EQ(progress_line({"library", 0.0, 0.0, 0.0}), "library ...");
     EXPECT_EQ(progress_line({"route", 0.5, 0.0, 0.0}), "route ...");
     EXPECT_EQ(progress_line(kMidway), "library 42 %, 0:29 left ...");
+    EXPECT_EQ(progress_line({"post", 0.0, 0.0, 12.0}), "post, for 0:12 ...");
     EXPECT_EQ(progress_line({"library", 0.02, 0.02, 100.0}), "library 2 %, 1:21:40 left ...");
+}
+
+TEST(PhaseText, IsNumberedInPlainWords) {
+    EXPECT_EQ(phase_text("import"), "1 of 8: reading the part");
+    EXPECT_EQ(phase_text("layer 2, library"), "3 of 8: layer 2, looking for courses");
+    EXPECT_EQ(phase_text("cylinder-20"), "cylinder-20");
+    for (const char* step :
+         {"plan", "route", "prove", "anneal", "post", "verify", "write", "picture"}) {
+        EXPECT_NE(phase_text(step), step);
+    }
 }
 
 TEST(ProgressPhases, CountFromWhereThePhaseBegan) {

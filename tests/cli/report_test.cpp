@@ -20,6 +20,7 @@ std::string summary(const std::string& machine, RedundancyRule redundancy,
     WoundLayer& layer = result.layers.emplace_back();
     layer.setup.machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + machine);
     layer.setup.job.redundancy = redundancy;
+    layer.setup.mandrel.whole.points_mm = {{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}};
     for (const bool optimal : least_time) {
         layer.programs.emplace_back().made.optimal = optimal;
     }

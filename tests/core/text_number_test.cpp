@@ -1,5 +1,7 @@
 #include "core/text_number.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace meshwind {
@@ -16,6 +18,24 @@ TEST(Fixed, NeverPrintsANegativeZero) {
     EXPECT_EQ(fixed(-0.0004, 3), "0.000");
     EXPECT_EQ(fixed(-0.0, 0), "0");
     EXPECT_EQ(fixed(-0.0006, 3), "-0.001");
+}
+
+TEST(FixedApart, HasTheDigitsThatShowWhichIsLarger) {
+    const FixedPair near = fixed_apart(167.0009, 166.6667, 0);
+    EXPECT_EQ(near.value, "167.0");
+    EXPECT_EQ(near.limit, "166.7");
+    const FixedPair far = fixed_apart(1000.4, 600.0, 0);
+    EXPECT_EQ(far.value, "1000");
+    EXPECT_EQ(far.limit, "600");
+    for (const double limit : {1.0, -0.3, 1e9, 1e-12, 0.0}) {
+        for (const int decimals : {0, 1, 4}) {
+            const double above = std::nextafter(limit, 1e300);
+            const FixedPair least = fixed_apart(above, limit, decimals);
+            EXPECT_NE(least.value, least.limit);
+            const FixedPair same = fixed_apart(limit, limit, decimals);
+            EXPECT_EQ(same.value, same.limit);
+        }
+    }
 }
 
 TEST(AppendShortest, ReadsBackAsTheSameDouble) {

@@ -139,5 +139,9 @@ TEST(PathAccuracy, FlatSurfacesAreExact) {
     EXPECT_LT(accuracy.patches_mm_per_m, 1e-9);
 }
 
+TEST(EstimatePathAccuracy, IsNoneOfASurfaceWithoutTriangles) {
+    EXPECT_EQ(estimate_path_accuracy(Surface{}).paths, 0);
+}
+
 }  // namespace
 }  // namespace meshwind

@@ -300,10 +300,27 @@ TEST(MachineClass, NamesTheShippedMachines) {
     sideways.eye_chain[1].direction = Vector3d::UnitY();
     EXPECT_TRUE(machine_class(sideways).closed_form);
     EXPECT_THROW(require_main_job(sideways), InputError);
-    for (const char* name : {"two_axis", "hobby_grbl", "robot_kr16"}) {
-        EXPECT_NE(machine_class(shipped(name)).refusal, "");
+    EXPECT_NE(machine_class(shipped("robot_kr16")).refusal, "");
+    EXPECT_THROW(require_main_job(shipped("robot_kr16")), InputError);
+}
+
+TEST(MachineClass, KnowsTheDistanceThatACarriageAloneKeeps) {
+    for (const auto& [name, distance_mm] : {std::pair("two_axis", 58.31), {"hobby_grbl", 60.0}}) {
+        EXPECT_DOUBLE_EQ(machine_class(shipped(name)).eye_distance_mm, distance_mm);
+        EXPECT_EQ(machine_class(shipped(name)).refusal, "");
+        EXPECT_NO_THROW(require_main_job(shipped(name), distance_mm));
+        EXPECT_THROW(require_main_job(shipped(name), distance_mm + 1.0), InputError);
         EXPECT_THROW(require_main_job(shipped(name)), InputError);
     }
+    Machine without_cross_feed = shipped("four_axis");  // its eye is on the spindle axis
+    without_cross_feed.eye_chain.erase(without_cross_feed.eye_chain.begin() + 1);
+    EXPECT_EQ(machine_class(without_cross_feed).eye_distance_mm, 0.0);
+    EXPECT_NE(machine_class(without_cross_feed).refusal, "");
+    EXPECT_THROW(require_main_job(without_cross_feed), InputError);
+    Machine without_carriage = shipped("four_axis");
+    without_carriage.eye_chain.erase(without_carriage.eye_chain.begin());
+    EXPECT_EQ(machine_class(without_carriage).eye_distance_mm, 0.0);
+    EXPECT_THROW(require_main_job(without_carriage), InputError);
 }
 
 TEST(MakeEyeInverse, TakesTheClosedFormWhereItHolds) {

@@ -175,6 +175,22 @@ TEST(BuildMandrel, RefusesCoordinatesOutOfAnyRange) {
     EXPECT_THROW((void)build_mandrel(test::tube(1e-9, 1e-8, 24), "tube"), InputError);
 }
 
+// So far out single precision, which rays are traced with, has no digit left for what sees what.
+TEST(BuildMandrel, RefusesAPartWithoutAWallAndNamesItsRegions) {
+    const TriangleSoup far_out = test::moved(
+        test::tube(40.0, 200.0, 24, 20), Eigen::Isometry3d(Eigen::Translation3d(1e7, 1e7, 1e7)));
+    try {
+        (void)build_mandrel(far_out, "tube");
+        ADD_FAILURE() << "a part without a wall was taken";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.code(), "mesh.no_wall");
+        const std::string words = error.what();
+        EXPECT_NE(words.find("0 (bore, "), std::string::npos) << words;
+        EXPECT_NE(words.find("keep_regions"), std::string::npos) << words;
+    }
+    EXPECT_EQ(build_mandrel(far_out, "tube", {.keep_regions = {0}}).surface.face.size(), 960U);
+}
+
 TEST(BuildMandrel, HollowSquareTubeKeepsItsFourSides) {
     TriangleSoup soup = test::pipe(30.0, 25.0, 150.0, 4);
     const Mandrel m = build_mandrel(soup, "square");

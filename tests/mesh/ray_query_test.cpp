@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <vector>
@@ -253,6 +255,89 @@ TEST(RayQuery, CapsuleClearIsConservativeByOnePercent) {
 }
 
 // Equally near triangles: the lowest part and face, whatever the traversal order.
+// A bent pipe and a plate that stands out to one side: far from a body of revolution.
+std::vector<TriangleSoup> uneven_parts() {
+    std::vector<TriangleSoup> parts(2);
+    constexpr int kAround = 12;
+    for (int ring = 0; ring < 10; ++ring) {
+        const double z = 20.0 * ring - 90.0;
+        for (int i = 0; i < kAround; ++i) {
+            const double turn = 2.0 * std::numbers::pi * i / kAround;
+            const double bend = 0.002 * z * z;
+            parts[0].points_mm.emplace_back(bend + 15.0 * std::cos(turn), 15.0 * std::sin(turn), z);
+        }
+    }
+    for (std::int32_t ring = 0; ring < 9; ++ring) {
+        for (std::int32_t i = 0; i < kAround; ++i) {
+            const std::int32_t a = ring * kAround + i;
+            const std::int32_t b = ring * kAround + (i + 1) % kAround;
+            parts[0].faces.push_back({a, b, a + kAround});
+            parts[0].faces.push_back({b, b + kAround, a + kAround});
+        }
+    }
+    parts[1].points_mm = {{0.0, 0.0, -10.0}, {0.0, 80.0, 0.0}, {0.0, 0.0, 30.0}};
+    parts[1].faces = {{0, 1, 2}};
+    return parts;
+}
+
+TEST(RayQuery, WhatIsKnownToBeBeyondIs) {
+    const std::vector<TriangleSoup> parts = uneven_parts();
+    const RayQuery bare(parts);  // without a table: by the reach from the axis alone
+    const RayQuery tabled(parts, 30.0);
+    std::mt19937_64 random(kSeed);
+    std::uniform_real_distribution<double> far(0.0, 60.0);
+    int known_bare = 0;
+    int known_tabled = 0;
+    for (int i = 0; i < kQueries; ++i) {
+        const Vector3d place = random_point(random, 130.0);
+        const double distance = far(random);
+        const bool is_so = bare.closest(place, 1000.0).distance_mm >= distance - kSingle_mm;
+        EXPECT_TRUE(is_so || !bare.is_beyond(place, distance)) << place.transpose();
+        EXPECT_TRUE(is_so || !tabled.is_beyond(place, distance)) << place.transpose();
+        known_bare += bare.is_beyond(place, distance) ? 1 : 0;
+        known_tabled += tabled.is_beyond(place, distance) ? 1 : 0;
+    }
+    EXPECT_GT(known_bare, kQueries / 4);
+    EXPECT_GE(known_tabled, known_bare);
+}
+
+// On a pipe about the Z axis the bound is the distance itself, but for a bin at its ends.
+TEST(RayQuery, BeyondIsExactAroundABodyOfRevolution) {
+    std::vector<TriangleSoup> parts = uneven_parts();
+    parts.pop_back();
+    for (Vector3d& point : parts[0].points_mm) {
+        point.x() -= 0.002 * point.z() * point.z();
+    }
+    const RayQuery query(parts);
+    const Vector3d place(40.0, 0.0, 10.0);  // at a corner of the rings
+    EXPECT_TRUE(query.is_beyond(place, 25.0 - 1e-6));
+    EXPECT_FALSE(query.is_beyond(place, 25.0 + 1e-6));
+    EXPECT_TRUE(query.is_beyond({0.0, 0.0, 120.0}, 29.0));
+    EXPECT_FALSE(query.is_beyond({0.0, 0.0, 120.0}, 31.0));
+}
+
+TEST(RayQuery, RoomIsWhereTheEstimateSaysSo) {
+    constexpr double kReach_mm = 30.0;
+    const RayQuery query(uneven_parts(), kReach_mm);
+    std::mt19937_64 random(kSeed);
+    std::uniform_real_distribution<double> needs(0.0, 40.0);
+    int known = 0;
+    for (int i = 0; i < kQueries; ++i) {
+        const Vector3d place = random_point(random, 160.0);
+        const double need = needs(random);
+        const double from = query.room_from_mm(place.z(), need);
+        if (std::hypot(place.x(), place.y()) <= from) {
+            continue;
+        }
+        ++known;
+        EXPECT_LT(need, kReach_mm);
+        EXPECT_GE(query.distance_estimate_mm(place), need) << place.transpose();
+    }
+    EXPECT_GT(known, kQueries / 4);
+    EXPECT_EQ(RayQuery(uneven_parts()).room_from_mm(0.0, 1.0),
+              std::numeric_limits<double>::infinity());
+}
+
 TEST(RayQuery, ClosestTakesTheLowestOfEquals) {
     TriangleSoup fan;
     fan.points_mm = {{0, 0, 0}};

@@ -242,6 +242,12 @@ TEST(Dialects, RefuseLettersAndFeedsTheyDoNotHave) {
         other.blocks[2].duration_s = 0.0;
         EXPECT_EQ(write_error(name, machine, other), "dialect.duration");
         other = list;
+        const std::size_t axes = other.axes.size();
+        std::copy_n(other.nano.begin() + static_cast<std::ptrdiff_t>(axes), axes,
+                    other.nano.begin() + static_cast<std::ptrdiff_t>(2 * axes));
+        EXPECT_EQ(write_error(name, machine, other),  // steps may be none, moves not
+                  name == "pulses" ? "written" : "dialect.duration");
+        other = list;
         other.axes[0].letter = 'E';
         EXPECT_EQ(write_error(name, machine, other),
                   name == "pulses" ? "written" : "dialect.axis_letter");

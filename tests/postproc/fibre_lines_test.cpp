@@ -113,5 +113,21 @@ TEST(FibreStep, HasACurveSetForEachLine) {
     EXPECT_EQ(text, fibre_step(kTwo, "fibre", "1.2"));
 }
 
+TEST(FibreFiles, HostileNamesStayNames) {
+    const std::vector<FibreLine> lines{{"a'); #1=X('\n\\ \xc3\xa4", {{0, 0, 0}, {1, 0, 0}}},
+                                       {"o\nv 1 2 3 #", {{0, 0, 0}, {1, 0, 0}}}};
+    EXPECT_EQ(fibre_obj(lines),
+              "# Fibre by meshwind, mandrel frame, mm\n"
+              "o a');__1=X('_____\nv 0.0000 0.0000 0.0000\nv 1.0000 0.0000 0.0000\nl 1 2\n"
+              "o o_v_1_2_3__\nv 0.0000 0.0000 0.0000\nv 1.0000 0.0000 0.0000\nl 3 4\n");
+    const std::string text = fibre_step(lines, "*/ 'ENDSEC;'", "1");
+    EXPECT_NE(text.find("POLYLINE('a''); #1=X(''\\X\\0A\\\\ \\X\\C3\\X\\A4',("), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("FILE_NAME('*/ ''ENDSEC;''',"), std::string::npos);
+    for (const char c : text) {
+        EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
+    }
+}
+
 }  // namespace
 }  // namespace meshwind

@@ -109,6 +109,7 @@ TEST(ReadPathCsv, RefusesWithFileAndLine) {
     EXPECT_EQ(with("2.3333", "nan"), "plan.number out/path.csv:3");
     EXPECT_EQ(with("2.3333", "1e999"), "plan.number out/path.csv:3");
     EXPECT_EQ(with("2.3333", "2,3333"), "plan.number out/path.csv:3");
+    EXPECT_EQ(with("\n0,", "\n1e32,"), "plan.number out/path.csv:2");
     EXPECT_EQ(read(good.substr(0, good.find('\n') + 1)), "plan.empty out/path.csv:1");
     const std::size_t second = good.find('\n', good.find('\n') + 1) + 1;
     EXPECT_EQ(read(good.substr(0, second)), "plan.empty out/path.csv:2");
@@ -212,8 +213,9 @@ TEST(FirstDifference, SeesMissingAndFurtherBlocks) {
     table.push_back(table.back());
     MotionDifference difference = motion.difference(table);
     EXPECT_EQ(difference.block, blocks);
-    EXPECT_EQ(difference.words, "the program has " + std::to_string(blocks) + " blocks, planned " +
-                                    std::to_string(blocks + 1));
+    // The start is none.
+    EXPECT_EQ(difference.words, "the program has " + std::to_string(blocks - 1) +
+                                    " blocks, planned " + std::to_string(blocks));
     table.resize(blocks - 5);
     difference = motion.difference(table);
     EXPECT_EQ(difference.block, blocks - 5);

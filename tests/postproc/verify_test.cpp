@@ -125,7 +125,7 @@ TEST(Verify, PassesACorrectHelix) {
     const Verification found = job.verified();
     EXPECT_EQ(failed(found), "");
     const char* const names[] = {"laydown",     "slip",   "bridging", "collision",
-                                 "free_length", "limits", "payout"};
+                                 "free_length", "roller", "limits",   "payout"};
     ASSERT_EQ(found.checks.size(), std::size(names));
     for (std::size_t i = 0; i < std::size(names); ++i) {
         EXPECT_EQ(found.checks[i].name, names[i]);
@@ -335,9 +335,9 @@ TEST(Verify, SeesCornersThatTheControllerMayNotCut) {
     const double cut_mm = check_of(job.verified(), "limits").numbers.at("corner_eye_mm");
     EXPECT_GT(cut_mm, 0.0);
     EXPECT_EQ(check_of(job.verified(), "limits").numbers.count("limit_corner_mm"), 0U);
-    job.rules.corner_mm = 1.01 * cut_mm;
+    job.rules.path_mode.corner_mm = 1.01 * cut_mm;
     EXPECT_EQ(failed(job.verified()), "");
-    job.rules.corner_mm = 0.5 * cut_mm;
+    job.rules.path_mode.corner_mm = 0.5 * cut_mm;
     (void)expect_fails(job, "limits", "rounding the corner after ");
     EXPECT_EQ(check_of(job.verified(), "limits").numbers.at("limit_corner_mm"), 0.5 * cut_mm);
 }

@@ -13,6 +13,7 @@ Eigen/Geometry          *
 Eigen/                  *.cpp
 OpenMesh/               mesh/*.cpp
 OpenMesh/               mesh/open_mesh.h
+OpenMesh/               mesh/open_mesh_kernel.h
 CGAL/                   geodesic/shortest_path.cpp
 CGAL/                   mesh/planar_delaunay.cpp
 CGAL/                   mesh/self_intersections.cpp

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "core/text_number.h"
 #include "core/units.h"
 #include "tests/winding/fixtures.h"
 
@@ -123,6 +124,19 @@ TEST(TurnRun, IsTheClosedForm) {
     EXPECT_NEAR(turn_run_mm(50.0, rad_from_deg(30.0), 0.2), 250.0, 1e-9);
     EXPECT_NEAR(turn_run_mm(40.0, rad_from_deg(90.0), 0.1), 0.0, 1e-12);
     EXPECT_NEAR(turn_run_mm(80.0, rad_from_deg(45.0), 0.25), 320.0 * (std::sqrt(2.0) - 1.0), 1e-9);
+}
+
+// Without friction the run is infinite, and is told so instead of printed.
+TEST(WhyNoTurn, SaysWhatATurnTakes) {
+    const Rim rim = slanted_rim();
+    const RimCrossing c = crossing(0, 20, 1);
+    const std::string far = why_no_turn("the rim", rim, c, {0.1, 50.0, 6.0});
+    const double needed_mm = turn_run_mm(rim.radius_mm, c.angle_rad, 0.98 * 0.1) + 3.0;
+    EXPECT_NE(far.find(fixed(needed_mm, 1) + " mm"), std::string::npos) << far;
+    for (const double friction : {0.0, 1e-300, 1e-9}) {
+        const std::string never = why_no_turn("the rim", rim, c, {friction, 50.0, 6.0});
+        EXPECT_NE(never.find("no extension is long enough"), std::string::npos) << never;
+    }
 }
 
 TEST(CanTurn, KeepsTheBandOnTheExtension) {

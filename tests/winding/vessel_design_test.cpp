@@ -214,12 +214,12 @@ TEST(VesselAngles, RefuseWhatIsNoVessel) {
     EXPECT_EQ(code_of({.opening_radius_mm = 75.0}), "vessel.opening");
     EXPECT_EQ(code_of({.stiffness_ratio = 0.0}), "vessel.opening");
     EXPECT_EQ(code_of({.stiffness_ratio = 1.5}), "make.stiffness_ratio");
-    EXPECT_EQ(code_of({.design_radius_mm = -3.0}), "make.not_positive");
+    EXPECT_EQ(code_of({.design_radius_mm = -3.0}), "vessel.not_positive");
     EXPECT_EQ(code_of({.wall_mm = 0.0}), "vessel.not_positive");
-    EXPECT_EQ(code_of({.wall_mm = 1e9}), "vessel.demand");
+    EXPECT_EQ(code_of({.wall_mm = 1e9}), "vessel.out_of_range");
     EXPECT_EQ(code_of({.wall_mm = 1.0, .pressure_mpa = 1.0}), "vessel.demand");
     EXPECT_EQ(code_of({.pressure_mpa = 1.0}), "vessel.not_positive");
-    EXPECT_EQ(code_of({.pressure_mpa = 1.0, .strength_mpa = 1e-12}), "vessel.demand");
+    EXPECT_EQ(code_of({.pressure_mpa = 1.0, .strength_mpa = 1e-12}), "vessel.out_of_range");
     for (const double bad : {0.0, -0.1, 0.5 * kPi, 2.0, infinite, std::nan("")}) {
         EXPECT_EQ(code_of({.angles_rad = {bad}}), "vessel.angle") << bad;
     }

@@ -175,7 +175,7 @@ export class App {
         const program = this.timeline.programs.find(
             (p) => p.fibre.layer === (place.layer ?? 1) - 1 && p.fibre.fibre === (place.fibre ?? 1) - 1,
         );
-        if (program && place.block !== undefined) this.seekBlock(program, place.block);
+        if (program && place.block !== undefined) this.seekBlock(program, Math.ceil(place.block / (program.fibre.header.block_every ?? 1)));
         if (place.position_mm) this.parts.stage?.flyTo(new Vector3(...place.position_mm));
     }
 

@@ -72,7 +72,7 @@ const kKinds: Record<string, Kind> = {
     closure: {
         title: 'Closure',
         measures: [
-            { key: 'closure_deg', limit: 'limit_deg', label: 'off by' },
+            { key: 'closure_deg', limit: 'limit_closure_deg', label: 'off by' },
             { key: 'drift_deg', label: 'Drift in the program' },
         ],
     },

@@ -61,7 +61,7 @@ export class Listing {
         const count = this.count();
         this.spacer.style.height = `${count * kRowPx}px`;
         this.title.textContent = count
-            ? `${header.program ?? 'program'} \u00b7 ${header.dialect} \u00b7 ${count.toLocaleString('en').replace(/,/g, '\u202f')} lines`
+            ? `${header.program ?? 'program'} \u00b7 ${header.dialect} \u00b7 ${count.toLocaleString('en').replace(/,/g, '\u202f')} lines${header.shortened ? ` \u00b7 ${header.shortened}` : ''}`
             : 'No program was written for this run.';
     }
 

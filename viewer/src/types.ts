@@ -123,6 +123,8 @@ export interface FibreHeader {
     dialect: string;
     prefix: string;
     pieces: Piece[];
+    shortened?: string; // what the page leaves out
+    block_every?: number; // one block in so many is in the page
 }
 
 export interface LayerHeader {

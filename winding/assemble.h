@@ -1,13 +1,9 @@
-/// From paths over the ideal body to paths over the mesh.
+/// Pieces of a plan from finished paths, and how they are put together.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <optional>
+#include <cstdint>
 
-#include "geodesic/field_walk.h"
 #include "geodesic/surface_path.h"
-#include "mesh/nearest.h"
 #include "mesh/surface.h"
 #include "winding/plan.h"
 #include "winding/turn.h"
@@ -16,32 +12,6 @@ namespace meshwind {
 
 /// Distance of the stations of a plan, as the other planners have it.
 inline constexpr double kPatternStation_mm = 4.0;
-
-/// The faces under a path. Its stations stay on the ideal body, from which the mesh is off by the
-/// residual of its recognition.
-class Wall {
-public:
-    /// \param surface must outlive the wall
-    explicit Wall(const Surface& surface);
-
-    /// Sets `at` of every station by its position. \pre neighbours lie a few edges apart at most
-    void put(SurfacePath& path) const;
-
-    /// Moves every station onto the mesh, to the place under it: position, normal, tangent and kn
-    /// become those of the patches, and arc lengths are counted anew. \pre as put()
-    /// \param direction of travel of station i at its new position; its part in the tangent plane
-    /// counts
-    void settle(
-        SurfacePath& path,
-        const std::function<Eigen::Vector3d(std::size_t i, const Eigen::Vector3d& position)>&
-            direction) const;
-
-private:
-    void move_under(const Eigen::Vector3d& place_mm, std::optional<FieldWalker>& walker) const;
-
-    const Surface& surface_;
-    std::optional<NearestPoints> nearest_;
-};
 
 /// A course along a finished path: its taut string, and slip and kg measured on it.
 /// \param path on the patches or the ideal body, with normals, tangents, kn and arc lengths

@@ -1,0 +1,49 @@
+/// Files that are on the disk when a call returns, and the temporary names that they have before.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace meshwind {
+
+/// What a temporary file in an output folder is for.
+enum class TemporaryKind {
+    File,    ///< ".NAME.PID.part": a file of its own (write_file)
+    Staged,  ///< ".NAME.PID.tmp": a file of an OutputFolder before it is published
+    Kept,    ///< ".NAME.PID.old": what it replaces, until all is published
+};
+
+/// Temporary name beside `file`; the process id keeps runs apart.
+[[nodiscard]] std::filesystem::path temporary_beside(const std::filesystem::path& file,
+                                                     TemporaryKind kind);
+
+/// Writes the bytes and has them reach the disk. A regular file that could not be written whole is
+/// removed. \param place the name that the user knows
+/// \throws IoError output.unwritable; Interrupted, also where the file became larger than the
+/// shell allows (SIGXFSZ)
+void write_to_disk(const std::filesystem::path& file, std::string_view bytes,
+                   const std::filesystem::path& place);
+
+/// Gives a file's bytes piece by piece, so that they are never all in memory.
+using ByteSource = std::function<void(const std::function<void(std::string_view)>& write)>;
+
+/// The same with what the source gives. \throws what the source throws
+void write_to_disk(const std::filesystem::path& file, const ByteSource& source,
+                   const std::filesystem::path& place);
+
+/// Has the names in a folder reach the disk, where the file system offers that.
+void flush_folder(const std::filesystem::path& folder) noexcept;
+
+/// Removes what runs that were killed have left in a folder under temporary names: all of output
+/// folders, and those files of their own whose process has ended.
+/// \pre the folder is locked (FolderLock), so no other run has a use for them
+void remove_leftovers(const std::filesystem::path& folder);
+
+/// The same for one file of its own.
+void remove_leftovers_of(const std::filesystem::path& file);
+
+/// \throws IoError output.unwritable
+[[noreturn]] void throw_unwritable(const std::filesystem::path& place, std::string_view reason);
+
+}  // namespace meshwind

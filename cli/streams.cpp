@@ -1,0 +1,58 @@
+#include "cli/streams.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace meshwind {
+
+void open_standard_streams() {
+    for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(number, F_GETFD) < 0 && errno == EBADF) {
+            // The lowest number that is free: this one.
+            (void)!::open("/dev/null", number == STDIN_FILENO ? O_RDONLY : O_WRONLY);
+        }
+    }
+}
+
+HeldOutput::HeldOutput() : before_(std::cout.rdbuf(held_.rdbuf())) {}
+
+HeldOutput::~HeldOutput() {
+    std::cout.rdbuf(before_);
+}
+
+std::string HeldOutput::write_out() {
+    const std::string text = held_.str();
+    held_.str({});
+    std::string_view rest = text;
+    while (!rest.empty()) {
+        const ssize_t count = ::write(STDOUT_FILENO, rest.data(), rest.size());
+        if (count < 0 && errno != EINTR) {
+            return std::strerror(errno);
+        }
+        rest.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    }
+    return {};
+}
+
+std::string one_line(std::string_view text) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string line;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '\n') {
+            line += "\\n";
+        } else if (code < ' ' || code == 0x7f) {
+            line += {'\\', 'x', kDigits[code / 16U], kDigits[code % 16U]};
+        } else {
+            line += c;
+        }
+    }
+    return line;
+}
+
+}  // namespace meshwind

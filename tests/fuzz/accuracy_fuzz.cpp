@@ -1,0 +1,21 @@
+// Paths over a spoilt mesh, as `meshwind inspect` traces them for its estimate.
+#include <cmath>
+
+#include "core/parallel.h"
+#include "geodesic/path_accuracy.h"
+#include "mesh/mandrel.h"
+#include "tests/fuzz/harness.h"
+#include "tests/fuzz/spoilt_mesh.h"
+
+namespace meshwind::fuzz {
+
+void run(std::span<const std::uint8_t> bytes) {
+    set_thread_count(1);
+    const PathAccuracy accuracy =
+        estimate_path_accuracy(build_mandrel(spoilt_mesh(bytes), "spoilt").surface);
+    if (!std::isfinite(accuracy.walk_mm_per_m) || !std::isfinite(accuracy.patches_mm_per_m)) {
+        found("an estimate that is no number");
+    }
+}
+
+}  // namespace meshwind::fuzz
