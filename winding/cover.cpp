@@ -524,7 +524,6 @@ private:
         plan_.coverage.reachable = reached_share(library_.reached);
         describe_uncovered();
         plan_.face_layers = layers_per_face(mandrel_.surface, samples_, layers_);
-        plan_.face_angle_rad = angle_per_face(mandrel_.surface, plan_.pieces);
         std::vector<const SurfacePath*> courses;
         for (const Piece& piece : plan_.pieces) {
             if (piece.kind == PieceKind::Course) {

@@ -33,47 +33,23 @@ Coverage measure_coverage(std::span<const std::int32_t> layers) {
 
 std::vector<double> layers_per_face(const Surface& surface, const CoverageSamples& samples,
                                     std::span<const std::int32_t> layers) {
-    std::vector<double> count(surface.face.size(), 0.0);
-    std::vector<double> mean(surface.face.size(), 0.0);
+    const SampledFaces faces = sampled_faces(surface, samples);
+    std::vector<double> on_face(surface.face.size(), 0.0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const std::size_t face = at(samples.at[i].face);
-        count[face] += 1.0;
-        mean[face] += layers[i];
+        on_face[at(samples.at[i].face)] += layers[i];
     }
-    for (std::size_t f = 0; f < count.size(); ++f) {
-        mean[f] /= std::max(1.0, count[f]);
-    }
-    for (std::size_t f = 0; f < count.size(); ++f) {
-        double sum = 0.0;
+    std::vector<double> mean(surface.face.size(), 0.0);
+    for (std::size_t f = 0; f < mean.size(); ++f) {
         double weight = 0.0;
-        for (const std::int32_t g : surface.neighbour[f]) {
-            if (g != kNoFace && count[at(g)] > 0.0) {
-                sum += mean[at(g)];
+        for (const std::int32_t face : faces.speaks[f]) {
+            if (face != kNoFace) {
+                mean[f] += on_face[at(face)] / faces.samples[at(face)];
                 weight += 1.0;
             }
         }
-        if (count[f] == 0.0 && weight > 0.0) {
-            mean[f] = sum / weight;
-        }
+        mean[f] /= std::max(1.0, weight);
     }
     return mean;
-}
-
-std::vector<double> angle_per_face(const Surface& surface, std::span<const Piece> pieces) {
-    std::vector<double> length(surface.face.size(), 0.0);
-    std::vector<double> angle(surface.face.size(), 0.0);
-    for (const Piece& piece : pieces) {
-        for (std::size_t i = 0; piece.kind == PieceKind::Course && i + 1 < piece.path.size(); ++i) {
-            const std::size_t face = at(piece.path[i + 1].at.face);
-            const double ds = piece.path[i + 1].s_mm - piece.path[i].s_mm;
-            length[face] += ds;
-            angle[face] += ds * std::acos(std::min(1.0, std::abs(piece.path[i].tangent.z())));
-        }
-    }
-    for (std::size_t f = 0; f < length.size(); ++f) {
-        angle[f] = length[f] > 0.0 ? angle[f] / length[f] : 0.0;
-    }
-    return angle;
 }
 
 }  // namespace meshwind

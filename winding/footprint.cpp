@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
-#include "mesh/nearest.h"
 
 namespace meshwind {
 namespace {
@@ -24,11 +23,37 @@ constexpr double kSameWay = 0.9;
 // Between the ends of what is taken for straight (8 deg): half a band bulges by 1 % of it.
 constexpr double kStraight = 0.99;
 
+// How far a band and the facets beside it may lie apart: twice the bulge of the facets, for the
+// path may lie on them or on what they stand for, and a share of the slab's length, for it cuts off
+// what bends between its ends (by 0.25 at a crease of 53 deg).
+constexpr double kBulges = 2.0;
+constexpr double kCutOff = 0.25;
+
+// A sample is passed again further on than in the next slab, times the length of this one.
+constexpr double kNextSlab = 1.5;
+
 // Of a lane without a sample: further from any face than a band is wide, mm.
 constexpr float kNowhere = 1e9F;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
+}
+
+// Height over a facet of the smooth surface that its corners' normals belong to: of an arc over its
+// longest edge.
+double bulge_of(const Surface& surface, std::size_t face) {
+    const auto& v = surface.face[face];
+    const std::array<Vector3d, 3> corner{surface.position_mm[at(v[0])],
+                                         surface.position_mm[at(v[1])],
+                                         surface.position_mm[at(v[2])]};
+    const Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    double edge_mm = 0.0;
+    double least_cos = 1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        edge_mm = std::max(edge_mm, (corner[(k + 1) % 3] - corner[k]).norm());
+        least_cos = std::min(least_cos, surface.normal[at(surface.corner[face][k])].dot(normal));
+    }
+    return 0.5 * edge_mm * std::tan(0.5 * std::acos(std::max(kSameSide, least_cos)));
 }
 
 void forget(const std::vector<std::int32_t>& samples, FootprintFinder::Scratch& scratch) {
@@ -41,11 +66,12 @@ void forget(const std::vector<std::int32_t>& samples, FootprintFinder::Scratch& 
 
 FootprintFinder::FootprintFinder(const Surface& surface, const CoverageSamples& samples,
                                  double band_mm)
-    : samples_(samples), half_band_mm_(0.5 * band_mm) {
+    : samples_(samples), index_(samples.position_mm), half_band_mm_(0.5 * band_mm) {
     const std::vector<FaceGroup> groups = groups_of(surface);
-    const NearestPoints index(samples.position_mm);
     std::vector<std::vector<Block>> rows(groups.size());
     centre_mm_.resize(groups.size());
+    reach_mm_.resize(groups.size());
+    bulge_mm_.resize(groups.size());
     parallel_for(groups.size(), kGroupChunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
             centre_mm_[p] = groups[p].centre_mm;
@@ -54,8 +80,10 @@ FootprintFinder::FootprintFinder(const Surface& surface, const CoverageSamples& 
                 for (const std::int32_t v : surface.face[at(face)]) {
                     reach = std::max(reach, (surface.position_mm[at(v)] - centre_mm_[p]).norm());
                 }
+                bulge_mm_[p] = std::max(bulge_mm_[p], bulge_of(surface, at(face)));
             }
-            std::vector<std::int32_t> near = index.within(centre_mm_[p], reach + half_band_mm_);
+            reach_mm_[p] = reach + half_band_mm_;
+            std::vector<std::int32_t> near = index_.within(centre_mm_[p], reach_mm_[p]);
             std::erase_if(near, [&](std::int32_t sample) {
                 return samples.normal[at(sample)].dot(groups[p].normal) < kSameSide;
             });
@@ -135,14 +163,54 @@ FootprintFinder::Scratch FootprintFinder::make_scratch() const {
     return {std::vector<double>(samples_.size(), -std::numeric_limits<double>::infinity())};
 }
 
+bool FootprintFinder::holds(std::size_t group, const Slab& slab) const {
+    const Eigen::Vector3f first = (slab.start_mm - centre_mm_[group]).cast<float>();
+    const Eigen::Vector3f last = first + slab.length_mm * slab.along;
+    const Eigen::Vector3f side = static_cast<float>(half_band_mm_) * slab.across;
+    const float farthest_mm2 = std::max({(first + side).squaredNorm(), (first - side).squaredNorm(),
+                                         (last + side).squaredNorm(), (last - side).squaredNorm()});
+    return farthest_mm2 <= reach_mm_[group] * reach_mm_[group];
+}
+
+std::vector<FootprintFinder::Block> FootprintFinder::blocks_about(const Slab& slab,
+                                                                  const Vector3d& centre_mm) const {
+    const double reach_mm = std::hypot(0.5 * slab.length_mm, half_band_mm_, slab.half_height_mm);
+    std::vector<std::int32_t> near = index_.within(centre_mm, reach_mm);
+    const Vector3d up = slab.up.cast<double>();
+    std::erase_if(
+        near, [&](std::int32_t sample) { return samples_.normal[at(sample)].dot(up) < kSameSide; });
+    return blocks_of(near, centre_mm);
+}
+
+template <typename Contact>
+void FootprintFinder::visit_block(const Slab& slab, const Block& block,
+                                  const Eigen::Vector3f& start_mm, const Contact& contact) const {
+    const auto half_band = static_cast<float>(half_band_mm_);
+    const Lanes x = block.offset_mm[0] - start_mm.x();
+    const Lanes y = block.offset_mm[1] - start_mm.y();
+    const Lanes z = block.offset_mm[2] - start_mm.z();
+    const Lanes ahead = slab.along.x() * x + slab.along.y() * y + slab.along.z() * z;
+    const Lanes beside = slab.across.x() * x + slab.across.y() * y + slab.across.z() * z;
+    const Lanes above = slab.up.x() * x + slab.up.y() * y + slab.up.z() * z;
+    const Lanes inside = ahead.min(slab.length_mm - ahead)
+                             .min(half_band - beside.abs())
+                             .min(slab.half_height_mm - above.abs());
+    if (!(inside.maxCoeff() >= 0.0F)) {
+        return;
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (inside[static_cast<Eigen::Index>(lane)] >= 0.0F) {
+            contact(block.sample[lane], beside[static_cast<Eigen::Index>(lane)]);
+        }
+    }
+}
+
 template <typename Found>
 void FootprintFinder::visit(const SurfacePath& path, Scratch& scratch, const Found& found) const {
-    const double again_mm = 4.0 * half_band_mm_;
-    const auto half_band = static_cast<float>(half_band_mm_);
     for (std::size_t i = 0; i + 1 < path.size();) {
         const std::size_t station = i;
         const PathPoint& from = path[i];
-        // The segment lies in the face that both ends share: the one its second end was reached in.
+        // Most often the slab lies about the face that its second end was reached in.
         const std::int32_t group_index = group_of_[at(path[++i].at.face)];
         while (i + 1 < path.size() && group_of_[at(path[i + 1].at.face)] == group_index &&
                path[i + 1].s_mm - from.s_mm < half_band_mm_ &&
@@ -155,34 +223,32 @@ void FootprintFinder::visit(const SurfacePath& path, Scratch& scratch, const Fou
             continue;
         }
         const std::size_t group = at(group_index);
-        const Eigen::Vector3f along = (step / length).cast<float>();
-        const Eigen::Vector3f up = from.normal.cast<float>();
-        const Eigen::Vector3f across = up.cross(along);
-        const Eigen::Vector3f start = (from.position_mm - centre_mm_[group]).cast<float>();
-        for (std::int32_t k = begin_[group]; k < begin_[group + 1]; ++k) {
-            const Block& block = near_[at(k)];
-            const Lanes x = block.offset_mm[0] - start.x();
-            const Lanes y = block.offset_mm[1] - start.y();
-            const Lanes z = block.offset_mm[2] - start.z();
-            const Lanes ahead = along.x() * x + along.y() * y + along.z() * z;
-            const Lanes beside = across.x() * x + across.y() * y + across.z() * z;
-            const Lanes above = up.x() * x + up.y() * y + up.z() * z;
-            const Lanes inside = ahead.min(static_cast<float>(length) - ahead)
-                                     .min(half_band - beside.abs())
-                                     .min(half_band - above.abs());
-            if (!(inside.maxCoeff() >= 0.0F)) {
-                continue;
+        Slab slab;
+        slab.start_mm = from.position_mm;
+        slab.length_mm = static_cast<float>(length);
+        slab.half_height_mm = static_cast<float>(
+            std::max(half_band_mm_, kBulges * bulge_mm_[group] + kCutOff * length));
+        slab.along = (step / length).cast<float>();
+        slab.up = from.normal.cast<float>();
+        slab.across = slab.up.cross(slab.along);
+        const double again_mm = std::max(4.0 * half_band_mm_, kNextSlab * length);
+        const auto contact = [&](std::int32_t sample, float left_mm) {
+            double& seen = scratch.last_seen_mm[at(sample)];
+            if (from.s_mm - seen > again_mm) {
+                found(sample, left_mm, station);
             }
-            for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                if (!(inside[static_cast<Eigen::Index>(lane)] >= 0.0F)) {
-                    continue;
-                }
-                const std::int32_t sample = block.sample[lane];
-                double& seen = scratch.last_seen_mm[at(sample)];
-                if (from.s_mm - seen > again_mm) {
-                    found(sample, beside[static_cast<Eigen::Index>(lane)], station);
-                }
-                seen = from.s_mm;
+            seen = from.s_mm;
+        };
+        if (holds(group, slab)) {
+            const Eigen::Vector3f start = (slab.start_mm - centre_mm_[group]).cast<float>();
+            for (std::int32_t k = begin_[group]; k < begin_[group + 1]; ++k) {
+                visit_block(slab, near_[at(k)], start, contact);
+            }
+        } else {
+            const Vector3d middle = from.position_mm + 0.5 * step;
+            const Eigen::Vector3f start = (slab.start_mm - middle).cast<float>();
+            for (const Block& block : blocks_about(slab, middle)) {
+                visit_block(slab, block, start, contact);
             }
         }
     }

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "geodesic/surface_path.h"
+#include "mesh/nearest.h"
 #include "winding/samples.h"
 
 namespace meshwind {
@@ -48,6 +49,16 @@ private:
     template <typename Found>
     void visit(const SurfacePath& path, Scratch& scratch, const Found& found) const;
 
+    // A straight piece of a band, as long as it is flat.
+    struct Slab {
+        Eigen::Vector3d start_mm;
+        float length_mm;
+        float half_height_mm;  // how far off its plane the wall is looked for
+        Eigen::Vector3f along;
+        Eigen::Vector3f across;
+        Eigen::Vector3f up;
+    };
+
     // Faces that are taken together: their samples stay at hand while a path crosses them.
     struct FaceGroup {
         Eigen::Vector3d centre_mm;
@@ -65,10 +76,24 @@ private:
     [[nodiscard]] std::vector<Block> blocks_of(const std::vector<std::int32_t>& near,
                                                const Eigen::Vector3d& centre_mm) const;
 
+    // Calls `contact(sample, left_mm)` for every sample of a block in a slab.
+    template <typename Contact>
+    void visit_block(const Slab& slab, const Block& block, const Eigen::Vector3f& start_mm,
+                     const Contact& contact) const;
+
+    // True where all samples of a slab are near a group.
+    [[nodiscard]] bool holds(std::size_t group, const Slab& slab) const;
+    // Those near a slab that lies elsewhere; `centre_mm` is what they are offsets from.
+    [[nodiscard]] std::vector<Block> blocks_about(const Slab& slab,
+                                                  const Eigen::Vector3d& centre_mm) const;
+
     const CoverageSamples& samples_;
+    NearestPoints index_;  // of the samples
     double half_band_mm_;
     std::vector<std::int32_t> group_of_;      // per face
     std::vector<Eigen::Vector3d> centre_mm_;  // per group
+    std::vector<double> reach_mm_;            // per group: how far from its centre near_ reaches
+    std::vector<double> bulge_mm_;            // per group: of the surface that its facets stand for
     std::vector<std::int32_t> begin_;         // per group: rows into near_
     std::vector<Block> near_;  // samples within half a band of the group, on its side
 };

@@ -168,8 +168,6 @@ void measure_plan(const Surface& surface, const Surface& wall, double tow_width_
         measure_regular(zones, samples, layers, tow_width_mm, plan.coverage);
     }
     plan.face_layers = layers_per_face(surface, samples, layers);
-    plan.face_angle_rad = angle_per_face(wall, plan.pieces);
-    plan.face_angle_rad.resize(surface.face.size());
     plan.angle = wound_angles(wall, courses, std::nullopt);
     plan.places = places_of(wall, courses);
     plan.family = families_of(courses, tow_width_mm);

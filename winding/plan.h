@@ -167,7 +167,6 @@ struct Plan {
     Coverage coverage;
     std::vector<Uncovered> uncovered;
     std::vector<double> face_layers;     ///< per face of the surface: mean layers
-    std::vector<double> face_angle_rad;  ///< mean angle between fibre and spindle axis, 0..pi/2
     std::vector<WhatIf> what_if;         ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;       ///< per rim
     std::vector<PinRing> pins{};         ///< that the turns need, at most one ring per rim

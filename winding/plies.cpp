@@ -105,10 +105,9 @@ class ContactsByFace {
 public:
     ContactsByFace(const Surface& surface, const CoverageSamples& samples,
                    const std::vector<std::vector<Contact>>& contacts)
-        : surface_(surface), samples_(surface.face.size(), 0), begin_(surface.face.size() + 1, 0) {
-        for (const SurfacePoint& place : samples.at) {
-            ++samples_[at(place.face)];
-        }
+        : surface_(surface),
+          faces_(sampled_faces(surface, samples)),
+          begin_(surface.face.size() + 1, 0) {
         const auto face_of = [&](const Contact& contact) {
             return at(samples.at[at(contact.sample)].face);
         };
@@ -129,44 +128,38 @@ public:
         }
     }
 
-    // Of a triangle; where it has no sample those of its neighbours.
+    // Of a triangle; where it has no sample those that speak for it.
     [[nodiscard]] std::vector<Weighed> about(std::size_t face) const {
+        const std::array<std::int32_t, 3>& speaks = faces_.speaks[face];
+        const auto count = std::count_if(speaks.begin(), speaks.end(),
+                                         [](std::int32_t f) { return f != kNoFace; });
         std::vector<Weighed> contacts;
-        if (samples_[face] > 0) {
-            add(face, 1.0, contacts);
-            return contacts;
-        }
-        std::vector<std::size_t> neighbours;
-        for (const std::int32_t next : surface_.neighbour[face]) {
-            if (next != kNoFace && samples_[at(next)] > 0) {
-                neighbours.push_back(at(next));
-            }
-        }
         const Vector3d normal = normal_of(surface_, face);
-        for (const std::size_t neighbour : neighbours) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            const std::size_t near = at(speaks[k]);
             const std::size_t first = contacts.size();
-            add(neighbour, 1.0 / static_cast<double>(neighbours.size()), contacts);
-            for (std::size_t i = first; i < contacts.size(); ++i) {
+            add(near, 1.0 / static_cast<double>(count), contacts);
+            for (std::size_t i = first; near != face && i < contacts.size(); ++i) {
                 Eigen::Vector3f& along = contacts[i].contact.along;
-                along = rolled(normal_of(surface_, neighbour), normal, along.cast<double>())
-                            .cast<float>();
+                along =
+                    rolled(normal_of(surface_, near), normal, along.cast<double>()).cast<float>();
             }
         }
         return contacts;
     }
 
-    [[nodiscard]] const std::vector<std::int32_t>& samples() const { return samples_; }
+    [[nodiscard]] const std::vector<std::int32_t>& samples() const { return faces_.samples; }
 
 private:
     void add(std::size_t face, double share, std::vector<Weighed>& contacts) const {
         for (std::size_t i = begin_[face]; i < begin_[face + 1]; ++i) {
-            contacts.push_back({contact_[i], share / samples_[face]});
+            contacts.push_back({contact_[i], share / faces_.samples[face]});
         }
     }
 
     const Surface& surface_;
-    std::vector<std::int32_t> samples_;  // per face
-    std::vector<std::size_t> begin_;     // per face
+    SampledFaces faces_;
+    std::vector<std::size_t> begin_;  // per face
     std::vector<Contact> contact_;
 };
 

@@ -197,4 +197,40 @@ CoverageSamples sample_surface(const Surface& surface, double spacing_mm, std::u
     return samples;
 }
 
+SampledFaces sampled_faces(const Surface& surface, const CoverageSamples& samples) {
+    const auto at = [](std::int32_t face) { return static_cast<std::size_t>(face); };
+    SampledFaces faces;
+    faces.samples.assign(surface.face.size(), 0);
+    faces.speaks.assign(surface.face.size(), {kNoFace, kNoFace, kNoFace});
+    for (const SurfacePoint& place : samples.at) {
+        ++faces.samples[at(place.face)];
+    }
+    std::vector<std::int32_t> ring;  // around the faces with samples, outwards
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        if (faces.samples[f] > 0) {
+            faces.speaks[f][0] = static_cast<std::int32_t>(f);
+            ring.push_back(static_cast<std::int32_t>(f));
+        }
+    }
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        for (const std::int32_t next : surface.neighbour[at(ring[i])]) {
+            if (next == kNoFace || faces.speaks[at(next)][0] != kNoFace) {
+                continue;
+            }
+            ring.push_back(next);
+            if (faces.samples[at(ring[i])] == 0) {
+                faces.speaks[at(next)] = faces.speaks[at(ring[i])];
+                continue;
+            }
+            std::size_t n = 0;
+            for (const std::int32_t beside : surface.neighbour[at(next)]) {
+                if (beside != kNoFace && faces.samples[at(beside)] > 0) {
+                    faces.speaks[at(next)][n++] = beside;
+                }
+            }
+        }
+    }
+    return faces;
+}
+
 }  // namespace meshwind
