@@ -18,11 +18,19 @@ build_tests() {
     local folder=$1 target=$2
     shift 2
     install_packages build test
-    [[ $folder == asan || $folder == fuzz ]] || prepare_page
+    [[ $folder == asan ]] || prepare_page
     configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON -DMESHWIND_PCH=tests \
         "-DMESHWIND_VIEWER=$page" "$@"
     echo "building the tests in build/$folder ..." >&2
     run_logged "$root/build/$folder/build.log" ninja -C "$root/build/$folder" "$target"
+}
+
+# build_instrumented TARGET: one build for the sanitizers and for libFuzzer, by Clang: it builds instrumented code twice as
+# fast as GCC does, and sees the sources with other eyes.
+build_instrumented() {
+    install_packages sanitize
+    build_tests asan "$1" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" -DCMAKE_CXX_COMPILER=clang++-14 \
+        -DMESHWIND_SANITIZE=fuzzer-no-link,address,undefined -DMESHWIND_PCH=all
 }
 
 # run_tests FOLDER CTEST_OPTION...: an empty selection is a failure, not a success.
@@ -43,11 +51,11 @@ run_tests() {
 # fuzz_harness NAME SECONDS: the committed corpus and what earlier runs added in build/; stops at the first find.
 # Memory: a reader may take 1 GB; the address sanitizer's shadow and red zones add about as much again, its freed memory 64 MB.
 fuzz_harness() {
-    local name=$1 seconds=$2 folder=$root/build/fuzz
+    local name=$1 seconds=$2 folder=$root/build/asan/fuzz
     local log=$folder/$name.log
     mkdir -p "$folder/corpus/$name" "$folder/found"
     if ! ASAN_OPTIONS=quarantine_size_mb=64 UBSAN_OPTIONS=print_stacktrace=1 \
-        "$folder/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" -timeout=10 -rss_limit_mb=2048 \
+        "$root/build/asan/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" -timeout=10 -rss_limit_mb=2048 \
         -malloc_limit_mb=1024 -max_len=4096 -print_final_stats=1 "-artifact_prefix=$folder/found/$name-" \
         "$folder/corpus/$name" "$root/tests/fuzz/corpus/$name" >"$log" 2>&1; then
         tail -n 40 "$log"
@@ -63,17 +71,11 @@ all)
     run_tests release
     ;;
 sanitize)
-    install_packages sanitize
-    # Clang: it builds instrumented code twice as fast as GCC does, and sees the sources with other eyes.
-    with_lock build_tests asan fast_tests -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
-        -DCMAKE_CXX_COMPILER=clang++-14 -DMESHWIND_SANITIZE=address,undefined -DMESHWIND_PCH=all
+    with_lock build_instrumented fast_tests
     run_tests asan -L '^fast$'
     ;;
 fuzz)
-    install_packages sanitize
-    with_lock build_tests fuzz fuzz_harnesses -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
-        -DCMAKE_CXX_COMPILER=clang++-14 -DMESHWIND_SANITIZE=fuzzer-no-link,address,undefined \
-        -DMESHWIND_PCH=all
+    with_lock build_instrumented fuzz_harnesses
     mapfile -t harnesses < <(cd "$root/tests/fuzz/corpus" && printf '%s\n' *)
     share=$((${2:-60} / ${#harnesses[@]}))
     for harness in "${harnesses[@]}"; do
