@@ -10,6 +10,7 @@ namespace meshwind {
 
 std::string verify_json(const VerifyOutcome& outcome) {
     const Verification& verification = outcome.verification;
+    const Coverage& coverage = outcome.coverage;
     nlohmann::json report = {
         {"meshwind", kVersion},
         {"program", outcome.program},
@@ -17,6 +18,10 @@ std::string verify_json(const VerifyOutcome& outcome) {
         {"machine", outcome.setup.machine.name},
         {"dialect", outcome.setup.machine.controller.dialect},
         {"verification", verification_report(verification, outcome.blocks)},
+        {"coverage",
+         {{"fraction", report_number(coverage.fraction)},
+          {"mean_layers", report_number(coverage.mean_layers)},
+          {"max_layers", coverage.max_layers}}},
         {"checks", checks_report(outcome.checks)},
         {"ok", outcome.passed()},
         {"timing_s", {{"import", outcome.reading_s}, {"verify", outcome.verifying_s}}}};
@@ -29,6 +34,9 @@ void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
         << fixed(verification.fibre_length_mm / 1000.0, 1) << " m of fibre on "
         << outcome.setup.mandrel.file << " in " << outcome.blocks.moves() << " blocks, "
         << fixed(verification.duration_s / 60.0, 1) << " min\n";
+    out << "covered " << percent(outcome.coverage.fraction) << " of the wall, "
+        << fixed(outcome.coverage.mean_layers, 2) << " layers on average, at most "
+        << outcome.coverage.max_layers << '\n';
     print_checks(out, outcome.checks);
     if (verification.first_wrong_block) {
         out << "first wrong: " << block_words(outcome.blocks, *verification.first_wrong_block)

@@ -9,12 +9,16 @@
 #include "cli/run_files.h"
 #include "core/error.h"
 #include "core/text_file.h"
+#include "winding/measure_plan.h"
 
 namespace meshwind {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+// Of the samples that coverage is measured on: the plan's by default.
+constexpr std::uint64_t kVerifySeed = 1;
 
 double seconds(Clock::duration duration) {
     return std::chrono::duration<double>(duration).count();
@@ -105,6 +109,10 @@ VerifyOutcome run_verify(const VerifyRequest& request) {
     const auto read = Clock::now();
     outcome.verification = verify_program(outcome.setup, outcome.blocks, plan.fibre,
                                           [&](double share) { tell("verify", share); });
+    outcome.coverage = coverage_of_fibre(outcome.setup.mandrel.surface,
+                                         outcome.setup.wall->surface(),
+                                         outcome.setup.job.tow.width_mm, kVerifySeed,
+                                         outcome.verification.laid.path);
     // Where the program is not the planned one is the cause, what the fibre does the effect.
     if (texts.first_wrong) {
         outcome.verification.first_wrong_block = texts.first_wrong;

@@ -14,6 +14,7 @@
 #include "postproc/block.h"
 #include "postproc/plan_tables.h"
 #include "postproc/verify.h"
+#include "winding/plan.h"
 
 namespace meshwind {
 
@@ -31,6 +32,7 @@ struct VerifyOutcome {
     Setup setup;
     BlockList blocks;
     Verification verification;  ///< its first wrong block is that of "program" where this fails
+    Coverage coverage;          ///< by the laid fibre
     std::vector<Check> checks;  ///< those of the text (TextChecks), then the verification's
     double reading_s = 0.0;     ///< all input
     double verifying_s = 0.0;   ///< winding again and the checks

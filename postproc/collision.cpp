@@ -160,6 +160,17 @@ public:
         return clear_within(part, way, part.chunk, 0.0, 1.0);
     }
 
+    // The same for a piece that is measured to be so far off at the step's end, up to the resolution:
+    // mostly without a search.
+    [[nodiscard]] bool clear(const LinkedChunk& part, double end_clearance_mm) const {
+        const Way way(machine_, part.link, std::nullopt);
+        const double room = end_clearance_mm - need_mm_ - 2.0 * kSweepResolution_mm;
+        return (room > 0.0 &&
+                way.motion_mm(Joints(to_.begin(), to_.end()), from_, to_, 1.0, part.chunk.centre(),
+                              part.chunk.reach_mm() + part.chunk.radius_mm) < room) ||
+               clear_within(part, way, part.chunk, 0.0, 1.0);
+    }
+
 private:
     // The middle of a share of the step.
     struct Middle {
@@ -405,9 +416,12 @@ public:
         const StepSweep sweep(machine_, obstacles_, rule_.clearance_mm, from, to);
         const Isometry3d mandrel = base_from_mandrel(machine_, to).inverse();
         for (const LinkedChunk& part : parts_) {
-            found.head = found.head || !sweep.clear(part);
-            const Isometry3d pose = mandrel * base_from_link(machine_, to, part.link);
-            found.clearance_mm = least_distance(obstacles_, pose, part.chunk, found.clearance_mm);
+            if (rule_.told_mm > rule_.clearance_mm) {
+                const Isometry3d pose = mandrel * base_from_link(machine_, to, part.link);
+                found.clearance_mm =
+                    least_distance(obstacles_, pose, part.chunk, found.clearance_mm);
+            }
+            found.head = found.head || !sweep.clear(part, found.clearance_mm);
         }
         for (const LinkedChunk& body : bodies_) {
             look_at(body, path[before], path[i], from, to, found);

@@ -49,7 +49,9 @@ struct CollisionRule {
     double clearance_mm = 5.0;   ///< kept between the head and anything
     FreeFibreRule free_fibre;    ///< of which stand-off and start concern the ray
     double fibre_step_mm = 2.0;  ///< the eye moves no further than this between two fibre rays
-    double told_mm = kClearanceCap_mm;  ///< clearances of the head beyond this are not told apart
+    /// Clearances of the head beyond this are not told apart; where it is `clearance_mm`, none is
+    /// measured.
+    double told_mm = kClearanceCap_mm;
 };
 
 /// What the motion touches. A step leads from eye point i - 1 to eye point i.

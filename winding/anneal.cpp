@@ -423,6 +423,9 @@ private:
         }
         PlacedCourse course{std::move(sketch.course), std::move(sketch.path), backward, false};
         if (!proposal.fit) {
+            if (!leads(course)) {
+                return proposal;
+            }
             course.member.footprint = ground_.footprints.footprint(course.path, scratch.footprint);
             return weighed(std::move(course), std::move(proposal), scratch);
         }
@@ -471,9 +474,14 @@ private:
     // What else a change may save: hardly any helps more than two others to a family.
     [[nodiscard]] double slack() const { return 2.0 * alone_cost(); }
 
+    // Whether a fibre comes where a course begins and goes on where it ends.
+    [[nodiscard]] bool leads(const PlacedCourse& course) const {
+        return !options_.way || options_.way(nodes_of(course.member, course.backward));
+    }
+
     // The proposal to put in a course, if it is worth it and can be wound.
     Proposal weighed(PlacedCourse course, Proposal proposal, Scratch& scratch) const {
-        if (options_.way && !options_.way(nodes_of(course.member, course.backward))) {
+        if (!leads(course)) {
             return proposal;
         }
         proposal.in = std::move(course);

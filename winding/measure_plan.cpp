@@ -139,6 +139,18 @@ SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i, doubl
     return path;
 }
 
+Coverage coverage_of_fibre(const Surface& surface, const Surface& wall, double tow_width_mm,
+                           std::uint64_t seed, const SurfacePath& fibre) {
+    const CoverageSamples samples = plan_samples(surface, tow_width_mm, seed);
+    const FootprintFinder footprints(wall, samples, tow_width_mm);
+    FootprintFinder::Scratch scratch = footprints.make_scratch();
+    std::vector<std::int32_t> layers(samples.size(), 0);
+    for (const std::int32_t sample : footprints.footprint(fibre, scratch)) {
+        ++layers[static_cast<std::size_t>(sample)];
+    }
+    return measure_coverage(layers);
+}
+
 void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
                   std::uint64_t seed, const PlanZones& zones, Plan& plan) {
     const CoverageSamples samples = plan_samples(surface, tow_width_mm, seed);

@@ -35,7 +35,13 @@ struct PlanZones {
 [[nodiscard]] SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i,
                                            double tow_width_mm);
 
-/// Fills in coverage, layers and angles per face, winding angles and places of a plan's courses.
+/// Coverage by a fibre as it lies, with its turns. \param wall what the stations' faces are of, as in
+/// measure_plan() \return `reachable` is left at 0
+[[nodiscard]] Coverage coverage_of_fibre(const Surface& surface, const Surface& wall,
+                                         double tow_width_mm, std::uint64_t seed,
+                                         const SurfacePath& fibre);
+
+/// Fills in coverage, layers per face, winding angles and places of a plan's courses.
 /// \param surface what is to be covered \param wall what the stations' faces are of: the surface,
 /// or the surface with more faces after its own \param seed of the samples
 void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,

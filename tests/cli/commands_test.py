@@ -300,6 +300,10 @@ class Commands(program.ProgramTest):
         self.assertAlmostEqual(report["verification"]["fibre_length_mm"],
                                math.pi / 2 * 50 * math.sqrt(2), 2)
         self.assertIsNone(report["verification"]["first_wrong"])
+        width, wall = 6, 2 * math.pi * 50 * 200
+        share = report["verification"]["fibre_length_mm"] * width / wall
+        self.assertAlmostEqual(report["coverage"]["fraction"], share, delta=0.03 * share)
+        self.assertEqual(report["coverage"]["max_layers"], 1)
         with open(self.folder / "out/laid.csv", newline="") as table:
             rows = list(csv.DictReader(table))
         for row in rows:

@@ -154,13 +154,17 @@ class Locked(OutputTest):
                 self.assertIn("-o", result.stderr)
         self.assertEqual(self.names(), ["program.ngc"])
 
-    def test_two_runs_into_one_folder(self):
-        tee = program.SOURCE / "data/tee.stl"
-        first = self.popen(tee, "-o", self.out)
+    def begin_a_long_run(self):
+        """A run that has the folder, and keeps it for seconds."""
+        run = self.popen(program.SOURCE / "data/tee.stl", "-o", self.out)
         deadline = time.monotonic() + 60
         while not self.out.exists() and time.monotonic() < deadline:
             time.sleep(0.05)
         time.sleep(0.5)
+        return run
+
+    def test_two_runs_into_one_folder(self):
+        first = self.begin_a_long_run()
         second = self.wind(self.hoops)
         self.assertEqual(second.returncode, 2, second.stderr)
         self.assertIn("another run", second.stderr)
@@ -170,12 +174,7 @@ class Locked(OutputTest):
         self.assertEqual(self.wind(self.hoops).returncode, 0)
 
     def test_a_killed_run_holds_nothing(self):
-        tee = program.SOURCE / "data/tee.stl"
-        first = self.popen(tee, "-o", self.out)
-        deadline = time.monotonic() + 60
-        while not self.out.exists() and time.monotonic() < deadline:
-            time.sleep(0.05)
-        time.sleep(0.5)
+        first = self.begin_a_long_run()
         first.kill()
         first.communicate(timeout=60)
         self.assertEqual(self.wind(self.hoops).returncode, 0)
