@@ -48,7 +48,6 @@ constexpr std::size_t kReach = 3;
 constexpr std::size_t kChoices = 3;
 constexpr std::size_t kPairs = kChoices * kChoices;
 
-constexpr std::size_t kMostStretches = 3;
 using Costs = std::array<double, kPairs>;  // of choice i of a step and j of the next
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -186,7 +185,7 @@ public:
         for (const double step_s : timed.step_s) {
             timed.duration_s += step_s;
         }
-        add_binding(timed);
+        timed.binding = binding();
         return timed;
     }
 
@@ -535,31 +534,13 @@ private:
         return limit;
     }
 
-    void add_binding(TimedPath& timed) const {
-        std::vector<BindingLimit> limits(2 + 3 * axes_);
-        std::size_t before = limits.size();
+    [[nodiscard]] std::vector<BindingLimit> binding() const {
+        std::vector<LimitedStep> steps;
         for (std::size_t m = 1; m <= count_; ++m) {
-            const std::size_t limit = limit_of(m);
-            auto& stretches = limits[limit].stretches;
-            if (limit != before) {
-                stretches.push_back({step_[m], step_[m], 0.0});
-            }
-            stretches.back().last = step_[m];
-            stretches.back().time_s += duration_s_[m];
-            limits[limit].time_s += duration_s_[m];
-            before = limit;
+            steps.push_back({step_[m], duration_s_[m], limit_of(m)});
         }
-        const auto longer = [](const auto& a, const auto& b) { return a.time_s > b.time_s; };
-        for (std::size_t limit = 0; limit < limits.size(); ++limit) {
-            BindingLimit& binding = limits[limit];
-            if (binding.time_s > 0.0) {
-                binding.name = limit_name(machine_, limit);
-                std::stable_sort(binding.stretches.begin(), binding.stretches.end(), longer);
-                binding.stretches.resize(std::min(binding.stretches.size(), kMostStretches));
-                timed.binding.push_back(std::move(binding));
-            }
-        }
-        std::stable_sort(timed.binding.begin(), timed.binding.end(), longer);
+        return binding_limits(steps,
+                              [&](std::size_t limit) { return limit_name(machine_, limit); });
     }
 
     const Machine& machine_;

@@ -8,6 +8,7 @@
 
 #include "machines/machine.h"
 #include "postproc/axis_loads.h"
+#include "postproc/binding_limits.h"
 #include "postproc/eye_path.h"
 #include "postproc/joint_path.h"
 
@@ -19,20 +20,6 @@ struct TimeLawOptions {
     /// (axis_loads.h). What the controller is told, Dialect::corner_tolerance_mm.
     double corner_mm = std::numeric_limits<double>::infinity();
     double tick_s = 0.0;  ///< durations are whole ticks; 0: any
-};
-
-/// Neighbouring steps that one limit set, those that take no time between them included.
-struct BindingStretch {
-    std::size_t first = 0;
-    std::size_t last = 0;
-    double time_s = 0.0;
-};
-
-/// What set the duration of a step.
-struct BindingLimit {
-    std::string name;     ///< "fibre", "corner", "C velocity", "C acceleration", "C jerk" ...
-    double time_s = 0.0;  ///< total duration of the steps that it set
-    std::vector<BindingStretch> stretches;  ///< the longest three, longest first
 };
 
 /// A joint path with time. Step i leads from point i - 1 to point i; step 0 takes no time.
