@@ -9,6 +9,26 @@
 #include <unistd.h>
 
 namespace meshwind {
+namespace {
+
+// Names of files and machines may hold what a terminal would obey.
+std::string shown(std::string_view text, std::string_view as_they_are) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string all;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if ((code >= ' ' && code != 0x7f) || as_they_are.find(c) != std::string_view::npos) {
+            all += c;
+        } else if (c == '\n') {
+            all += "\\n";
+        } else {
+            all += {'\\', 'x', kDigits[code / 16U], kDigits[code % 16U]};
+        }
+    }
+    return all;
+}
+
+}  // namespace
 
 void open_standard_streams() {
     for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -26,7 +46,7 @@ HeldOutput::~HeldOutput() {
 }
 
 std::string HeldOutput::write_out() {
-    const std::string text = held_.str();
+    const std::string text = shown(held_.str(), "\n\t");
     held_.str({});
     std::string_view rest = text;
     while (!rest.empty()) {
@@ -40,19 +60,7 @@ std::string HeldOutput::write_out() {
 }
 
 std::string one_line(std::string_view text) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string line;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '\n') {
-            line += "\\n";
-        } else if (code < ' ' || code == 0x7f) {
-            line += {'\\', 'x', kDigits[code / 16U], kDigits[code % 16U]};
-        } else {
-            line += c;
-        }
-    }
-    return line;
+    return shown(text, "");
 }
 
 }  // namespace meshwind

@@ -20,7 +20,8 @@ public:
     HeldOutput(const HeldOutput&) = delete;
     HeldOutput& operator=(const HeldOutput&) = delete;
 
-    /// Writes it to stdout. \return why not all of it has arrived; empty when it has
+    /// Writes it to stdout, control characters in it but tabs and ends of lines as one_line() shows
+    /// them. \return why not all of it has arrived; empty when it has
     [[nodiscard]] std::string write_out();
 
 private:

@@ -1,7 +1,10 @@
 #include "postproc/fibre_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -89,21 +92,46 @@ private:
     int next_ = 1;
 };
 
+// The code point that UTF-8 text begins with, which is taken away; of what is no UTF-8 the byte.
+std::uint32_t take_code_point(std::string_view& text) {
+    const auto byte = [&](std::size_t i) -> std::uint32_t {
+        return static_cast<unsigned char>(text[i]);
+    };
+    const std::size_t follow = byte(0) >= 0xF0U   ? 3
+                               : byte(0) >= 0xE0U ? 2
+                               : byte(0) >= 0xC0U ? 1
+                                                  : 0;
+    std::uint32_t code = byte(0);
+    if (follow > 0 && follow < text.size()) {
+        std::uint32_t longer = byte(0) & (0x3FU >> follow);
+        std::size_t n = 1;
+        for (; n <= follow && (byte(n) & 0xC0U) == 0x80U; ++n) {
+            longer = (longer << 6U) | (byte(n) & 0x3FU);
+        }
+        if (n > follow) {
+            text.remove_prefix(follow);
+            code = longer;
+        }
+    }
+    text.remove_prefix(1);
+    return code;
+}
+
 // In quotes; within them a quote is doubled, and so is a backslash. Other characters than plain
-// ASCII are written byte by byte, "\X\E4" (ISO 10303-21, 6.4.3.2).
-std::string step_text(const std::string& raw) {
-    constexpr std::string_view kDigits = "0123456789ABCDEF";
+// ASCII are written by their code points, "\X2\00E4\X0\" (ISO 10303-21, 6.4.3.3).
+std::string step_text(std::string_view raw) {
     std::string text = "'";
-    for (const char c : raw) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c < ' ' || c > '~') {
-            text += {'\\', 'X', '\\', kDigits[code / 16U], kDigits[code % 16U]};
+    while (!raw.empty()) {
+        const std::uint32_t code = take_code_point(raw);
+        if (code >= ' ' && code <= '~') {
+            text.append(code == '\'' || code == '\\' ? 2 : 1, static_cast<char>(code));
             continue;
         }
-        text += c;
-        if (c == '\'' || c == '\\') {
-            text += c;
-        }
+        std::array<char, 9> digits{};
+        (void)std::snprintf(digits.data(), digits.size(), code > 0xFFFFU ? "%08X" : "%04X", code);
+        text += code > 0xFFFFU ? "\\X4\\" : "\\X2\\";
+        text += digits.data();
+        text += "\\X0\\";
     }
     return text + '\'';
 }

@@ -32,7 +32,7 @@ class HostileNames(program.ProgramTest):
 
     def wind(self, mandrel, machine):
         return self.run_program(mandrel, "--machine", machine, "--job", self.job, "-o", self.out,
-                                "--quiet", timeout_s=300)
+                                timeout_s=300)
 
     def code_of(self, text):
         """What the controller runs: the program without comments and blank lines."""
@@ -85,6 +85,17 @@ class HostileNames(program.ProgramTest):
                 self.assertEqual(result.returncode, 2)
                 self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
                 self.assertFalse([c for c in result.stderr if c < " " and c != "\n"])
+
+    def test_summaries_have_no_control_characters(self):
+        for i, name in enumerate(("\x1b[2J\x07", "a\rb\x7f")):
+            with self.subTest(name):
+                mandrel = self.folder / (name + ".stl")
+                mandrel.write_bytes(self.mandrel.read_bytes())
+                for result in (self.run_program("inspect", mandrel),
+                               self.wind(mandrel, self.machine(name))):
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    self.assertIn(("\\x1b[2J\\x07", "a\\x0db\\x7f")[i], result.stdout)
+                    self.assertFalse([c for c in result.stdout if c < " " and c not in "\n\t"])
 
     def test_a_name_that_is_no_text(self):
         mandrel = os.fsencode(self.folder) + b"/bad\xff.stl"

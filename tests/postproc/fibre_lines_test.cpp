@@ -113,6 +113,18 @@ TEST(FibreStep, HasACurveSetForEachLine) {
     EXPECT_EQ(text, fibre_step(kTwo, "fibre", "1.2"));
 }
 
+// ISO 10303-21: characters by their code points, beyond the basic plane with eight digits.
+TEST(FibreFiles, StepNamesAreUnicode) {
+    const auto head_of = [](const char* name) { return fibre_step(kTwo, name, "1"); };
+    EXPECT_NE(head_of("Rohr \xe5\xb7\xbb \xf0\x9f\xa7\xb5")
+                  .find("FILE_NAME('Rohr \\X2\\5DFB\\X0\\ \\X4\\0001F9F5\\X0\\',"),
+              std::string::npos);
+    // What is no UTF-8 is taken for Latin-1.
+    for (const char* name : {"\xe4", "\xe4-", "\xe4\xb7"}) {
+        EXPECT_NE(head_of(name).find("FILE_NAME('\\X2\\00E4\\X0\\"), std::string::npos);
+    }
+}
+
 TEST(FibreFiles, HostileNamesStayNames) {
     const std::vector<FibreLine> lines{{"a'); #1=X('\n\\ \xc3\xa4", {{0, 0, 0}, {1, 0, 0}}},
                                        {"o\nv 1 2 3 #", {{0, 0, 0}, {1, 0, 0}}}};
@@ -121,7 +133,8 @@ TEST(FibreFiles, HostileNamesStayNames) {
               "o a');__1=X('_____\nv 0.0000 0.0000 0.0000\nv 1.0000 0.0000 0.0000\nl 1 2\n"
               "o o_v_1_2_3__\nv 0.0000 0.0000 0.0000\nv 1.0000 0.0000 0.0000\nl 3 4\n");
     const std::string text = fibre_step(lines, "*/ 'ENDSEC;'", "1");
-    EXPECT_NE(text.find("POLYLINE('a''); #1=X(''\\X\\0A\\\\ \\X\\C3\\X\\A4',("), std::string::npos)
+    EXPECT_NE(text.find("POLYLINE('a''); #1=X(''\\X2\\000A\\X0\\\\\\ \\X2\\00E4\\X0\\',("),
+              std::string::npos)
         << text;
     EXPECT_NE(text.find("FILE_NAME('*/ ''ENDSEC;''',"), std::string::npos);
     for (const char c : text) {
