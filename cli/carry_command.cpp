@@ -127,6 +127,7 @@ private:
         tool_.linear() =
             EulerZyx{rad_from_deg(t[3]), rad_from_deg(t[4]), rad_from_deg(t[5])}.matrix();
         tool_ = pose_of(krl_frame(tool_));  // what the controller will use
+        spare_inputs(request.out, {request.axis, request.machine});
         folder_ = std::make_unique<OutputFolder>(request.out);
     }
 

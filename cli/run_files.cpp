@@ -6,6 +6,7 @@
 
 #include "cli/disk_file.h"
 #include "cli/report_carry.h"
+#include "core/error.h"
 #include "postproc/dialect.h"
 #include "postproc/krl.h"
 
@@ -94,6 +95,22 @@ std::vector<std::string> files_of_earlier_run(const fs::path& folder) {
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
+}
+
+void spare_inputs(const fs::path& folder, const std::vector<fs::path>& inputs) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) {
+        return;
+    }
+    for (const std::string& name : files_of_earlier_run(folder)) {
+        for (const fs::path& input : inputs) {
+            if (!input.empty() && fs::equivalent(input, folder / name, error)) {
+                throw InputError("output.holds_input", input.string(),
+                                 "this run would replace the file that it reads; write into "
+                                 "another folder with -o, or move the file out of this one");
+            }
+        }
+    }
 }
 
 }  // namespace meshwind

@@ -41,4 +41,9 @@ enum class FileRole {
 /// be listed
 [[nodiscard]] std::vector<std::string> files_of_earlier_run(const std::filesystem::path& folder);
 
+/// A run must not replace what it reads. \param inputs files that exist; empty ones do not count
+/// \throws InputError output.holds_input for one that files_of_earlier_run() of `folder` has
+void spare_inputs(const std::filesystem::path& folder,
+                  const std::vector<std::filesystem::path>& inputs);
+
 }  // namespace meshwind

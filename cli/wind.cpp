@@ -151,6 +151,8 @@ private:
                                   .unit_mm = request_.unit_mm,
                                   .look_ahead = [this](const Setup& setup) { look_ahead(setup); }});
         const Setup& setup = first.setup;
+        spare_inputs(request_.out, {request_.mandrel, request_.machine, request_.job,
+                                    request_.import ? request_.import->points : fs::path()});
         folder_ = std::make_unique<OutputFolder>(request_.out);  // unusable: better known now
         header_.version = kVersion;
         header_.mandrel = setup.mandrel.file;

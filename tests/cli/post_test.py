@@ -56,6 +56,17 @@ class Post(program.ProgramTest):
             self.assertIn(word, line)
         self.assertFalse((self.folder / "none").exists())
 
+    def test_the_points_themselves_are_not_replaced(self):
+        mandrel = self.cylinder()
+        self.post(self.write("points.csv", table(helix(-150, 0, 50, 20))), mandrel)
+        before = (self.folder / "out/path.csv").read_bytes()
+        result = self.post("out/path.csv", mandrel, "--frame", "mandrel", code=2)
+        self.assertIn("out/path.csv", result.stderr)
+        self.assertIn("-o", result.stderr)
+        self.assertEqual((self.folder / "out/path.csv").read_bytes(), before)
+        self.assertTrue((self.folder / "out/program.ngc").exists())
+        self.post("out/path.csv", mandrel, "--frame", "mandrel", out="again")
+
     def test_a_helix_becomes_a_program(self):
         mandrel = self.cylinder()
         result = self.post(self.write("points.csv", table(helix(-150, 0, 50, 100))), mandrel)
