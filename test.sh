@@ -2,7 +2,7 @@
 # ./test.sh            builds with warnings as errors and runs every test
 # ./test.sh LABEL      only the tests with that label: fast, slow, oracle, golden
 # ./test.sh sanitize   the fast tests under the address and undefined-behaviour sanitizers
-# ./test.sh fuzz SECONDS   random input under both, each harness of tests/fuzz for its share of the time [60]
+# ./test.sh fuzz SECONDS [SEED]   random input under both, each harness of tests/fuzz for its share of the time [60]
 # The last line counts the tests. Missing Debian packages are installed first.
 set -euo pipefail
 
@@ -48,14 +48,14 @@ run_tests() {
     grep -E 'tests passed, 0 tests failed out of' "$log"
 }
 
-# fuzz_harness NAME SECONDS: the committed corpus and what earlier runs added in build/; stops at the first find.
+# fuzz_harness NAME SECONDS SEED: the committed corpus and what earlier runs added in build/; stops at the first find.
 # Memory: a reader may take 1 GB; the address sanitizer's shadow and red zones add about as much again, its freed memory 64 MB.
 fuzz_harness() {
-    local name=$1 seconds=$2 folder=$root/build/asan/fuzz
+    local name=$1 seconds=$2 seed=$3 folder=$root/build/asan/fuzz
     local log=$folder/$name.log
     mkdir -p "$folder/corpus/$name" "$folder/found"
     if ! ASAN_OPTIONS=quarantine_size_mb=64 UBSAN_OPTIONS=print_stacktrace=1 \
-        "$root/build/asan/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" -timeout=10 -rss_limit_mb=2048 \
+        "$root/build/asan/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" "-seed=$seed" -timeout=10 -rss_limit_mb=2048 \
         -malloc_limit_mb=1024 -max_len=4096 -print_final_stats=1 "-artifact_prefix=$folder/found/$name-" \
         "$folder/corpus/$name" "$root/tests/fuzz/corpus/$name" >"$log" 2>&1; then
         tail -n 40 "$log"
@@ -79,7 +79,7 @@ fuzz)
     mapfile -t harnesses < <(cd "$root/tests/fuzz/corpus" && printf '%s\n' *)
     share=$((${2:-60} / ${#harnesses[@]}))
     for harness in "${harnesses[@]}"; do
-        fuzz_harness "$harness" "$((share > 0 ? share : 1))"
+        fuzz_harness "$harness" "$((share > 0 ? share : 1))" "${3:-0}" # 0: another one each time
     done
     ;;
 fast | slow | oracle | golden)

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/report_checks.h"
+#include "core/counted.h"
 #include "core/text_number.h"
 #include "version.h"
 
@@ -32,7 +33,7 @@ void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
     const Verification& verification = outcome.verification;
     out << outcome.program << " on " << outcome.setup.machine.name << " lays "
         << fixed(verification.fibre_length_mm / 1000.0, 1) << " m of fibre on "
-        << outcome.setup.mandrel.file << " in " << outcome.blocks.moves() << " blocks, "
+        << outcome.setup.mandrel.file << " in " << counted(outcome.blocks.moves(), "block") << ", "
         << fixed(verification.duration_s / 60.0, 1) << " min\n";
     out << "covered " << percent(outcome.coverage.fraction) << " of the wall, "
         << fixed(outcome.coverage.mean_layers, 2) << " layers on average, at most "
