@@ -18,6 +18,7 @@ namespace {
 constexpr double kRedraw_s = 0.1;
 constexpr double kClock_s = 0.5;
 constexpr double kLines_s = 2.0;
+constexpr double kLinesShare = 0.2;  // of the time that has gone by
 
 // A rate is told from so much of a phase on; before, it is mostly noise.
 constexpr double kSettled_s = 1.0;
@@ -160,7 +161,8 @@ void Progress::say(const std::string& line) {
 
 void Progress::draw_line(double now) {
     const ProgressState state = phases_.state(now);
-    if (state.phase != named_ || now - last_s_ >= kLines_s) {
+    if (state.phase != named_ ||
+        now - last_s_ >= std::max(kLines_s, kLinesShare * (now - begun_s_))) {
         std::cerr << progress_line(state) << '\n';
         named_ = state.phase;
         last_s_ = now;

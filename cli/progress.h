@@ -45,7 +45,8 @@ private:
 
 /// Tells stderr of a run, and nothing to stdout. On a terminal one line is drawn again, at most
 /// ten times a second, and wiped at the end. Elsewhere a line is written where another phase
-/// begins, and every two seconds. Thread-safe.
+/// begins, and every two seconds, of long runs every fifth of the time that has gone by.
+/// Thread-safe.
 class Progress {
 public:
     explicit Progress(bool quiet);
@@ -74,6 +75,7 @@ private:
     std::condition_variable ended_;
     bool over_ = false;
     bool shown_ = false;
+    double begun_s_ = now_s();
     double last_s_ = -1e9;  // of the last drawing or line
     std::string named_;     // phase of the last line
     ProgressPhases phases_;
