@@ -35,6 +35,9 @@ constexpr double kStepShare = 0.05;
 // 0.02 mm deep.
 constexpr double kHollow_per_mm = 1e-4;
 
+// Shallower creases count as flat, as those of rims do (hollow_rim.h).
+constexpr double kLeastValley_rad = 1e-3;
+
 // Looking ahead over a hollow goes no further than this share of the free length.
 constexpr double kAheadShare = 0.9;
 // Bridges within one sample; more means a wall of spikes.
@@ -112,6 +115,23 @@ private:
     Vector3d start_, end_, linear_, square_, cube_;
 };
 
+// Whether the wall bends up at an edge: seen across it, the normal beyond leans back.
+bool is_valley(const Surface& surface, std::size_t face, std::size_t edge) {
+    const std::int32_t other = surface.neighbour[face][edge];
+    if (other == kNoFace) {
+        return false;
+    }
+    const std::int32_t start = surface.face[face][edge];
+    const Vector3d along = surface.position_mm[at(surface.face[face][(edge + 1) % 3])] -
+                           surface.position_mm[at(start)];
+    const auto& there = surface.face[at(other)];
+    const auto corner =
+        static_cast<std::size_t>(std::find(there.begin(), there.end(), start) - there.begin());
+    const Vector3d& here = surface.normal[at(surface.corner[face][edge])];
+    const Vector3d& beyond = surface.normal[at(surface.corner[at(other)][corner])];
+    return beyond.dot(along.cross(here).normalized()) < -kLeastValley_rad;
+}
+
 // Per face: whether a hollow of the wall, along any direction, is within reach.
 std::vector<char> hollow_faces(const Surface& surface, double reach_mm) {
     std::vector<Vector3d> hollow;
@@ -128,11 +148,7 @@ std::vector<char> hollow_faces(const Surface& surface, double reach_mm) {
             const double mean = 0.5 * s.trace();
             const double square = 0.5 * (s * s).trace();
             const double least = mean - std::sqrt(std::max(0.0, square - mean * mean));
-            const std::int32_t other = surface.neighbour[f][i];
-            const bool valley = surface.feature[f][i] != 0 && other != kNoFace &&
-                                surface.normal[at(surface.corner[f][i])].dot(
-                                    centre(surface.face[at(other)]) -
-                                    surface.position_mm[at(surface.face[f][i])]) > 0.0;
+            const bool valley = surface.feature[f][i] != 0 && is_valley(surface, f, i);
             found = least < -kHollow_per_mm || valley;
         }
         if (found) {
