@@ -239,9 +239,7 @@ private:
             pattern.hoop_z_mm = cylinder_of(*options_.bare);
         }
         if (options_.before != nullptr) {
-            const Piece& last = options_.before->pieces.back();
-            pattern.before =
-                FibreEnd{last.path.back().position_mm, last.path.back().tangent, last.end_rim};
+            pattern.before = fibre_end_of(*options_.before);
         }
         pattern.seed = options_.seed;
         pattern.lattice = layer_.lattice;

@@ -14,18 +14,23 @@ namespace {
 
 constexpr std::size_t kPointChunk = 256;
 
-// Under a bridge the fibre runs straight from the place that it leaves to the one that it meets:
-// there the eye goes on along this line. What is free of it begins only where it meets the wall
-// again, so much `ahead_mm` of each station.
-void straighten_bridges(const Piece& piece, std::span<EyePoint> points,
-                        std::span<double> ahead_mm) {
-    const std::vector<double>& gap = piece.string.gap_mm;
+// A station's height of the fibre over the wall, and the wall's normal.
+struct OverWall {
+    double gap_mm;
+    Eigen::Vector3d normal;
+};
+
+// Under a bridge the fibre runs straight from the place that it leaves to the one that it meets,
+// which may be on another piece: there the eye goes on along this line. What is free of it begins
+// only where it meets the wall again, so much `ahead_mm` of each station.
+void straighten_bridges(std::span<const OverWall> wall, EyePath& points,
+                        std::vector<double>& ahead_mm) {
     for (std::size_t first = 1; first + 1 < points.size(); ++first) {
-        if (gap[first] <= 0.0) {
+        if (wall[first].gap_mm <= 0.0) {
             continue;
         }
         std::size_t end = first;
-        while (end + 1 < points.size() && gap[end] > 0.0) {
+        while (end + 1 < points.size() && wall[end].gap_mm > 0.0) {
             ++end;
         }
         const EyePoint& from = points[first - 1];
@@ -37,7 +42,7 @@ void straighten_bridges(const Piece& piece, std::span<EyePoint> points,
             points[i].landing_mm = from.landing_mm + share * chord;
             points[i].tangent = chord.normalized();
             ahead_mm[i] = (1.0 - share) * chord.norm();
-            points[i].binormal = piece.path[i].normal.cross(chord).normalized();
+            points[i].binormal = wall[i].normal.cross(chord).normalized();
         }
         first = end;
     }
@@ -90,6 +95,7 @@ FreeLengths free_lengths(std::span<const EyePoint> path, std::span<const double>
 LandingPoints landing_points(std::span<const Piece> pieces) {
     LandingPoints points;
     EyePath& path = points.path;
+    std::vector<OverWall> wall;
     double laid_mm = 0.0;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const Piece& piece = pieces[p];
@@ -111,12 +117,12 @@ LandingPoints landing_points(std::span<const Piece> pieces) {
                 point.held = start.held;
             }
             path.push_back(point);
+            wall.push_back({piece.string.gap_mm[i], station.normal});
         }
-        points.ahead_mm.resize(path.size(), 0.0);
-        straighten_bridges(piece, std::span(path).last(piece.path.size()),
-                           std::span(points.ahead_mm).last(piece.path.size()));
         laid_mm += piece.path.back().s_mm;
     }
+    points.ahead_mm.resize(path.size(), 0.0);
+    straighten_bridges(wall, path, points.ahead_mm);
     return points;
 }
 

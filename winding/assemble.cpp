@@ -25,8 +25,13 @@ Piece course_along(const Surface& surface, SurfacePath path, double friction) {
 
 LaidTurn turn_over(const Rim& rim, const PathPoint& from, const PathPoint& to,
                    const TurnRule& rule) {
-    Turn turn = make_turn(rim, crossing_at(rim, from.position_mm, from.tangent),
-                          crossing_at(rim, to.position_mm, -to.tangent), rule, kPatternStation_mm);
+    return turn_over(rim, crossing_at(rim, from.position_mm, from.tangent),
+                     crossing_at(rim, to.position_mm, -to.tangent), rule);
+}
+
+LaidTurn turn_over(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+                   const TurnRule& rule) {
+    Turn turn = make_turn(rim, from, to, rule, kPatternStation_mm);
     const TurnsAtRim asks{1, turn.run_mm + 0.5 * rule.band_mm, turn.dwell_rad};
     return {piece_of_turn(std::move(turn), rim.id), asks, rim.id};
 }

@@ -26,6 +26,8 @@ struct LaidTurn {
 
 /// From where a course leaves over a rim to where the next one comes back.
 /// \pre both can be turned (can_turn)
+[[nodiscard]] LaidTurn turn_over(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+                                 const TurnRule& rule);
 [[nodiscard]] LaidTurn turn_over(const Rim& rim, const PathPoint& from, const PathPoint& to,
                                  const TurnRule& rule);
 

@@ -191,6 +191,7 @@ std::vector<std::vector<MeridianStation>> other_way_round(const ConnectingPasses
             station.angle_rad = kPi - station.angle_rad;
             station.azimuth_rad = end_rad - station.azimuth_rad;
             station.s_mm = end_mm - station.s_mm;
+            station.slope = -station.slope;
         }
     }
     return other;

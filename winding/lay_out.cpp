@@ -44,8 +44,7 @@ void add_piece(Piece piece, Plan& plan) {
 Piece piece_of_turn(Turn&& turn, std::int32_t rim) {
     Piece piece;
     piece.kind = PieceKind::Transition;
-    piece.string.gap_mm.assign(turn.path.size(), 0.0);
-    piece.string.slope.assign(turn.path.size(), 0.0);
+    piece.string = std::move(turn.string);
     for (const PathPoint& point : turn.path) {
         piece.slip.push_back(std::abs(point.kg_per_mm) / point.kn_per_mm);
     }

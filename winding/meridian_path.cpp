@@ -230,6 +230,7 @@ std::vector<MeridianStation> way_back(const MeridianPass& pass) {
         station.angle_rad = kPi - station.angle_rad;
         station.azimuth_rad = end.azimuth_rad - station.azimuth_rad;
         station.s_mm = end.s_mm - station.s_mm;
+        station.slope = -station.slope;
     }
     return back;
 }

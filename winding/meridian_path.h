@@ -16,6 +16,10 @@ struct MeridianStation {
     double azimuth_rad = 0.0;  ///< about +Z
     double angle_rad = 0.0;
     double s_mm = 0.0;  ///< along the path
+    /// Above 0: the fibre is in the air so high over the place, as it goes straight over a hollow
+    /// rim (hollow_rim.h); s is along it then, and the angle is that of the way below it.
+    double gap_mm = 0.0;
+    double slope = 0.0;  ///< rise of the fibre against that way, mm per mm
 };
 
 /// Where a path ended: at an end of the meridian, where it runs along a parallel, or because it was

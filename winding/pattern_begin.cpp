@@ -5,6 +5,7 @@
 
 #include "core/text_number.h"
 #include "core/units.h"
+#include "winding/hollow_rim.h"
 
 namespace meshwind {
 namespace {
@@ -15,6 +16,8 @@ using Kind = ConnectingGoal::Kind;
 // Share of the friction that connecting passes are steered with: over the steps that other layers
 // leave, the press of the fibre changes within a few mm, and the laid fibre evens that out.
 constexpr double kConnecting = 0.7;
+
+constexpr const char* kNoTurn = "with the layers before it the fibre cannot be turned over the rim";
 
 // A fibre along a parallel: the sine of its angle to the meridian.
 constexpr double kAlong = 1.0 - 1e-5;
@@ -39,16 +42,20 @@ private:
         if (before.tangent.dot(around) < kAlong) {
             return "the one before does not end along a parallel";
         }
-        const ConnectingPasses way =
+        ConnectingPasses way =
             passes_from(meridian_.foot(std::hypot(p.x(), p.y()), p.z()).arc_mm, goal_);
         if (!way.failure.empty()) {
             return way.failure;
         }
+        const bool turns = goal_[way.end].kind == Kind::Rim;
+        if (turns && !lift(way.end, way.end == 1, way.passes.back())) {
+            return kNoTurn;
+        }
         begin_.end = way.end;
         begin_.azimuth_rad = std::atan2(p.y(), p.x());
-        add(way.passes);
-        if (goal_[way.end].kind == Kind::Rim) {
-            turn_into_pattern(begin_.pieces.back().piece.path.back());
+        const double turn_rad = add(way.passes);
+        if (turns) {
+            turn_into_pattern(pieces_.crossing_of(way.end, way.passes.back().back(), turn_rad));
         }
         return "";
     }
@@ -58,22 +65,22 @@ private:
         const std::size_t end =
             pieces_.rim_of(0) != nullptr && pieces_.rim_of(0)->id == before.rim ? 0 : 1;
         const Rim& rim = *pieces_.rim_of(end);
-        PathPoint from;
-        from.position_mm = before.position_mm;
-        from.tangent = before.tangent;
-        if (!can_turn(rim, crossing_at(rim, from.position_mm, from.tangent), rule_)) {
-            return "with the layers before it the fibre cannot be turned over the rim";
+        const RimCrossing leaves = before.in_air
+                                       ? crossing_in_air(rim, before.position_mm, before.tangent)
+                                       : crossing_at(rim, before.position_mm, before.tangent);
+        if (!can_turn(rim, leaves, rule_)) {
+            return kNoTurn;
         }
         if (goal_[end].kind == Kind::Rim) {
             begin_.end = end;
-            turn_into_pattern(from);
+            turn_into_pattern(leaves);
             return "";
         }
-        return passes_after_rim(end, from);
+        return passes_after_rim(end, leaves);
     }
 
     // Found backwards, from where the pattern begins to the rim.
-    std::string passes_after_rim(std::size_t end, const PathPoint& from) {
+    std::string passes_after_rim(std::size_t end, const RimCrossing& from) {
         std::array<ConnectingGoal, 2> over_rim{};
         over_rim[end].kind = Kind::Rim;
         for (const std::size_t start : {1 - end, end}) {
@@ -84,12 +91,16 @@ private:
             if (!way.failure.empty()) {
                 continue;
             }
-            const auto passes = other_way_round(way);
+            auto passes = other_way_round(way);
+            if (!lift(end, end == 0, passes.front())) {
+                continue;
+            }
             const MeridianStation& first = passes.front().front();
             begin_.end = start;
             begin_.azimuth_rad = turned_azimuth(end, from, first);
-            begin_.pieces.push_back(
-                pieces_.turn(end, from, swept(first, begin_.azimuth_rad - first.azimuth_rad)));
+            begin_.pieces.push_back(pieces_.turn(
+                end, from,
+                pieces_.crossing_of(end, first, begin_.azimuth_rad - first.azimuth_rad)));
             add(passes);
             return "";
         }
@@ -111,32 +122,52 @@ private:
         return connecting_passes(meridian_, request);
     }
 
-    // Passes from the azimuth where the pattern begins so far, which moves on to their end.
-    void add(const std::vector<std::vector<MeridianStation>>& passes) {
+    // Of a pass that begins or ends at the rim of an end, over which it is to be turned: straight
+    // through the air where the rim is a hollow. False where it cannot be turned so.
+    bool lift(std::size_t end, bool upward, std::vector<MeridianStation>& pass) const {
+        if (rim_kink_rad(meridian_, end == 1) < kLeastRimKink_rad) {
+            return true;
+        }
+        const auto turned_round = [](std::vector<MeridianStation> stations) {
+            return way_back({std::move(stations), MeridianStop::End, MeridianStop::End});
+        };
+        std::vector<MeridianStation> way = upward ? pass : turned_round(pass);
+        if (lift_over_rim(meridian_, end == 1, kPatternStation_mm, way) == RimLift::NeverOnWall) {
+            return false;
+        }
+        pass = upward ? way : turned_round(way);
+        const MeridianStation& at_rim = upward == (end == 1) ? pass.back() : pass.front();
+        return can_turn(*pieces_.rim_of(end), pieces_.crossing_of(end, at_rim, 0.0), rule_);
+    }
+
+    // Passes from the azimuth where the pattern begins so far, which moves on to their end. Returns
+    // what the stations of the last one are turned by.
+    double add(const std::vector<std::vector<MeridianStation>>& passes) {
+        double turn_rad = 0.0;
         for (const std::vector<MeridianStation>& stations : passes) {
             LaidTurn laid;
-            laid.piece =
-                pieces_.course(stations, begin_.azimuth_rad - stations.front().azimuth_rad);
+            turn_rad = begin_.azimuth_rad - stations.front().azimuth_rad;
+            laid.piece = pieces_.course(stations, turn_rad);
             laid.piece.kind = PieceKind::Transition;
             begin_.azimuth_rad += stations.back().azimuth_rad - stations.front().azimuth_rad;
             begin_.pieces.push_back(std::move(laid));
         }
+        return turn_rad;
     }
 
-    void turn_into_pattern(const PathPoint& from) {
+    void turn_into_pattern(const RimCrossing& from) {
         const MeridianStation& first = first_[begin_.end];
         begin_.azimuth_rad = turned_azimuth(begin_.end, from, first);
-        begin_.pieces.push_back(
-            pieces_.turn(begin_.end, from, swept(first, begin_.azimuth_rad - first.azimuth_rad)));
+        begin_.pieces.push_back(pieces_.turn(
+            begin_.end, from,
+            pieces_.crossing_of(begin_.end, first, begin_.azimuth_rad - first.azimuth_rad)));
     }
 
     // Azimuth at which a fibre that leaves over a rim comes back as `first`, hardly with any dwell.
-    [[nodiscard]] double turned_azimuth(std::size_t end, const PathPoint& from,
+    [[nodiscard]] double turned_azimuth(std::size_t end, const RimCrossing& from,
                                         const MeridianStation& first) const {
-        const Rim& rim = *pieces_.rim_of(end);
-        const PathPoint to = swept(first, -first.azimuth_rad);
-        return kLeastDwell_rad - dwell_rad(rim, crossing_at(rim, from.position_mm, from.tangent),
-                                           crossing_at(rim, to.position_mm, -to.tangent), rule_);
+        const RimCrossing to = pieces_.crossing_of(end, first, -first.azimuth_rad);
+        return kLeastDwell_rad - dwell_rad(*pieces_.rim_of(end), from, to, rule_);
     }
 
     const Meridian& meridian_;
@@ -148,6 +179,16 @@ private:
 };
 
 }  // namespace
+
+FibreEnd fibre_end_of(const Plan& plan) {
+    const Piece& last = plan.pieces.back();
+    const bool runs_out = last.string.gap_mm.front() > 0.0;
+    const Piece& course = runs_out ? plan.pieces[plan.pieces.size() - 2] : last;
+    const PathPoint& at = course.path.back();
+    const Vector3d fibre =
+        runs_out ? string_point(at, 0.0, course.string.slope.back()).tangent : at.tangent;
+    return {at.position_mm, fibre, last.end_rim, runs_out};
+}
 
 PatternBegin begin_after(const FibreEnd& before, const Meridian& meridian,
                          const RevolutionPieces& pieces, const std::array<ConnectingGoal, 2>& goal,

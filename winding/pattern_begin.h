@@ -18,7 +18,11 @@ struct FibreEnd {
     Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();
     std::int32_t rim = -1;  ///< it leaves over; -1: it does not
+    bool in_air = false;    ///< there, on its way over a hollow rim (hollow_rim.h)
 };
+
+/// Of a plan: as its last course leaves it, before it runs out behind a hollow rim (turn.h).
+[[nodiscard]] FibreEnd fibre_end_of(const Plan& plan);
 
 struct PatternBegin {
     std::size_t end = 0;       ///< of the body: the lower is 0

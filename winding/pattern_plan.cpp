@@ -11,6 +11,7 @@
 #include "core/text_number.h"
 #include "core/units.h"
 #include "winding/aim_pass.h"
+#include "winding/hollow_rim.h"
 #include "winding/hoop_path.h"
 #include "winding/measure_plan.h"
 #include "winding/pin_pattern.h"
@@ -41,6 +42,10 @@ constexpr double kSteering = 0.9;
 
 // Share of the friction with which hoops turn into a helix and back: it is over in a few mm.
 constexpr double kHoopSteering = 0.5;
+
+// A fibre that ends behind a hollow rim is laid on the extension for so many tow widths: it then
+// ends where it lies on something, whatever the blocks are off.
+constexpr double kRunOutTows = 1.0;
 
 // Turns at given radii at both ends are met to 1e-6 mm; with that a secant comes so near to the
 // turn of a circuit, and the slip stays as it is for what is left.
@@ -75,10 +80,10 @@ public:
         if (options_.kind == PatternKind::Polar ? !aim_at_openings() : !aim_at_angle()) {
             return std::move(plan_);
         }
-        if (!ends_hold() || !choose_pattern() || !place_pins()) {
+        if (!lift_over_rims() || !ends_hold() || !choose_pattern() || !place_pins()) {
             return std::move(plan_);
         }
-        begin_at({goal(0), goal(1)}, {pass_.stations.front(), way_back(pass_).front()});
+        begin_at({goal(0), goal(1)}, {laid_.stations.front(), way_back(laid_).front()});
         lay();
         // At a turn of its own the band is whole as far as its middle.
         measure(pass_.stations.front().arc_mm, pass_.stations.back().arc_mm);
@@ -151,6 +156,20 @@ private:
         pass_ = steered.pass;
     }
 
+    // The pass with ends that go straight over hollow rims; on pins they are left on the wall.
+    bool lift_over_rims() {
+        LaidPass lifted;
+        lifted.pass = pass_;
+        if (!options_.pins) {
+            lifted = lifted_over_rims(meridian_, pass_,
+                                      {.angle_rad = angle_rad_,
+                                       .most_gap_mm = options_.tow.bridging_tolerance_mm,
+                                       .station_mm = kPatternStation_mm});
+        }
+        laid_ = std::move(lifted.pass);
+        return lifted.failure.empty() || fail(lifted.failure);
+    }
+
     // Whether both ends of the pass can be turned at.
     bool ends_hold() {
         for (std::size_t end = 0; end < 2; ++end) {
@@ -215,12 +234,11 @@ private:
     }
 
     // A turn over a rim; on pins with the ring that the first one needs.
-    LaidTurn turn_between(std::size_t end, const PathPoint& from, const PathPoint& to) {
+    LaidTurn turn_between(std::size_t end, const RimCrossing& crossing, const RimCrossing& to) {
         if (!pins_) {
-            return pieces_.turn(end, from, to);
+            return pieces_.turn(end, crossing, to);
         }
         const Rim& rim = *pieces_.rim_of(end);
-        const RimCrossing crossing = crossing_at(rim, from.position_mm, from.tangent);
         PinTurnShape shape = pins_->shape(end);
         shape.angle_rad = crossing.angle_rad;
         if (std::none_of(plan_.pins.begin(), plan_.pins.end(),
@@ -233,7 +251,7 @@ private:
 
     // How the pass crosses the rim of an end on its way out, or begins there (seen backwards).
     [[nodiscard]] RimCrossing crossing_of(std::size_t end) const {
-        return pieces_.crossing_of(end, end == 0 ? pass_.stations.front() : pass_.stations.back(),
+        return pieces_.crossing_of(end, end == 0 ? laid_.stations.front() : laid_.stations.back(),
                                    0.0);
     }
 
@@ -254,7 +272,7 @@ private:
 
     // Turn of the mandrel in a circuit without dwell.
     [[nodiscard]] double circuit_rad() const {
-        double turn = 2.0 * pass_.turn_rad();
+        double turn = 2.0 * laid_.turn_rad();
         for (std::size_t end = 0; end < 2; ++end) {
             turn += dwells(end) ? steered_rad(end) : 0.0;
         }
@@ -298,6 +316,7 @@ private:
             if (!close_by_angle(pattern_.turn_rad)) {
                 return false;
             }
+            laid_ = pass_;
             circuit.mm_per_rad = sparsest_mm();
         }
         if (options_.lattice) {
@@ -397,25 +416,31 @@ private:
     }
 
     void lay() {
-        const std::vector<MeridianStation> back = way_back(pass_);
         const std::array<double, 2> turn = turns_at_ends();
         const std::size_t start = begin_.end;
+        const std::array<std::vector<MeridianStation>, 2> ways{laid_.stations, way_back(laid_)};
         const std::vector<double> starts = circuit_starts_rad(pattern_, lattice_);
         std::vector<Piece> passes(2 * starts.size());
-        std::vector<double> begins(passes.size());
+        std::vector<double> turned(passes.size());  // of each against its way
         for (std::size_t i = 0; i < starts.size(); ++i) {
-            begins[2 * i] = begin_.azimuth_rad + starts[i];
-            begins[2 * i + 1] = begins[2 * i] + pass_.turn_rad() + turn[1 - start];
+            const double begins = begin_.azimuth_rad + starts[i];
+            double returns = begins + laid_.turn_rad() + turn[1 - start];
             if (!dwells(start) && i + 1 < starts.size()) {
                 // What the next circuit is off its place is made up at the other end.
-                begins[2 * i + 1] += starts[i + 1] - starts[i] - pattern_.turn_rad;
+                returns += starts[i + 1] - starts[i] - pattern_.turn_rad;
             }
+            turned[2 * i] = begins - ways[start].front().azimuth_rad;
+            turned[2 * i + 1] = returns - ways[1 - start].front().azimuth_rad;
         }
+        const bool fresh = plan_.pieces.empty();
         parallel_for(passes.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t from = i % 2 == 0 ? start : 1 - start;
-                const std::vector<MeridianStation>& way = from == 0 ? pass_.stations : back;
-                passes[i] = pieces_.course(way, begins[i] - way.front().azimuth_rad);
+                passes[i] = pieces_.course(
+                    fresh && i == 0 && in_air(laid_, start)
+                        ? tied_on_way(meridian_, pass_, laid_, from, kPatternStation_mm)
+                        : ways[from],
+                    turned[i]);
                 passes[i].start_rim = rim_at(from);
                 passes[i].end_rim = rim_at(1 - from);
             }
@@ -424,16 +449,17 @@ private:
         const std::size_t connecting = plan_.pieces.size();
         for (std::size_t i = 0; i < passes.size(); ++i) {
             const std::size_t end = i % 2 == 0 ? 1 - start : start;
-            const bool turns = dwells(end) && i + 1 < passes.size();
-            const SurfacePath& from = passes[i].path;
-            std::optional<LaidTurn> between;
-            if (turns) {
-                between = turn_between(end, from.back(), passes[i + 1].path.front());
-            }
             add(std::move(passes[i]));
-            if (between) {
-                add(std::move(*between));
+            if (dwells(end) && i + 1 < passes.size()) {
+                add(turn_between(end, pieces_.crossing_of(end, ways[1 - end].back(), turned[i]),
+                                 pieces_.crossing_of(end, ways[end].front(), turned[i + 1])));
             }
+        }
+        const std::size_t last = plan_.pieces.size() - 1;
+        if (in_air(laid_, start)) {
+            add(pieces_.run_out(start,
+                                pieces_.crossing_of(start, ways[1 - start].back(), turned.back()),
+                                kRunOutTows * options_.tow.width_mm));
         }
         plan_.pieces.front().starts_fibre = true;
         plan_.courses = static_cast<int>(passes.size());
@@ -442,24 +468,28 @@ private:
         laid.pattern = pattern_;
         laid.angle_rad = angle_rad_;
         laid.slip_ratio = std::abs(slip_.below) > std::abs(slip_.above) ? slip_.below : slip_.above;
-        laid.closure_rad = closure_rad(plan_.pieces[connecting], turn[start], starts);
+        laid.closure_rad =
+            closure_rad(plan_.pieces[connecting], plan_.pieces[last], turn[start], starts);
         laid.band_offset_mm = pattern_.step_rad * sparsest_mm();
-        laid.interlacing = interlacing_of(pattern_, pass_.turn_rad(), turn[1 - start]);
+        laid.interlacing = interlacing_of(pattern_, laid_.turn_rad(), turn[1 - start]);
         laid.starts_rad = starts;
         laid.lattice = lattice_;
     }
 
     // From where the fibre ends, turned on over its last rim, to where its pattern began.
-    // \param first course of the pattern
-    [[nodiscard]] double closure_rad(const Piece& first, double last_turn_rad,
+    // \param first, last courses of the pattern
+    [[nodiscard]] double closure_rad(const Piece& first, const Piece& last, double last_turn_rad,
                                      const std::vector<double>& starts_rad) const {
         const auto azimuth = [](const PathPoint& point) {
             return std::atan2(point.position_mm.y(), point.position_mm.x());
         };
         const double moved_rad =
             starts_rad[starts_rad.size() - static_cast<std::size_t>(pattern_.circuits)];
-        const double end = azimuth(plan_.pieces.back().path.back()) + last_turn_rad - moved_rad;
-        return std::abs(std::remainder(end - azimuth(first.path.front()), 2.0 * kPi));
+        const double end = azimuth(last.path.back()) + last_turn_rad - moved_rad;
+        const bool tied_on = first.string.gap_mm.front() <= 0.0;
+        const double begin = azimuth(first.path.front()) -
+                             (tied_on ? tied_on_beside_rad(pass_, laid_, begin_.end) : 0.0);
+        return std::abs(std::remainder(end - begin, 2.0 * kPi));
     }
 
     [[nodiscard]] std::int32_t rim_at(std::size_t end) const {
@@ -551,7 +581,8 @@ private:
     double widest_radius_mm_ = 0.0;
     double angle_rad_ = 0.0;  // at the widest place
     HalfSlips slip_;          // of the passes
-    MeridianPass pass_;
+    MeridianPass pass_;       // on the wall
+    MeridianPass laid_;       // as fibre lies between two turns: straight over hollow rims
     std::optional<PinnedEnds> pins_;
     Pattern pattern_;
     PatternBegin begin_;  // where the first circuit or ply begins

@@ -22,22 +22,31 @@ public:
 
     /// The stations, turned about +Z, with the faces under them: they stay on the body that the
     /// meridian sweeps, from which the mesh is off by BodyOfRevolution::residual_mm. Slip is
-    /// measured.
+    /// measured, where the fibre is on the wall.
     [[nodiscard]] Piece course(const std::vector<MeridianStation>& stations, double turn_rad) const;
 
     /// Over the rim of an end, from where a course leaves it to where the next one comes back.
     /// \pre both can be turned (can_turn)
-    [[nodiscard]] LaidTurn turn(std::size_t end, const PathPoint& from, const PathPoint& to) const;
+    [[nodiscard]] LaidTurn turn(std::size_t end, const RimCrossing& from,
+                                const RimCrossing& to) const;
+
+    /// The end of a fibre behind a hollow rim, so far on along the extension (turn.h).
+    [[nodiscard]] LaidTurn run_out(std::size_t end, const RimCrossing& from,
+                                   double length_mm) const;
 
     /// Of an end; none at a pole.
     [[nodiscard]] const Rim* rim_of(std::size_t end) const;
 
-    /// How a path over an end's rim crosses it. \param place on the way out for end 1; of end 0 the
-    /// first station, seen backwards
+    /// How a path over an end's rim crosses it. \param place its first or last station; seen
+    /// backwards where the path comes from there
     [[nodiscard]] RimCrossing crossing_of(std::size_t end, const MeridianStation& place,
                                           double turn_rad) const;
 
 private:
+    [[nodiscard]] Piece with_ends_in_air(const std::vector<MeridianStation>& stations,
+                                         const SurfacePath& path, std::size_t begin,
+                                         std::size_t end) const;
+
     const Mandrel& mandrel_;
     const BodyOfRevolution& body_;
     const TurnRule& rule_;

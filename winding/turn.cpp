@@ -28,20 +28,26 @@ constexpr double kFullShare = 0.98;
 // friction the run is infinite.
 constexpr double kLongestExtension_mm = 1e5;
 
+// Stretches in the air are drawn by at least so many steps.
+constexpr int kLeastAirSteps = 2;
+
 double usable_run_mm(const TurnRule& rule) {
     return rule.extension_mm - 0.5 * rule.band_mm;
 }
 
-// Run that both ends of a turn share: each is steered with the slip that makes it just hoop there.
-double common_run_mm(const Rim& rim, const RimCrossing& a, const RimCrossing& b,
-                     const TurnRule& rule) {
-    const double steepest = std::min(a.angle_rad, b.angle_rad);
-    const double easy = turn_run_mm(rim.radius_mm, steepest, kEasyShare * rule.friction);
-    return std::min(easy, usable_run_mm(rule));
+// Height at which both ends of a turn are hoop: each is steered with the slip that makes it so.
+double hoop_height_mm(const Rim& rim, const RimCrossing& a, const RimCrossing& b,
+                      const TurnRule& rule) {
+    const auto easy = [&](const RimCrossing& end) {
+        return landing_mm(rim, end) +
+               turn_run_mm(rim.radius_mm, end.angle_rad, kEasyShare * rule.friction);
+    };
+    return std::min(std::max(easy(a), easy(b)), usable_run_mm(rule));
 }
 
-double slip_for(const Rim& rim, double angle_rad, double run_mm) {
-    return rim.radius_mm * (1.0 / std::sin(angle_rad) - 1.0) / run_mm;
+double slip_for(const Rim& rim, const RimCrossing& crossing, double hoop_mm) {
+    return rim.radius_mm * (1.0 / std::sin(crossing.angle_rad) - 1.0) /
+           (hoop_mm - landing_mm(rim, crossing));
 }
 
 double positive_angle(double rad) {
@@ -60,8 +66,10 @@ public:
           x_(rim_reference(rim)),
           y_(rim.axis.cross(x_)) {}
 
-    // A station at height z over the rim; beta in (0, pi), over pi / 2 on the way back.
-    void add(double azimuth, double z, double beta, double kg_over_kn) {
+    // A station at height z over the rim; beta in (0, pi), over pi / 2 on the way back. In the air
+    // the fibre is over it by a gap, at a slope.
+    void add(double azimuth, double z, double beta, double kg_over_kn, double gap_mm = 0.0,
+             double slope = 0.0) {
         const Vector3d radial = std::cos(azimuth) * x_ + std::sin(azimuth) * y_;
         const Vector3d around = sense_ * rim_.axis.cross(radial);
         PathPoint point;
@@ -72,11 +80,45 @@ public:
         point.kg_per_mm = kg_over_kn * point.kn_per_mm;
         point.s_mm = s_mm_;
         path_.push_back(point);
+        string_.gap_mm.push_back(gap_mm);
+        string_.slope.push_back(slope);
+        if (gap_mm > string_.worst_gap_mm) {
+            string_.worst_gap_mm = gap_mm;
+            string_.worst_station = path_.size() - 1;
+        }
+    }
+
+    // Straight through the air from the rim to where the fibre touches the extension, or from there
+    // to the rim. Seen from where it touches, it is at the angle q along the hoop.
+    void fly(const RimCrossing& at, double slip, bool back) {
+        if (at.ahead_rad <= 0.0) {
+            return;
+        }
+        const double sine = std::sin(at.angle_rad);
+        const double cosine = std::cos(at.angle_rad);
+        const double length = rim_.radius_mm * std::tan(at.ahead_rad) / sine;
+        const int steps = std::max(kLeastAirSteps, static_cast<int>(std::ceil(length / step_mm_)));
+        const double s0 = s_mm_;
+        for (int i = back ? 1 : 0; i <= steps; ++i) {
+            const double to_touch = length * (back ? i : steps - i) / steps;
+            const double q = std::atan2(to_touch * sine, rim_.radius_mm);
+            const double beta = std::atan2(sine * std::cos(q), cosine);
+            const double sinks = sine * std::sin(q) / std::hypot(sine * std::cos(q), cosine);
+            const double from_rim = sense_ * (at.ahead_rad - q);
+            s_mm_ = s0 + length * i / steps;
+            add(at.azimuth_rad + (back ? -from_rim : from_rim),
+                landing_mm(rim_, at) - to_touch * cosine, back ? kPi - beta : beta,
+                to_touch > 0.0 ? 0.0 : -sense_ * slip, rim_.radius_mm * (1.0 / std::cos(q) - 1.0),
+                back ? sinks : -sinks);
+        }
     }
 
     // From beta0 to hoop (or from hoop to beta0 when `back`): z(beta) and azimuth(beta) in closed
-    // form.
-    void steer(double azimuth0, double beta0, double slip, bool back) {
+    // form, from where the fibre lies on the extension.
+    void steer(const RimCrossing& at, double slip, bool back) {
+        const double azimuth0 = at.azimuth_rad + (back ? -sense_ : sense_) * at.ahead_rad;
+        const double beta0 = at.angle_rad;
+        const double z0 = landing_mm(rim_, at);
         const double length = rim_.radius_mm / (slip * std::tan(beta0));
         const int steps = std::max(2, static_cast<int>(std::ceil(length / step_mm_)));
         // kg turns the tangent away from the axis: to the right for a counter-clockwise fibre.
@@ -90,11 +132,24 @@ public:
             // Fibre length from beta0: (R / slip)(cot beta0 - cot beta).
             const double beta = std::atan2(1.0, (1.0 - share) / std::tan(beta0));
             const double z =
-                (rim_.radius_mm / slip) * (1.0 / std::sin(beta0) - 1.0 / std::sin(beta));
+                z0 + (rim_.radius_mm / slip) * (1.0 / std::sin(beta0) - 1.0 / std::sin(beta));
             const double angle = turn_angle_rad(beta0, slip) - turn_angle_rad(beta, slip);
             s_mm_ = s0 + length * (back ? 1.0 - share : share);
             add(azimuth0 + sense_ * (back ? -angle : angle), z, back ? kPi - beta : beta,
                 kg_over_kn);
+        }
+    }
+
+    // From where it touches the extension on, as a helix.
+    void go_on(const RimCrossing& at, double length) {
+        const int steps = std::max(1, static_cast<int>(std::ceil(length / step_mm_)));
+        const double s0 = s_mm_;
+        for (int i = 1; i <= steps; ++i) {
+            const double along = length * i / steps;
+            const double around = at.ahead_rad + along * std::sin(at.angle_rad) / rim_.radius_mm;
+            s_mm_ = s0 + along;
+            add(at.azimuth_rad + sense_ * around,
+                landing_mm(rim_, at) + along * std::cos(at.angle_rad), at.angle_rad, 0.0);
         }
     }
 
@@ -109,7 +164,10 @@ public:
         }
     }
 
-    SurfacePath take() { return std::move(path_); }
+    void take(Turn& turn) {
+        turn.path = std::move(path_);
+        turn.string = std::move(string_);
+    }
 
 private:
     const Rim& rim_;
@@ -118,6 +176,7 @@ private:
     Vector3d x_;
     Vector3d y_;
     SurfacePath path_;
+    TautString string_;
     double s_mm_ = 0.0;
 };
 
@@ -144,6 +203,21 @@ RimCrossing crossing_at(const Rim& rim, const Vector3d& position_mm, const Vecto
     return crossing;
 }
 
+RimCrossing crossing_in_air(const Rim& rim, const Vector3d& position_mm, const Vector3d& outward) {
+    RimCrossing crossing = crossing_at(rim, position_mm, outward);
+    const Vector3d d = position_mm - rim.centre_mm;
+    const Vector3d radial = (d - rim.axis * rim.axis.dot(d)).normalized();
+    const double turning = outward.dot(rim.axis.cross(radial));
+    const double inward = -outward.dot(radial);
+    crossing.angle_rad = std::atan2(std::hypot(turning, inward), outward.dot(rim.axis));
+    crossing.ahead_rad = std::max(0.0, std::atan2(inward, std::abs(turning)));
+    return crossing;
+}
+
+double landing_mm(const Rim& rim, const RimCrossing& crossing) {
+    return rim.radius_mm * std::tan(crossing.ahead_rad) / std::tan(crossing.angle_rad);
+}
+
 double turn_run_mm(double radius_mm, double angle_rad, double slip) {
     return radius_mm / slip * (1.0 / std::sin(angle_rad) - 1.0);
 }
@@ -158,7 +232,8 @@ double turn_angle_rad(double angle_rad, double slip) {
 
 bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule) {
     return crossing.angle_rad > 0.0 && crossing.angle_rad <= kMaxTurnAngle_rad &&
-           turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) <=
+           landing_mm(rim, crossing) +
+                   turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) <=
                usable_run_mm(rule);
 }
 
@@ -170,6 +245,7 @@ std::string why_no_turn(const std::string& rim_words, const Rim& rim, const RimC
         return begin + "and a turn begins between 0 and " + degrees(kMaxTurnAngle_rad);
     }
     const double needed_mm =
+        landing_mm(rim, crossing) +
         turn_run_mm(rim.radius_mm, crossing.angle_rad, kFullShare * rule.friction) +
         0.5 * rule.band_mm;
     const std::string by = begin + "and to turn it by a friction of " + fixed(rule.friction, 3);
@@ -184,38 +260,54 @@ std::string why_no_turn(const std::string& rim_words, const Rim& rim, const RimC
 
 double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                  const TurnRule& rule) {
-    const double run = common_run_mm(rim, from, to, rule);
-    const double steering = turn_angle_rad(from.angle_rad, slip_for(rim, from.angle_rad, run)) +
-                            turn_angle_rad(to.angle_rad, slip_for(rim, to.angle_rad, run));
+    const double hoop_mm = hoop_height_mm(rim, from, to, rule);
+    const double steering = from.ahead_rad +
+                            turn_angle_rad(from.angle_rad, slip_for(rim, from, hoop_mm)) +
+                            turn_angle_rad(to.angle_rad, slip_for(rim, to, hoop_mm)) + to.ahead_rad;
     return positive_angle(from.sense * (to.azimuth_rad - from.azimuth_rad) - steering);
 }
 
 Turn half_turn(const Rim& rim, const RimCrossing& from, const TurnRule& rule, double step_mm) {
     Turn turn;
-    turn.run_mm = common_run_mm(rim, from, from, rule);
-    turn.slip = slip_for(rim, from.angle_rad, turn.run_mm);
+    turn.run_mm = hoop_height_mm(rim, from, from, rule);
+    turn.slip = slip_for(rim, from, turn.run_mm);
     TurnPath path(rim, from.sense, step_mm);
-    path.steer(from.azimuth_rad, from.angle_rad, turn.slip, false);
-    turn.path = path.take();
+    path.fly(from, turn.slip, false);
+    path.steer(from, turn.slip, false);
+    path.take(turn);
     return turn;
 }
 
 Turn make_turn(const Rim& rim, const RimCrossing& from, const RimCrossing& to, const TurnRule& rule,
                double step_mm) {
     Turn turn;
-    turn.run_mm = common_run_mm(rim, from, to, rule);
+    turn.run_mm = hoop_height_mm(rim, from, to, rule);
     turn.dwell_rad = dwell_rad(rim, from, to, rule);
-    const double slip_in = slip_for(rim, from.angle_rad, turn.run_mm);
-    const double slip_out = slip_for(rim, to.angle_rad, turn.run_mm);
+    const double slip_in = slip_for(rim, from, turn.run_mm);
+    const double slip_out = slip_for(rim, to, turn.run_mm);
     turn.slip = std::max(slip_in, slip_out);
     TurnPath path(rim, from.sense, step_mm);
-    path.steer(from.azimuth_rad, from.angle_rad, slip_in, false);
-    const double hoop = from.azimuth_rad + from.sense * turn_angle_rad(from.angle_rad, slip_in);
+    path.fly(from, slip_in, false);
+    path.steer(from, slip_in, false);
+    const double hoop =
+        from.azimuth_rad + from.sense * (from.ahead_rad + turn_angle_rad(from.angle_rad, slip_in));
     path.dwell(hoop, turn.run_mm, turn.dwell_rad);
-    const double end =
-        hoop + from.sense * (turn.dwell_rad + turn_angle_rad(to.angle_rad, slip_out));
-    path.steer(end, to.angle_rad, slip_out, true);
-    turn.path = path.take();
+    RimCrossing end = to;
+    end.azimuth_rad = hoop + from.sense * (turn.dwell_rad + turn_angle_rad(to.angle_rad, slip_out) +
+                                           to.ahead_rad);
+    path.steer(end, slip_out, true);
+    path.fly(end, slip_out, true);
+    path.take(turn);
+    return turn;
+}
+
+Turn run_out(const Rim& rim, const RimCrossing& from, double length_mm, double step_mm) {
+    Turn turn;
+    turn.run_mm = landing_mm(rim, from) + length_mm * std::cos(from.angle_rad);
+    TurnPath path(rim, from.sense, step_mm);
+    path.fly(from, 0.0, false);
+    path.go_on(from, length_mm);
+    path.take(turn);
     return turn;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geodesic/measure.h"
 #include "geodesic/surface_path.h"
 #include "mesh/mandrel.h"
 
@@ -17,6 +18,9 @@ struct RimCrossing {
     double azimuth_rad = 0.0;  ///< about the axis, counter-clockwise, from `rim_reference`
     double angle_rad = 0.0;    ///< beta between fibre and axis, 0 = axial, pi/2 = hoop
     int sense = 0;             ///< +1 when the fibre leaves the mandrel counter-clockwise, else -1
+    /// >= 0: about the axis, that the fibre goes on straight through the air before it lies on the
+    /// extension; above 0 over hollow rims (hollow_rim.h).
+    double ahead_rad = 0.0;
 };
 
 /// A dwell is found as an angle of up to 2 pi; so much of it keeps rounding from making no dwell a
@@ -37,6 +41,17 @@ struct TurnRule {
 /// of the course, leaving the mandrel
 [[nodiscard]] RimCrossing crossing_at(const Rim& rim, const Eigen::Vector3d& position_mm,
                                       const Eigen::Vector3d& outward);
+
+/// The same of a fibre in the air there, which has left the wall before a hollow rim and touches
+/// the extension beyond: the angle is that to the axis, which it has where it touches, too. \param
+/// position_mm beside the fibre \param outward unit vector along it, towards the axis or along the
+/// rim's tangent plane
+[[nodiscard]] RimCrossing crossing_in_air(const Rim& rim, const Eigen::Vector3d& position_mm,
+                                          const Eigen::Vector3d& outward);
+
+/// Height over the rim at which a crossing fibre lies on the extension: R tan(ahead) / tan(beta),
+/// along the straight line that touches the cylinder there.
+[[nodiscard]] double landing_mm(const Rim& rim, const RimCrossing& crossing);
 
 /// Axial run in mm that a turn from `angle_rad` to the hoop direction takes with constant slip
 /// ratio on a cylinder: (R / slip)(1 / sin(beta) - 1). Source: geometry.md's closed form, see
@@ -62,6 +77,7 @@ struct TurnRule {
 /// A turn from one course's end to another's start at the same rim.
 struct Turn {
     SurfacePath path;        ///< on the extension; faces are kNoFace; slip ratios are kg / kn
+    TautString string;       ///< over the path, above it beside hollow rims
     double slip = 0.0;       ///< largest |slip ratio| in it
     double run_mm = 0.0;     ///< how far onto the extension the fibre goes
     double dwell_rad = 0.0;  ///< angle wound along the hoop
@@ -72,7 +88,8 @@ struct Turn {
 [[nodiscard]] double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                                const TurnRule& rule);
 
-/// The turn itself: steered with constant slip to hoop, dwelling, and steered back.
+/// The turn itself: straight through the air from the rim to the extension where the rim is hollow,
+/// steered with constant slip to hoop, dwelling, and back.
 /// \param from crossing of the course that ends \param to of the course that begins
 /// \param step_mm largest distance of stations \pre as for dwell_rad
 [[nodiscard]] Turn make_turn(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
@@ -81,5 +98,10 @@ struct Turn {
 /// The half of a turn that a course's end needs by itself: from the rim to hoop.
 [[nodiscard]] Turn half_turn(const Rim& rim, const RimCrossing& from, const TurnRule& rule,
                              double step_mm);
+
+/// The end of a fibre that goes over a hollow rim: through the air, and so far on along the
+/// extension without steering.
+[[nodiscard]] Turn run_out(const Rim& rim, const RimCrossing& from, double length_mm,
+                           double step_mm);
 
 }  // namespace meshwind
