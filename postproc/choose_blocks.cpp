@@ -34,6 +34,8 @@ constexpr std::size_t kChunk = 256;
 // mm, and its eye up to their angle.
 constexpr double kRepeated_mm = 0.02;
 constexpr double kRepeatedEye_mm = 1.0;
+// And no more than this angle at the free length, 1 mm at 200 mm: over an edge a fibre swings.
+constexpr double kRepeatedSwing_rad = 0.005;
 
 // A block, or the part of it up to where it left the tolerance.
 struct Deviation {
@@ -390,9 +392,11 @@ EyePath without_repeats(const EyePath& path) {
     EyePath kept;
     kept.reserve(path.size());
     for (const EyePoint& point : path) {
+        const double same_eye_mm =
+            std::min(kRepeatedEye_mm, kRepeatedSwing_rad * point.free_length_mm);
         const bool repeats = !kept.empty() && kept.back().piece != point.piece &&
                              (point.landing_mm - kept.back().landing_mm).norm() < kRepeated_mm &&
-                             (point.eye_mm - kept.back().eye_mm).norm() < kRepeatedEye_mm;
+                             (point.eye_mm - kept.back().eye_mm).norm() < same_eye_mm;
         if (!repeats) {
             kept.push_back(point);
         }

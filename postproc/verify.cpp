@@ -19,6 +19,9 @@ namespace {
 // the landing point is known no better.
 constexpr double kEndGap_mm = 2.0;
 
+// And no more than this share of the tow, 2 mm of 6 mm.
+constexpr double kEndGapTows = 1.0 / 3.0;
+
 // Rounding of positions and of the six digits of F against a limit that is just kept.
 constexpr double kLimitSlack = 1e-3;
 
@@ -195,13 +198,14 @@ private:
                                    noted);
             }
             const std::size_t last = task_.program.blocks.size() - 1;
+            const double most_end_gap_mm = std::min(kEndGap_mm, kEndGapTows * rules_.tow_width_mm);
             put_at_station(check, off.wrong.empty() ? off.max_at : off.wrong.front());
             if (!off.wrong.empty()) {
                 fail(check, laid.at[off.wrong.front()].block,
                      "the laid fibre leaves the plan in " + station_words(off.wrong.front()) +
                          ", by up to " + fixed(off.max_mm, 3) + " mm and " +
                          fixed(deg_from_rad(off.max_angle_rad), 3) + " deg");
-            } else if (laid.failure.empty() && off.end_gap_mm > kEndGap_mm) {
+            } else if (laid.failure.empty() && off.end_gap_mm > most_end_gap_mm) {
                 put_at_block(check, last);
                 fail(check, last,
                      "the program ends " + fixed(off.end_gap_mm, 1) +

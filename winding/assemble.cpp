@@ -31,7 +31,7 @@ LaidTurn turn_over(const Rim& rim, const PathPoint& from, const PathPoint& to,
 
 LaidTurn turn_over(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                    const TurnRule& rule) {
-    Turn turn = make_turn(rim, from, to, rule, kPatternStation_mm);
+    Turn turn = make_turn(rim, from, to, rule, station_on_mm(rim.radius_mm, rule.band_mm));
     const TurnsAtRim asks{1, turn.run_mm + 0.5 * rule.band_mm, turn.dwell_rad};
     return {piece_of_turn(std::move(turn), rim.id), asks, rim.id};
 }

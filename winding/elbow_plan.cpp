@@ -88,7 +88,7 @@ private:
         wanted.width_mm = options_.tow.width_mm;
         wanted.slip = kSteerShare * options_.tow.friction;
         wanted.layers = std::max(1.0, options_.layers);
-        wanted.station_mm = kPatternStation_mm;
+        wanted.station_mm = station_on_mm(shape_.tube_radius_mm, options_.tow.width_mm);
         return elbow_lines(shape_, wanted);
     }
 

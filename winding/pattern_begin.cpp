@@ -114,7 +114,7 @@ private:
         request.from_arc_mm = arc_mm;
         request.goal = goal;
         request.friction = kConnecting * rule_.friction;
-        request.station_mm = kPatternStation_mm;
+        request.station_mm = pieces_.station_mm();
         request.can_turn = [this](std::size_t end, const MeridianStation& leaving) {
             const Rim* const rim = pieces_.rim_of(end);
             return rim != nullptr && can_turn(*rim, pieces_.crossing_of(end, leaving, 0.0), rule_);
@@ -132,7 +132,7 @@ private:
             return way_back({std::move(stations), MeridianStop::End, MeridianStop::End});
         };
         std::vector<MeridianStation> way = upward ? pass : turned_round(pass);
-        if (lift_over_rim(meridian_, end == 1, kPatternStation_mm, way) == RimLift::NeverOnWall) {
+        if (lift_over_rim(meridian_, end == 1, pieces_.station_mm(), way) == RimLift::NeverOnWall) {
             return false;
         }
         pass = upward ? way : turned_round(way);

@@ -97,7 +97,7 @@ private:
     }
 
     [[nodiscard]] MeridianPass pass(double angle_rad) const {
-        return pass_through(meridian_, widest_mm_, angle_rad, slip_, kPatternStation_mm,
+        return pass_through(meridian_, widest_mm_, angle_rad, slip_, pieces_.station_mm(),
                             kLongest_mm);
     }
 
@@ -146,7 +146,7 @@ private:
         return steer_between(meridian_, {.lower_mm = touching_mm(0) + off_mm,
                                          .upper_mm = touching_mm(1) + off_mm,
                                          .most_slip = kSteering * options_.tow.friction,
-                                         .station_mm = kPatternStation_mm,
+                                         .station_mm = pieces_.station_mm(),
                                          .longest_mm = kLongest_mm});
     }
 
@@ -164,7 +164,7 @@ private:
             lifted = lifted_over_rims(meridian_, pass_,
                                       {.angle_rad = angle_rad_,
                                        .most_gap_mm = options_.tow.bridging_tolerance_mm,
-                                       .station_mm = kPatternStation_mm});
+                                       .station_mm = pieces_.station_mm()});
         }
         laid_ = std::move(lifted.pass);
         return lifted.failure.empty() || fail(lifted.failure);
@@ -438,7 +438,7 @@ private:
                 const std::size_t from = i % 2 == 0 ? start : 1 - start;
                 passes[i] = pieces_.course(
                     fresh && i == 0 && in_air(laid_, start)
-                        ? tied_on_way(meridian_, pass_, laid_, from, kPatternStation_mm)
+                        ? tied_on_way(meridian_, pass_, laid_, from, pieces_.station_mm())
                         : ways[from],
                     turned[i]);
                 passes[i].start_rim = rim_at(from);
@@ -534,7 +534,7 @@ private:
             return;
         }
         const auto ply = [&](bool downward) {
-            return hoop_ply(meridian_, part, options_.tow.width_mm, steering, kPatternStation_mm,
+            return hoop_ply(meridian_, part, options_.tow.width_mm, steering, pieces_.station_mm(),
                             downward);
         };
         const std::array first{ply(false).front(), ply(true).front()};

@@ -157,7 +157,8 @@ public:
     void lay() {
         const double straight = straight_mm();
         const double last = first_mm() + shape_.skip * shape_.pitch_mm;
-        for (const double s : even_steps(straight, kPatternStation_mm)) {
+        for (const double s :
+             even_steps(straight, std::min(kPatternStation_mm, kStationShare * rim_.radius_mm))) {
             run_in(s);
         }
         for (const double angle : even_steps(end_rad_, kArcStation_rad)) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/units.h"
+#include "winding/aim_pass.h"
 #include "winding/lay_out.h"
 
 namespace meshwind {
@@ -12,7 +13,17 @@ using Eigen::Vector3d;
 
 RevolutionPieces::RevolutionPieces(const Mandrel& mandrel, const BodyOfRevolution& body,
                                    const TurnRule& rule)
-    : mandrel_(mandrel), body_(body), rule_(rule), projection_(mandrel.surface) {}
+    : mandrel_(mandrel), body_(body), rule_(rule), projection_(mandrel.surface) {
+    const Meridian& meridian = body.meridian;
+    double radius_mm = meridian.at(meridian.widest_mm()).radius_mm;
+    for (std::size_t end = 0; end < 2; ++end) {
+        const double end_mm = end == 0 ? 0.0 : meridian.length_mm();
+        if (rim_of(end) != nullptr && cap_mm(body, end) == end_mm) {
+            radius_mm = std::min(radius_mm, rim_of(end)->radius_mm);
+        }
+    }
+    station_mm_ = station_on_mm(radius_mm, rule_.band_mm);
+}
 
 const Rim* RevolutionPieces::rim_of(std::size_t end) const {
     const std::int32_t rim = body_.end[end].rim;
@@ -87,7 +98,7 @@ LaidTurn RevolutionPieces::turn(std::size_t end, const RimCrossing& from,
 LaidTurn RevolutionPieces::run_out(std::size_t end, const RimCrossing& from,
                                    double length_mm) const {
     const Rim& rim = *rim_of(end);
-    Turn out = meshwind::run_out(rim, from, length_mm, kPatternStation_mm);
+    Turn out = meshwind::run_out(rim, from, length_mm, station_on_mm(rim.radius_mm, rule_.band_mm));
     const TurnsAtRim asks{0, out.run_mm + 0.5 * rule_.band_mm, 0.0};
     return {piece_of_turn(std::move(out), rim.id), asks, rim.id};
 }

@@ -34,6 +34,10 @@ public:
     [[nodiscard]] LaidTurn run_out(std::size_t end, const RimCrossing& from,
                                    double length_mm) const;
 
+    /// Distance of the stations of passes: by the radius of the body, or of a rim that is no
+    /// opening of a dome, where that is less.
+    [[nodiscard]] double station_mm() const { return station_mm_; }
+
     /// Of an end; none at a pole.
     [[nodiscard]] const Rim* rim_of(std::size_t end) const;
 
@@ -51,6 +55,7 @@ private:
     const BodyOfRevolution& body_;
     const TurnRule& rule_;
     MeshProjection projection_;
+    double station_mm_ = kPatternStation_mm;
 };
 
 }  // namespace meshwind
