@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/text_number.h"
 #include "core/units.h"
+#include "geodesic/bridge.h"
 #include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
 #include "mesh/extension.h"
@@ -177,8 +178,9 @@ void complete(Setup& setup, const fs::path& job_file) {
     setup.rule = collision_rule(setup, job_file);
     setup.obstacles =
         obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm, {});
-    setup.wall = std::make_unique<LaydownWall>(
-        extended_surface(setup.mandrel, setup.job.mandrel.extension_mm));
+    Surface wall = extended_surface(setup.mandrel, setup.job.mandrel.extension_mm);
+    const double reach_mm = bridge_reach_mm(setup.mandrel.surface);
+    setup.wall = std::make_unique<LaydownWall>(std::move(wall), reach_mm);
 }
 
 }  // namespace

@@ -196,7 +196,7 @@ private:
 
     [[nodiscard]] std::optional<Bridge> bridge_at(const PathPoint& place) const {
         return bridge_ahead(surface_, FieldWalker(surface_, place.at), place.tangent,
-                            kBridgeReach_mm);
+                            bridge_reach_mm(surface_));
     }
 
     // Halves the way from a station before a bridge to one after its beginning.
@@ -223,6 +223,10 @@ private:
 };
 
 }  // namespace
+
+double bridge_reach_mm(const Surface& surface) {
+    return std::max(kBridgeReach_mm, kBridgeReachEdges * surface.mean_edge_mm);
+}
 
 std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& from,
                                    const Vector3d& along, double reach_mm) {

@@ -13,6 +13,14 @@ namespace meshwind {
 /// tolerances in use it is back long before.
 inline constexpr double kBridgeReach_mm = 40.0;
 
+/// But over no fewer mean edges: where the curvature of a wall jumps, as from a dome to a cylinder,
+/// its patches are hollow by some hundredths of a mm over an edge, and fibre that runs nearly along
+/// the cylinder lands some edges further on.
+inline constexpr double kBridgeReachEdges = 6.0;
+
+/// The longer of the two on a surface.
+[[nodiscard]] double bridge_reach_mm(const Surface& surface);
+
 /// A straight stretch of fibre over the wall.
 struct Bridge {
     SurfacePath under;           ///< n >= 1: the wall below, s_mm from where the fibre leaves it;

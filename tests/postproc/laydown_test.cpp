@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "geodesic/bridge.h"
 #include "geodesic/measure.h"
 #include "mesh/make.h"
 #include "tests/geodesic/hourglass.h"
@@ -272,6 +273,70 @@ TEST(LayDown, BridgesTheHourglassBetweenItsShoulders) {
     // 5e-5 rad, which moves its end by 25 mm times that.
     EXPECT_NEAR(highest, shape.height_mm, 0.005);
     EXPECT_LT((laid.path.back().position_mm - curve.states.back().position_mm).norm(), 0.005);
+}
+
+// A cylinder of 1 m between half ellipsoids.
+struct LargeVessel {
+    double radius_mm = 1000.0;
+    double cylinder_mm = 3000.0;
+    double dome_mm = 700.0;
+
+    [[nodiscard]] Vector3d gradient(const Vector3d& p) const {
+        const double beyond = std::max(0.0, std::abs(p.z()) - 0.5 * cylinder_mm);
+        return {p.x() / (radius_mm * radius_mm), p.y() / (radius_mm * radius_mm),
+                std::copysign(beyond / (dome_mm * dome_mm), p.z())};
+    }
+    [[nodiscard]] Vector3d normal(const Vector3d& p) const { return gradient(p).normalized(); }
+    [[nodiscard]] Eigen::Matrix3d shape_operator_per_mm(const Vector3d& p) const {
+        const bool dome = std::abs(p.z()) > 0.5 * cylinder_mm;
+        const double across = 1.0 / (radius_mm * radius_mm);
+        const Vector3d hessian(across, across, dome ? 1.0 / (dome_mm * dome_mm) : 0.0);
+        const Vector3d n = normal(p);
+        const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - n * n.transpose();
+        return flat * hessian.asDiagonal() * flat / gradient(p).norm();
+    }
+};
+
+// Down a dome and on along the cylinder, nearly along the spindle: both halves from where the two
+// meet, so that no step of the integration runs over the jump of curvature.
+ExactCurve over_the_seam(const LargeVessel& vessel, double step_mm) {
+    const double angle = rad_from_deg(15.0);
+    const auto half = [&](double way) {
+        const Vector3d t(0.0, std::sin(angle), std::cos(angle));
+        return test::exact_curve(vessel,
+                                 {{vessel.radius_mm, 0.0, -0.5 * vessel.cylinder_mm}, way * t}, 0.0,
+                                 step_mm, 300.0);
+    };
+    const ExactCurve dome = half(-1.0);
+    ExactCurve curve{step_mm, {}, {}};
+    for (std::size_t i = dome.states.size(); i-- > 1;) {
+        curve.add({dome.states[i].position_mm, -dome.states[i].tangent}, dome.normals[i]);
+    }
+    const ExactCurve cylinder = half(1.0);
+    for (std::size_t i = 0; i < cylinder.states.size(); ++i) {
+        curve.add(cylinder.states[i], cylinder.normals[i]);
+    }
+    return curve;
+}
+
+// Patches of 50 mm smooth the jump of curvature to a ridge, 0.16 mm high at most: half the jump,
+// 2e-3 / mm, over the square of a quarter of an edge. Fibre that is pressed on by 6e-5 / mm only
+// comes down from it up to sqrt(2 0.16 / 6e-5) = 73 mm further on.
+TEST(LayDown, GoesOnBehindTheSeamOfALargeVesselsDome) {
+    const LargeVessel vessel;
+    const Surface surface = test::made("vessel",
+                                       {{"radius", vessel.radius_mm},
+                                        {"cylinder-length", vessel.cylinder_mm},
+                                        {"dome-height", vessel.dome_mm},
+                                        {"opening-radius", 250.0}},
+                                       50.0)
+                                .surface;
+    const ExactCurve curve = over_the_seam(vessel, 4.0);
+    const LaidPath laid = lay(surface, test::eye_path(curve, 800.0), RedundancyPolicy::CentralAngle,
+                              {}, bridge_reach_mm(surface));
+    EXPECT_EQ(laid.failure, "");
+    EXPECT_LT(test::farthest_mm(laid, curve), 0.16);
+    EXPECT_NEAR(laid.path.back().s_mm, 600.0, 73.0);
 }
 
 // A reach that ends before the far shoulder: the fibre is not seen to touch it.
