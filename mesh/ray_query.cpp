@@ -26,6 +26,17 @@ constexpr double kFarthest_mm = 1000.0;
 // second.
 constexpr double kTableNodes = 4e5;
 
+// Of a table with longer cells (mandrels of metres) what is interpolated close to the wall is not
+// used: in a cell that the wall runs through it tells up to half a cell too much, which for shorter
+// cells is less than heads are kept off.
+constexpr double kLongCell_mm = 8.0;
+
+// In such a table that far from the wall, in cells, no cell around a place is cut by the wall.
+constexpr double kClearCells = 2.0;
+
+// A place is no further from the nearest corner of its cell than so many of its edges.
+constexpr double kHalfDiagonal = 0.8660254037844387;
+
 // Room around the Z axis is known for needs in such steps.
 constexpr double kNeedStep_mm = 5.0;
 
@@ -166,6 +177,8 @@ struct DistanceTable {
     double cap_mm = 0.0;    // distances from here on are not told apart
     bool complete = false;  // all nodes have their distance
 
+    [[nodiscard]] bool is_coarse() const { return cell_mm > kLongCell_mm; }
+
     [[nodiscard]] std::size_t index(const Eigen::Array3i& node) const {
         return (static_cast<std::size_t>(node.z()) * static_cast<std::size_t>(nodes.y()) +
                 static_cast<std::size_t>(node.y())) *
@@ -202,7 +215,7 @@ struct DistanceTable {
         return std::hypot(origin.x() + cell_mm * x, origin.y() + cell_mm * y);
     }
 
-    // Of a cell, by its node nearest to the origin of the table.
+    // Of a cell, by its node nearest to the origin of the table: least that is told in it.
     [[nodiscard]] double least_mm(const Eigen::Array3i& cell) const {
         double least = std::numeric_limits<double>::infinity();
         for (int corner = 0; corner < 8; ++corner) {
@@ -210,7 +223,7 @@ struct DistanceTable {
                 cell + Eigen::Array3i(corner & 1, corner >> 1 & 1, corner >> 2);
             least = std::min(least, static_cast<double>(distance_mm[index(node)]));
         }
-        return least;
+        return is_coarse() ? std::max(0.0, least - kHalfDiagonal * cell_mm) : least;
     }
 
     void find_room(double reach_mm) {
@@ -454,7 +467,10 @@ double RayQuery::distance_estimate_mm(const Eigen::Vector3d& query) const {
     };
     const double bottom = (1.0 - t.y()) * along_x(d) + t.y() * along_x(d + nx);
     const double top = (1.0 - t.y()) * along_x(d + nxy) + t.y() * along_x(d + nxy + nx);
-    return (1.0 - t.z()) * bottom + t.z() * top;
+    const double estimate = (1.0 - t.z()) * bottom + t.z() * top;
+    const double clear_mm = kClearCells * table.cell_mm;
+    return table.is_coarse() && estimate < clear_mm ? closest(query, clear_mm).distance_mm
+                                                    : estimate;
 }
 
 }  // namespace meshwind

@@ -58,8 +58,9 @@ public:
 
     /// Distance to the nearest triangle interpolated in the table, in mm; without one the true
     /// distance, up to 1000. Off by about cell^2 / 8 of the surface's curvature at that distance:
-    /// some tenths of a mm around a pipe. For searching; what must hold is checked by the functions
-    /// above and below.
+    /// some tenths of a mm around a pipe. Where the table's cells are longer than some mm, on
+    /// mandrels of metres, the true distance close to the triangles. For searching; what must hold
+    /// is checked by the functions above and below.
     [[nodiscard]] double distance_estimate_mm(const Eigen::Vector3d& query) const;
 
     /// A radius: further from the Z axis, at this height, distance_estimate_mm() tells `need_mm` at

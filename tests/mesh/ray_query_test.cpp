@@ -338,6 +338,47 @@ TEST(RayQuery, RoomIsWhereTheEstimateSaysSo) {
               std::numeric_limits<double>::infinity());
 }
 
+// A tube of metres: the cells of its table are some 40 mm long. Within one from the wall they would
+// tell up to half of that too much.
+TEST(RayQuery, AroundALargePartTellsTheDistanceAtTheWall) {
+    constexpr double kRadius_mm = 1000.0;
+    constexpr double kHalf_mm = 1500.0;
+    constexpr double kReach_mm = 60.0;
+    constexpr std::int32_t kAround = 96;
+    TriangleSoup tube;
+    for (std::int32_t i = 0; i < kAround; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kAround;
+        for (const double z : {-kHalf_mm, kHalf_mm}) {
+            tube.points_mm.emplace_back(kRadius_mm * std::cos(angle), kRadius_mm * std::sin(angle),
+                                        z);
+        }
+        const std::int32_t next = (i + 1) % kAround;
+        tube.faces.push_back({2 * i, 2 * next, 2 * i + 1});
+        tube.faces.push_back({2 * next, 2 * next + 1, 2 * i + 1});
+    }
+    const RayQuery query({&tube, 1}, kReach_mm);
+    std::mt19937_64 random(kSeed);
+    std::uniform_real_distribution<double> angles(0.0, 2.0 * std::numbers::pi);
+    std::uniform_real_distribution<double> shares(0.0, 1.0);
+    int room = 0;
+    for (int i = 0; i < kQueries; ++i) {
+        const double angle = angles(random);
+        const double radius_mm = kRadius_mm + 3.0 * kReach_mm * shares(random);
+        const Vector3d place(radius_mm * std::cos(angle), radius_mm * std::sin(angle),
+                             kHalf_mm * (shares(random) - 0.5));
+        // A facet is 2 pi / 96 wide: R (1 - cos(pi / 96)) = 0.54 mm deep. Further out the table
+        // tells a distance to a wall that is curved by 1e-3 / mm: 40^2 / 8 of that.
+        const double clear_mm = radius_mm - kRadius_mm;
+        EXPECT_LE(query.distance_estimate_mm(place), clear_mm + 0.54 + 0.2);
+        const double need_mm = 0.5 * kReach_mm * shares(random);
+        if (radius_mm > query.room_from_mm(place.z(), need_mm)) {
+            EXPECT_GE(query.distance_estimate_mm(place), need_mm);
+            ++room;
+        }
+    }
+    EXPECT_GT(room, 0);
+}
+
 TEST(RayQuery, ClosestTakesTheLowestOfEquals) {
     TriangleSoup fan;
     fan.points_mm = {{0, 0, 0}};
