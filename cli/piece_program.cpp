@@ -74,13 +74,6 @@ constexpr double kWorthwhile = 0.99;
 constexpr double kFirstMotionShare = 0.3;
 constexpr double kChosenShare = 0.7;
 
-// Of a path with more stations than that (200 m of fibre, whose motion takes half a minute)
-// circuits that repeat are given one motion.
-constexpr std::size_t kManyStations = 50'000;
-
-// If the few circuits have no more than this share of its stations.
-constexpr double kFewShare = 0.5;
-
 // A motion of least time uses the axes to the full, so its blocks follow it at least that closely.
 constexpr double kMostBlock_mm = 2.0 * kKnot_mm;
 
@@ -104,6 +97,7 @@ public:
         };
         tell(options, "post", 0.0);
         spindle_rad_ = options.spindle_rad;
+        search_ = options.through_text ? LengthSearch::All : LengthSearch::Near;
         repeated_.reset();
         CollisionRule rule = setup_.rule;
         rule.told_mm = rule.clearance_mm + kMostBetweenBlocks_mm / kUsedRoom;
@@ -198,6 +192,10 @@ private:
         std::map<std::size_t, Rejection> wrong;
         for (int round = 0;; ++round) {
             tell(options, "verify", static_cast<double>(round) / kTighterRounds);
+            const bool many = path_.size() > kManyStations;
+            if (many) {
+                forget_motion();
+            }
             found_.read = options.through_text ? options.through_text(found_) : as_run();
             found_.verification = verify_program(setup_, found_.read, planned_fibre(pieces_));
             std::map<std::size_t, Rejection> now;
@@ -208,6 +206,9 @@ private:
             const bool in_vain = round > rounds_in_vain && now == wrong;
             wrong = std::move(now);
             const std::vector<FastBlock>& fast = found_.verification.fast_blocks;
+            if (many && !(fast.empty() && found_.verification.coarse_blocks.empty())) {
+                refine(policy_);
+            }
             lengthen(fast, found_.blocks.blocks, path_, longer_);
             if (round == kTighterRounds || in_vain || !(tighten() || !fast.empty())) {
                 return wrong;
@@ -255,7 +256,7 @@ private:
     void solve_motion(std::span<const double> more_clearance_mm) {
         found_.refused.clear();
         found_.eyes = eye_path(pieces_, setup_.job.eye, *setup_.obstacles, setup_.rule.free_fibre,
-                               more_clearance_mm);
+                               more_clearance_mm, search_);
         refine(first_policy());
         for (const std::size_t point : found_.eyes.blocked) {
             refuse(found_.eyes.path[point], Rejection::FreeLength);
@@ -276,10 +277,18 @@ private:
     }
 
     void refine(RedundancyPolicy policy) {
+        forget_motion();
+        policy_ = policy;
         path_ = refine_path(setup_.machine, found_.eyes.path, policy, block_tolerance());
         joints_ = solve_joints(setup_.machine, path_, policy);
         found_.path_points = path_.size();
         go_on_from_spindle();
+    }
+
+    // Of a long fibre it takes as much memory as the plan; it can be had again.
+    void forget_motion() {
+        path_ = EyePath();  // {} would keep the memory
+        joints_ = JointPath();
     }
 
     void go_on_from_spindle() {
@@ -327,15 +336,10 @@ private:
             safe[i].turn_rad = central[i];
         }
         std::vector<double> ahead_mm = eyes.ahead_mm;
-        if (safe.size() > kManyStations) {
-            repeated_.emplace(safe, ahead_mm);
-            if (static_cast<double>(repeated_->few().size()) <=
-                kFewShare * static_cast<double>(safe.size())) {
-                safe = repeated_->few();
-                ahead_mm = repeated_->few_ahead_mm();
-            } else {
-                repeated_.reset();
-            }
+        repeated_ = repetition_of(safe, ahead_mm);
+        if (repeated_) {
+            safe = repeated_->few();
+            ahead_mm = repeated_->few_ahead_mm();
         }
         return {setup_.machine,
                 *setup_.obstacles,
@@ -347,8 +351,9 @@ private:
     }
 
     // What the improver has chosen, for all stations.
-    [[nodiscard]] EyePath improved(const MotionImprover& improver) const {
-        return repeated_ ? repeated_->all(found_.eyes.path, improver.path()) : improver.path();
+    [[nodiscard]] EyePath improved(const MotionImprover& improver) {
+        return repeated_ ? repeated_->all(std::move(found_.eyes.path), improver.path())
+                         : improver.path();
     }
 
     // Of the improver's path, for stations of the whole one.
@@ -563,6 +568,8 @@ private:
     std::vector<double> share_;    // per point: of the tolerance, for blocks
     std::vector<double> longer_;   // per point: of the time that the fibre takes at its full speed
     std::optional<double> spindle_rad_;
+    LengthSearch search_ = LengthSearch::Near;
+    RedundancyPolicy policy_ = RedundancyPolicy::CentralAngle;  // of the motion that is at hand
     std::optional<RepeatedPath> repeated_;                      // what the improver works on
     double most_mm_ = std::numeric_limits<double>::infinity();  // fibre of a block
 };

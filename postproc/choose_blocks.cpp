@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -472,7 +474,13 @@ EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolic
                 parts[i] = open[i] != 0 ? check.parts(i) : 1;
             }
         });
+        const auto points =
+            static_cast<std::size_t>(std::accumulate(parts.begin(), parts.end(), std::int64_t{0}));
+        if (points == fine.size()) {
+            break;
+        }
         EyePath finer;
+        finer.reserve(points);
         std::vector<char> still_open;
         for (std::size_t i = 0; i < fine.size(); ++i) {
             finer.push_back(fine[i]);
@@ -481,9 +489,6 @@ EyePath refine_path(const Machine& machine, const EyePath& path, RedundancyPolic
                     point_between(fine[i], fine[i + 1], static_cast<double>(k) / parts[i]));
             }
             still_open.resize(finer.size(), parts[i] > 1 ? 1 : 0);
-        }
-        if (finer.size() == fine.size()) {
-            break;
         }
         fine = std::move(finer);
         open = std::move(still_open);

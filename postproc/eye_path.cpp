@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/parallel.h"
 #include "core/text_number.h"
+#include "postproc/repeated_path.h"
 
 namespace meshwind {
 namespace {
@@ -52,7 +54,7 @@ void straighten_bridges(std::span<const OverWall> wall, EyePath& points,
 // the windows would lead to. The rules are one per piece.
 FreeLengths free_lengths(std::span<const EyePoint> path, std::span<const double> ahead_mm,
                          const RayQuery& obstacles, std::span<const FreeFibreRule> rules,
-                         double wish_mm) {
+                         double wish_mm, LengthSearch search) {
     const auto normal = [](const EyePoint& point) -> Eigen::Vector3d {
         return point.tangent.cross(point.binormal).normalized();
     };
@@ -77,17 +79,56 @@ FreeLengths free_lengths(std::span<const EyePoint> path, std::span<const double>
         return {wish, wish, {}};
     }
     std::vector<double> s_mm(path.size());
-    std::vector<std::vector<FreeFibreWindow>> windows(path.size());
-    parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            s_mm[i] = path[i].s_mm;
-            FreeFibreRule at_station = rule(path[i]);
-            at_station.min_mm += ahead_mm[i];
-            windows[i] = free_fibre_windows(obstacles, path[i].landing_mm, normal(path[i]),
-                                            path[i].tangent, at_station);
+    std::transform(path.begin(), path.end(), s_mm.begin(),
+                   [](const EyePoint& point) { return point.s_mm; });
+    const auto choose = [&](bool longer_too) {
+        std::vector<std::vector<FreeFibreWindow>> windows(path.size());
+        parallel_for(path.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                FreeFibreRule at_station = rule(path[i]);
+                at_station.min_mm += ahead_mm[i];
+                at_station.preferred_mm = longer_too ? at_station.max_mm : at_station.preferred_mm;
+                windows[i] = free_fibre_windows(obstacles, path[i].landing_mm, normal(path[i]),
+                                                path[i].tangent, at_station);
+            }
+        });
+        return choose_free_lengths(s_mm, windows, wish_mm);
+    };
+    FreeLengths lengths = choose(false);
+    // Where only long fibre is clear, it may have to be long before, where the wish is clear, too.
+    if (!lengths.blocked.empty() && search == LengthSearch::All) {
+        FreeLengths longer = choose(true);
+        if (longer.blocked.empty()) {
+            return longer;
         }
-    });
-    return choose_free_lengths(s_mm, windows, wish_mm);
+    }
+    return lengths;
+}
+
+// Puts the eyes on their places; returns the points that are blocked.
+std::vector<std::size_t> put_lengths(EyePath& path, std::span<const double> ahead_mm,
+                                     const RayQuery& obstacles,
+                                     std::span<const FreeFibreRule> rules, double wish_mm,
+                                     LengthSearch search) {
+    FreeLengths lengths = free_lengths(path, ahead_mm, obstacles, rules, wish_mm, search);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        set_eye(path[i], std::min(lengths.high_mm[i], std::max(lengths.low_mm[i], wish_mm)));
+    }
+    return std::move(lengths.blocked);
+}
+
+// A piece that stands for others keeps the most clearance that one of them asks for.
+void share_clearance(const RepeatedPath& repeated, const EyePath& path,
+                     std::span<FreeFibreRule> rules) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        if (i > 0 && path[i].piece == path[i - 1].piece) {
+            continue;
+        }
+        const EyePoint& stands = repeated.few()[repeated.few_of(i)];
+        double& clearance = rules[static_cast<std::size_t>(stands.piece)].clearance_mm;
+        clearance =
+            std::max(clearance, rules[static_cast<std::size_t>(path[i].piece)].clearance_mm);
+    }
 }
 
 }  // namespace
@@ -97,6 +138,12 @@ LandingPoints landing_points(std::span<const Piece> pieces) {
     EyePath& path = points.path;
     std::vector<OverWall> wall;
     double laid_mm = 0.0;
+    std::size_t stations = 0;
+    for (const Piece& piece : pieces) {
+        stations += piece.path.size();
+    }
+    path.reserve(stations);
+    points.ahead_mm.reserve(stations);
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const Piece& piece = pieces[p];
         for (std::size_t i = 0; i < piece.path.size(); ++i) {
@@ -144,7 +191,7 @@ void measure_lengths(EyePathResult& result) {
 
 EyePathResult adaptive_free_length(std::span<const Piece> pieces, const RayQuery& obstacles,
                                    const FreeFibreRule& rule,
-                                   std::span<const double> more_clearance_mm) {
+                                   std::span<const double> more_clearance_mm, LengthSearch search) {
     EyePathResult result;
     EyePath& path = result.path;
     LandingPoints points = landing_points(pieces);
@@ -160,14 +207,26 @@ EyePathResult adaptive_free_length(std::span<const Piece> pieces, const RayQuery
         rules[i].preferred_mm = wish;
         rules[i].clearance_mm += more_clearance_mm.empty() ? 0.0 : more_clearance_mm[i];
     }
-    FreeLengths lengths = free_lengths(path, points.ahead_mm, obstacles, rules, wish);
-    result.blocked = std::move(lengths.blocked);
+    if (const std::optional<RepeatedPath> repeated = repetition_of(path, points.ahead_mm)) {
+        EyePath few = repeated->few();
+        share_clearance(*repeated, path, rules);
+        const std::vector<std::size_t> blocked =
+            put_lengths(few, repeated->few_ahead_mm(), obstacles, rules, wish, search);
+        for (std::size_t i = 0; i < path.size() && !blocked.empty(); ++i) {
+            if (std::binary_search(blocked.begin(), blocked.end(), repeated->few_of(i))) {
+                result.blocked.push_back(i);
+            }
+        }
+        path = repeated->all(std::move(path), few);
+        for (EyePoint& point : path) {
+            point.turn_rad = 0.0;  // yet to be chosen
+        }
+    } else {
+        result.blocked = put_lengths(path, points.ahead_mm, obstacles, rules, wish, search);
+    }
     if (!result.blocked.empty()) {
         result.words = "no free fibre length between " + fixed(rule.min_mm, 0) + " and " +
                        fixed(rule.max_mm, 0) + " mm is clear";
-    }
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        set_eye(path[i], std::min(lengths.high_mm[i], std::max(lengths.low_mm[i], wish)));
     }
     measure_lengths(result);
     result.ahead_mm = std::move(points.ahead_mm);

@@ -66,15 +66,23 @@ void set_eye(EyePoint& point, double length_mm);
 /// Shortest and longest free length of the path.
 void measure_lengths(EyePathResult& result);
 
+/// Which lengths are looked at where the preferred one is not clear.
+enum class LengthSearch {
+    Near,  ///< longer ones only where nothing shorter is clear
+    All    ///< where no choice of those works, all that the machine can wind with: slow
+};
+
 /// Rule adaptive: L is the preferred length wherever free fibre and head are clear, and leaves it
 /// only as far as it must, at most by the rates of free_fibre.h; the fibre ahead of a bridge is no
 /// shorter than the machine's shortest. Blocked are points for which no allowed length is free of
-/// collision. \param more_clearance_mm per piece, on top of the rule's: lengths are clear at the
+/// collision. Of circuits that repeat (repeated_path.h) the lengths of a few serve all.
+/// \param more_clearance_mm per piece, on top of the rule's: lengths are clear at the
 /// stations, and between two of them the head may come nearer; empty: none
 [[nodiscard]] EyePathResult adaptive_free_length(std::span<const Piece> pieces,
                                                  const RayQuery& obstacles,
                                                  const FreeFibreRule& rule,
-                                                 std::span<const double> more_clearance_mm = {});
+                                                 std::span<const double> more_clearance_mm = {},
+                                                 LengthSearch search = LengthSearch::Near);
 
 /// What the fibre's speed counts at each point of a path, in mm: max(|ds|, |ds + dL|), fibre laid,
 /// and drawn through the eye, evenly from the point before; 0 for the first.

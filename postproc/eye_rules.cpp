@@ -169,9 +169,10 @@ EyePathResult strict_eye_path(std::span<const Piece> pieces, const EyeLaw& law,
 }
 
 EyePathResult eye_path(std::span<const Piece> pieces, const EyeLaw& law, const RayQuery& obstacles,
-                       const FreeFibreRule& rule, std::span<const double> more_clearance_mm) {
+                       const FreeFibreRule& rule, std::span<const double> more_clearance_mm,
+                       LengthSearch search) {
     return law.rule == EyeRule::Adaptive
-               ? adaptive_free_length(pieces, obstacles, rule, more_clearance_mm)
+               ? adaptive_free_length(pieces, obstacles, rule, more_clearance_mm, search)
                : strict_eye_path(pieces, law, rule);
 }
 

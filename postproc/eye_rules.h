@@ -58,10 +58,11 @@ struct EyeLaw {
 [[nodiscard]] EyePathResult strict_eye_path(std::span<const Piece> pieces, const EyeLaw& law,
                                             const FreeFibreRule& range);
 
-/// Eye points by any rule. \param more_clearance_mm as for adaptive_free_length(), which alone
-/// heeds it
+/// Eye points by any rule. \param more_clearance_mm, search as for adaptive_free_length(), which
+/// alone heeds them
 [[nodiscard]] EyePathResult eye_path(std::span<const Piece> pieces, const EyeLaw& law,
                                      const RayQuery& obstacles, const FreeFibreRule& rule,
-                                     std::span<const double> more_clearance_mm = {});
+                                     std::span<const double> more_clearance_mm = {},
+                                     LengthSearch search = LengthSearch::Near);
 
 }  // namespace meshwind

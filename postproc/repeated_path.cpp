@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -218,11 +219,10 @@ std::size_t RepeatedPath::few_of(std::size_t point) const {
     return piece.few_first + (point - piece.first);
 }
 
-EyePath RepeatedPath::all(const EyePath& path, const EyePath& chosen) const {
-    EyePath all = path;
+EyePath RepeatedPath::all(EyePath path, const EyePath& chosen) const {
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const Piece& piece = pieces_[p];
-        const std::size_t end = p + 1 < pieces_.size() ? pieces_[p + 1].first : all.size();
+        const std::size_t end = p + 1 < pieces_.size() ? pieces_[p + 1].first : path.size();
         for (std::size_t i = piece.first; i < end; ++i) {
             const EyePoint& from = chosen[piece.few_first + (i - piece.first)];
             double turn = from.turn_rad;
@@ -237,11 +237,22 @@ EyePath RepeatedPath::all(const EyePath& path, const EyePath& chosen) const {
                 turn -= share * (after.turn_rad - middle.turn_rad - run.turn_rad);
                 length -= share * (after.free_length_mm - middle.free_length_mm);
             }
-            all[i].turn_rad = turn + piece.turn_rad;
-            set_eye(all[i], length);
+            path[i].turn_rad = turn + piece.turn_rad;
+            set_eye(path[i], length);
         }
     }
-    return all;
+    return path;
+}
+
+std::optional<RepeatedPath> repetition_of(const EyePath& path, std::span<const double> ahead_mm) {
+    if (path.size() <= kManyStations) {
+        return std::nullopt;
+    }
+    RepeatedPath repeated(path, ahead_mm);
+    if (static_cast<double>(repeated.few().size()) > kFewShare * static_cast<double>(path.size())) {
+        return std::nullopt;
+    }
+    return repeated;
 }
 
 }  // namespace meshwind

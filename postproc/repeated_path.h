@@ -3,12 +3,20 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "postproc/eye_path.h"
 
 namespace meshwind {
+
+/// Of a path with more stations than that (200 m of fibre, whose motion takes half a minute)
+/// circuits that repeat are given one choice.
+inline constexpr std::size_t kManyStations = 50'000;
+
+/// If the few circuits have no more than this share of its stations.
+inline constexpr double kFewShare = 0.5;
 
 /// Circuits of a run that are kept. The one in the middle is what the others repeat; those to
 /// either side keep the run's ends away from it.
@@ -45,7 +53,7 @@ public:
     /// those of the middle one of their run, with the mandrel turned on. What that one's ends
     /// differ by, which is next to nothing where the choice has settled, is spread evenly along it.
     /// \param path the one given first \param chosen few() with other lengths and turns
-    [[nodiscard]] EyePath all(const EyePath& path, const EyePath& chosen) const;
+    [[nodiscard]] EyePath all(EyePath path, const EyePath& chosen) const;
 
 private:
     static constexpr std::size_t kNoRun = static_cast<std::size_t>(-1);
@@ -70,5 +78,9 @@ private:
     std::vector<Piece> pieces_;
     std::vector<Run> runs_;
 };
+
+/// A path of more than kManyStations whose few have no more than kFewShare of them.
+[[nodiscard]] std::optional<RepeatedPath> repetition_of(const EyePath& path,
+                                                        std::span<const double> ahead_mm);
 
 }  // namespace meshwind

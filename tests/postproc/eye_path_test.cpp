@@ -170,6 +170,34 @@ TEST(AdaptiveFreeLength, KeepsMoreClearanceOnThePiecesThatAskForIt) {
     EXPECT_GE(least(1), 20.0 - 0.05);
 }
 
+// Along a post of 190 mm only fibre that reaches past it keeps the head clear, and that grows by no
+// more than 3 mm per mm: it is long before the post, where the wish would do.
+TEST(AdaptiveFreeLength, IsLongBeforeTheStretchThatTakesLongFibre) {
+    Piece straight;
+    for (double x = -150.0; x <= 50.0; x += 4.0) {
+        PathPoint p;
+        p.normal = Vector3d::UnitY();
+        p.position_mm = x * Vector3d::UnitX();
+        p.tangent = Vector3d::UnitX();
+        p.s_mm = x + 150.0;
+        straight.path.push_back(p);
+        straight.slip.push_back(0.0);
+        straight.string.gap_mm.push_back(0.0);
+        straight.string.slope.push_back(0.0);
+    }
+    const TriangleSoup post = test::box({20.0, -30.0, -50.0}, {210.0, -8.0, 50.0});
+    const RayQuery obstacles({&post, 1});
+    const EyePathResult eyes =
+        adaptive_free_length({&straight, 1}, obstacles, rule_of(200.0), {}, LengthSearch::All);
+    EXPECT_TRUE(eyes.blocked.empty());
+    expect_rates(eyes.path);
+    for (const EyePoint& p : eyes.path) {
+        // Head and clearance: 15 mm.
+        ASSERT_GE(obstacles.closest(p.eye_mm, 1e3).distance_mm, 15.0 - 0.05);
+    }
+    EXPECT_GT(eyes.path.front().eye_mm.x(), 210.0);
+}
+
 TEST(AdaptiveFreeLength, NamesThePointsWhereNoLengthIsPossible) {
     const std::vector<Piece> pieces{helix(100.0)};
     const PathPoint& station = pieces[0].path[10];
