@@ -109,10 +109,9 @@ VerifyOutcome run_verify(const VerifyRequest& request) {
     const auto read = Clock::now();
     outcome.verification = verify_program(outcome.setup, outcome.blocks, plan.fibre,
                                           [&](double share) { tell("verify", share); });
-    outcome.coverage = coverage_of_fibre(outcome.setup.mandrel.surface,
-                                         outcome.setup.wall->surface(),
-                                         outcome.setup.job.tow.width_mm, kVerifySeed,
-                                         outcome.verification.laid.path);
+    outcome.coverage = coverage_of_fibre(
+        outcome.setup.mandrel.surface, outcome.setup.wall->surface(),
+        outcome.setup.job.tow.width_mm, kVerifySeed, outcome.verification.laid.path);
     // Where the program is not the planned one is the cause, what the fibre does the effect.
     if (texts.first_wrong) {
         outcome.verification.first_wrong_block = texts.first_wrong;

@@ -160,8 +160,8 @@ public:
         return clear_within(part, way, part.chunk, 0.0, 1.0);
     }
 
-    // The same for a piece that is measured to be so far off at the step's end, up to the resolution:
-    // mostly without a search.
+    // The same for a piece that is measured to be so far off at the step's end, up to the
+    // resolution: mostly without a search.
     [[nodiscard]] bool clear(const LinkedChunk& part, double end_clearance_mm) const {
         const Way way(machine_, part.link, std::nullopt);
         const double room = end_clearance_mm - need_mm_ - 2.0 * kSweepResolution_mm;

@@ -35,8 +35,8 @@ struct PlanZones {
 [[nodiscard]] SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i,
                                            double tow_width_mm);
 
-/// Coverage by a fibre as it lies, with its turns. \param wall what the stations' faces are of, as in
-/// measure_plan() \return `reachable` is left at 0
+/// Coverage by a fibre as it lies, with its turns. \param wall what the stations' faces are of, as
+/// in measure_plan() \return `reachable` is left at 0
 [[nodiscard]] Coverage coverage_of_fibre(const Surface& surface, const Surface& wall,
                                          double tow_width_mm, std::uint64_t seed,
                                          const SurfacePath& fibre);
