@@ -21,6 +21,10 @@ using Eigen::VectorXd;
 // Curvature is read over chords of this share of the radius.
 constexpr double kChordShare = 0.3;
 
+// Readings for each arc of the line at most. Along an arc curvature is constant, so more tell
+// nothing; a tube that begins with a point would ask for millions.
+constexpr double kMostPerArc = 100.0;
+
 // A stretch that bends with a radius above 50 tube radii is taken for straight first; and a jump of
 // the curvature by less is none.
 constexpr double kLeastCurvature = 0.02;  // times the tube's radius
@@ -54,7 +58,9 @@ struct Readings {
 Readings curvature_along(const CentreLine& line, double radius_mm) {
     Readings readings;
     const double step = 0.5 * kChordShare * radius_mm;
-    const auto count = static_cast<std::size_t>(std::max(4.0, std::ceil(line.length_mm() / step)));
+    const auto count =
+        static_cast<std::size_t>(std::clamp(std::ceil(line.length_mm() / step), 4.0,
+                                            kMostPerArc * static_cast<double>(line.arcs().size())));
     readings.chord = 2;
     const double spacing = line.length_mm() / static_cast<double>(count);
     const double chord = 2.0 * spacing;

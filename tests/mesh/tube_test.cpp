@@ -10,6 +10,7 @@
 
 #include "core/units.h"
 #include "mesh/make_kinds.h"
+#include "mesh/tube_chain.h"
 #include "shapes.h"
 
 namespace meshwind {
@@ -43,6 +44,18 @@ TriangleSoup skin(const CentreLine& line, double radius_mm, int rings, int aroun
         }
     }
     return soup;
+}
+
+// The readings of curvature are as many as the line has to tell, however thin the tube begins.
+TEST(FindTube, ATubeThatBeginsWithAPointEnds) {
+    const ElbowShape shape{40.0, 120.0, rad_from_deg(60.0), 150.0, 90.0};
+    const Mandrel mandrel =
+        build_mandrel(make_elbow(shape, {.edge_mm = 9.0}), "part", {.unit_mm = 1.0});
+    TubeFinding finding = find_tube(mandrel);
+    ASSERT_TRUE(finding.tube) << finding.why_not;
+    finding.tube->radius.front().radius_mm = 1e-9;
+    const std::optional<Tube> chain = chain_tube(mandrel.rims, mandrel.surface, *finding.tube);
+    EXPECT_TRUE(!chain || std::isfinite(chain->line.length_mm()));
 }
 
 // Vertices lie on the tube to rounding, so line, radius and parts are exact whatever the mesh.

@@ -119,6 +119,25 @@ TEST(HollowRim, SteepFibreOnASteepConeIsNeverOnTheWall) {
     EXPECT_EQ(lift_over_rim(meridian, true, kStation_mm, pass.stations), RimLift::NeverOnWall);
 }
 
+struct ConeJob {
+    double radius1_mm, radius2_mm, length_mm, edge_mm;
+    double angle_rad, friction, extension_mm;
+};
+
+Plan planned(const ConeJob& job) {
+    const Mandrel mandrel = test::made(
+        "cone",
+        {{"radius1", job.radius1_mm}, {"radius2", job.radius2_mm}, {"length", job.length_mm}},
+        job.edge_mm);
+    const RevolutionFinding found = find_revolution(mandrel);
+    EXPECT_TRUE(found.body.has_value()) << found.why_not;
+    PatternOptions options;
+    options.angle_rad = job.angle_rad;
+    options.tow = {.width_mm = 8.0, .thickness_mm = 0.25, .friction = job.friction};
+    options.turn.extension_mm = job.extension_mm;
+    return plan_pattern(mandrel, *found.body, options);
+}
+
 struct Station {
     PathPoint point;
     double gap_mm;
@@ -128,16 +147,8 @@ struct Station {
 // tangent to the cone at its one end and to the cylinder at the other, across course and turn.
 TEST(HollowRim, CourseAirAndTurnAreOneLine) {
     for (const bool up : {true, false}) {
-        const Mandrel mandrel = test::made(
-            "cone",
-            {{"radius1", up ? 70.0 : 45.0}, {"radius2", up ? 45.0 : 70.0}, {"length", 120.0}}, 4.0);
-        const RevolutionFinding found = find_revolution(mandrel);
-        ASSERT_TRUE(found.body.has_value()) << found.why_not;
-        PatternOptions options;
-        options.angle_rad = rad_from_deg(35.0);
-        options.tow = {.width_mm = 8.0, .thickness_mm = 0.25, .friction = 0.4};
-        options.turn.extension_mm = 300.0;
-        const Plan plan = plan_pattern(mandrel, *found.body, options);
+        const Plan plan = planned(
+            {up ? 70.0 : 45.0, up ? 45.0 : 70.0, 120.0, 4.0, rad_from_deg(35.0), 0.4, 300.0});
         ASSERT_EQ(plan.failure, "");
         EXPECT_LT(plan.worst_joint_mm, 1e-6);
         EXPECT_LT(plan.pattern->closure_rad, 1e-6);
@@ -177,15 +188,7 @@ TEST(HollowRim, CourseAirAndTurnAreOneLine) {
 }
 
 TEST(HollowRim, MoreThanTheTowMayBridgeIsRefusedInWords) {
-    const Mandrel mandrel =
-        test::made("cone", {{"radius1", 90.0}, {"radius2", 40.0}, {"length", 80.0}}, 5.0);
-    const RevolutionFinding found = find_revolution(mandrel);
-    ASSERT_TRUE(found.body.has_value()) << found.why_not;
-    PatternOptions options;
-    options.angle_rad = rad_from_deg(20.0);
-    options.tow = {.width_mm = 8.0, .thickness_mm = 0.25, .friction = 0.5};
-    options.turn.extension_mm = 1000.0;
-    const Plan plan = plan_pattern(mandrel, *found.body, options);
+    const Plan plan = planned({90.0, 40.0, 80.0, 5.0, rad_from_deg(20.0), 0.5, 1000.0});
     EXPECT_NE(plan.failure.find("over the upper rim, a hollow of 32.01 deg, the fibre is in the "
                                 "air by"),
               std::string::npos)
