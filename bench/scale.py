@@ -4,7 +4,7 @@ memory of each phase grow, from 1 to 100 times the size, with the exponent fitte
 
 KINDS, by commas: make, inspect, refine, trace (all of a tee, by triangles), job (the main job on
 that tee, by triangles), length (a pipe with a helical layer, by fibre length), tows (a vessel, by
-tows across: its radius). A case that takes longer than --limit seconds ends its row: larger ones
+tows across: its radius; both on six_axis.json with longer ways). A case that takes longer than --limit seconds ends its row: larger ones
 are left out. Time is CPU time of a whole command, of a phase the clock's; memory is the peak, of a
 phase the largest seen while it ran. Phases with an exponent above 1.15 are listed at the end: n log n
 has 1.1 between 10^4 and 10^6. MESHWIND_HOME as for the program. Exit 1 where a phase grows faster.
@@ -26,6 +26,8 @@ TEE_TRIANGLES = 10_000  # at factor 1
 EQUILATERAL = math.sqrt(3.0) / 4.0
 PIPE_LENGTH_MM = 120.0
 VESSEL_RADIUS_MM = 20.0
+LONG_WAYS_MM = {"Z": (-8000.0, 8000.0), "X": (0.0, 3000.0), "Y": (-3000.0, 3000.0)}
+LONG_FREE_MM = 2500.0
 FASTEST = 1.15  # exponent
 LEAST_S = 0.05  # shorter times are not fitted
 SAMPLE_S = 0.02
@@ -132,12 +134,24 @@ class Bench:
             [*self.program, "trace", str(file), "--units", "mm", "--start", "0,-50,0", "--angle", "62",
              "-o", str(self.folder / "trace.csv")], self.limit_s)
 
-    def wind(self, mandrel, job):
+    def large_machine(self):
+        """six_axis.json with ways for parts of 12 m."""
+        home = pathlib.Path(os.environ.get("MESHWIND_HOME", "."))
+        machine = json.loads((home / "machines" / "six_axis.json").read_text())
+        for axis in machine["eye_chain"]:
+            if axis["letter"] in LONG_WAYS_MM:
+                axis["min"], axis["max"] = LONG_WAYS_MM[axis["letter"]]
+        machine["fibre"]["max_free_length"] = LONG_FREE_MM
+        file = self.folder / "large.json"
+        file.write_text(json.dumps(machine))
+        return file
+
+    def wind(self, mandrel, job, machine="six_axis.json"):
         """The main job, with the phases of its report in place of those it told."""
         job_file = self.folder / "job.json"
         job_file.write_text(json.dumps(job))
         out = self.folder / "out"
-        found = run([*self.program, str(mandrel), "--machine", "six_axis.json", "--job", str(job_file),
+        found = run([*self.program, str(mandrel), "--machine", str(machine), "--job", str(job_file),
                      "-o", str(out)], self.limit_s)
         if found:
             timing = json.loads((out / "report.json").read_text())["timing_s"]
@@ -159,7 +173,7 @@ class Bench:
              str(file)], self.limit_s)
         job = {"mandrel": {"units": "mm"}, "tow": {"width": 3.0},
                "layers": [{"kind": "helical", "angle": 50}]}
-        return length_mm, self.wind(file, job)
+        return length_mm, self.wind(file, job, self.large_machine())
 
     def tows(self, factor):
         radius_mm = VESSEL_RADIUS_MM * factor
@@ -169,7 +183,7 @@ class Bench:
              str(0.25 * radius_mm), "--edge", str(max(2.0, radius_mm / 20.0)), "-o", str(file)],
             self.limit_s)
         job = {"mandrel": {"units": "mm"}, "tow": {"width": 6.0}, "layers": [{"kind": "polar"}]}
-        return 2.0 * math.pi * radius_mm / 6.0, self.wind(file, job)
+        return 2.0 * math.pi * radius_mm / 6.0, self.wind(file, job, self.large_machine())
 
 
 def exponent(points):

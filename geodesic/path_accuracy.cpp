@@ -17,8 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kPaths = 32;
-
 // In mean edges: longer paths cost more than half a second on fine meshes and tell no more.
 constexpr double kMostEdges = 500.0;
 
@@ -55,7 +53,7 @@ double mirrored(int i, int base) {
     return value;
 }
 
-std::vector<Start> even_starts(const Surface& surface) {
+std::vector<Start> even_starts(const Surface& surface, int count) {
     std::vector<double> area_up_to(surface.face.size());
     double area = 0.0;
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
@@ -66,9 +64,9 @@ std::vector<Start> even_starts(const Surface& surface) {
         area_up_to[f] = area;
     }
     std::vector<Start> starts;
-    for (int i = 1; i <= kPaths; ++i) {
+    for (int i = 1; i <= count; ++i) {
         const auto above =
-            std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, area * (i - 0.5) / kPaths);
+            std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, area * (i - 0.5) / count);
         double u = mirrored(i, 3);
         double v = mirrored(i, 5);
         if (u + v > 1.0) {
@@ -148,7 +146,7 @@ struct Sum {
 
 }  // namespace
 
-PathAccuracy estimate_path_accuracy(const Surface& surface) {
+PathAccuracy estimate_path_accuracy(const Surface& surface, int count) {
     PathAccuracy accuracy;
     if (surface.face.empty()) {
         return accuracy;
@@ -158,7 +156,7 @@ PathAccuracy estimate_path_accuracy(const Surface& surface) {
         box.extend(p);
     }
     accuracy.length_mm = std::min(box.diagonal().norm(), kMostEdges * surface.mean_edge_mm);
-    const std::vector<Start> starts = even_starts(surface);
+    const std::vector<Start> starts = even_starts(surface, count);
     std::vector<TraceResult> best(starts.size());
     const auto for_each_path = [&](const auto& body) {
         parallel_for(starts.size(), 1, [&](std::size_t begin, std::size_t end) {
