@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "cli/part_room.h"
 #include "cli/part_words.h"
 #include "cli/plan_layer.h"
 #include "core/error.h"
@@ -58,9 +59,16 @@ constexpr double kMuchOfGirth = 1.0 / 3.0;
 // About an axis further off its own a body of revolution is wound as another shape.
 constexpr double kOwnAxis_rad = rad_from_deg(5.0);
 
+constexpr double kHoop_rad = 0.5 * kPi;
+
+// What a pattern's angle may be more than asked for, so that its circuits close
+// (winding/pattern_plan.cpp). One that may choose its number of circuits closes within a tow; over
+// a cylinder of length l a tow comes of w / 2 l at most, and domes have their share too.
+constexpr double kMoreAngle_rad = rad_from_deg(3.0);
+constexpr double kTowsToClose = 10.0;
+
 constexpr std::size_t kRimSamples = 64;
 constexpr std::size_t kBodySamples = 200;
-constexpr std::size_t kHeightBins = 1000;
 
 std::string name_of_file(const std::filesystem::path& file, const std::string& otherwise) {
     return file.empty() ? otherwise : file.filename().string();
@@ -120,6 +128,7 @@ public:
             check_travel();
             check_bodies();
         }
+        check_free_length();
         check_amount();
     }
 
@@ -256,31 +265,14 @@ private:
     [[nodiscard]] double hoop_eye_mm(double radius_mm) const {
         const double free_mm =
             std::max(0.0, machine_.fibre.min_free_length_mm - kFreeLengthSlack_mm);
-        const double clear_mm = job_.tolerance.clearance_mm - head_gap_mm() - kSlack_mm;
-        return std::max({std::hypot(radius_mm, free_mm), radius_mm + std::max(0.0, clear_mm),
+        return std::max({std::hypot(radius_mm, free_mm), radius_mm + off_wall_mm(),
                          radius_mm + kSameRadius_mm});
     }
 
-    // From the eye to the nearest part of the head, or more.
-    [[nodiscard]] double head_gap_mm() const {
-        double gap = std::numeric_limits<double>::infinity();
-        const Vector3d& eye = machine_.eye.position_mm;
-        for (const HeadEnvelope::Part& part : task_.envelope.parts) {
-            for (const Vector3d& point : part.triangles.points_mm) {
-                gap = std::min(gap, (point - eye).norm());
-            }
-            if (part.triangles.points_mm.empty()) {
-                const Vector3d along = part.capsule.to_mm - part.capsule.from_mm;
-                const double length2 = along.squaredNorm();
-                const double share =
-                    length2 > 0.0
-                        ? std::clamp((eye - part.capsule.from_mm).dot(along) / length2, 0.0, 1.0)
-                        : 0.0;
-                const double off = (eye - part.capsule.from_mm - share * along).norm();
-                gap = std::min(gap, std::max(0.0, off - part.capsule.radius_mm));
-            }
-        }
-        return gap;
+    // From the wall that the eye keeps at least, for the head's clearance.
+    [[nodiscard]] double off_wall_mm() const {
+        return std::max(
+            0.0, job_.tolerance.clearance_mm - head_gap_mm(machine_, task_.envelope) - kSlack_mm);
     }
 
     [[nodiscard]] bool eye_gets_around(double radius_mm) const {
@@ -475,28 +467,6 @@ private:
                shown.limit + " mm";
     }
 
-    // Largest radius of the part at heights: each is that of a vertex, which goes round a circle.
-    [[nodiscard]] std::vector<Eigen::Vector2d> outline() const {
-        const std::vector<Vector3d>& points = mandrel_.whole.points_mm;
-        double low = std::numeric_limits<double>::infinity();
-        double high = -low;
-        for (const Vector3d& point : points) {
-            low = std::min(low, point.z());
-            high = std::max(high, point.z());
-        }
-        std::vector<Eigen::Vector2d> widest(kHeightBins, {-1.0, 0.0});
-        for (const Vector3d& point : points) {
-            const double share = high > low ? (point.z() - low) / (high - low) : 0.0;
-            auto& bin = widest[std::min(kHeightBins - 1,
-                                        static_cast<std::size_t>(share * double{kHeightBins}))];
-            if (radius_of(point) > bin.x()) {
-                bin = {radius_of(point), point.z()};
-            }
-        }
-        std::erase_if(widest, [](const Eigen::Vector2d& at) { return at.x() < 0.0; });
-        return widest;
-    }
-
     // What stands on the base and is met by the turning part.
     void check_bodies() const {
         const double mount_mm = machine_.mount ? machine_.mount->origin_mm.z() : 0.0;
@@ -505,7 +475,7 @@ private:
             if (body.link != kBaseLink || !body.triangles.points_mm.empty()) {
                 continue;
             }
-            circles = circles.empty() ? outline() : circles;
+            circles = circles.empty() ? outline(mandrel_.whole) : circles;
             for (std::size_t i = 0; i <= kBodySamples; ++i) {
                 const double share = static_cast<double>(i) / kBodySamples;
                 const Vector3d at =
@@ -520,6 +490,50 @@ private:
                                    " mm from the spindle axis" + unit_question(mandrel_));
                     }
                 }
+            }
+        }
+    }
+
+    // The winding angle on the widest cylinder, or more; 90 deg where it is the plan's to find.
+    [[nodiscard]] double most_angle_rad(const LayerJob& layer, const CylinderPart& part) const {
+        const double tow_mm = job_.tow.width_mm;
+        double angle_rad = kHoop_rad;
+        if (layer.kind == LayerKind::Helical && layer.angle_deg) {
+            angle_rad = rad_from_deg(*layer.angle_deg);
+        } else if (layer.kind == LayerKind::Polar) {
+            const Meridian& meridian = found_.body->meridian;
+            const double opening_mm =
+                std::max(meridian.at(0.0).radius_mm, meridian.at(meridian.length_mm()).radius_mm);
+            angle_rad = std::asin(std::min(1.0, (opening_mm + tow_mm) / part.radius_mm));
+        }
+        const double more_rad = kTowsToClose * tow_mm / (part.to_mm - part.from_mm);
+        return std::min(
+            kHoop_rad,
+            angle_rad + (layer.pattern ? kMoreAngle_rad : std::min(kMoreAngle_rad, more_rad)));
+    }
+
+    // Where the eye comes off a long cylinder by too little.
+    void check_free_length() const {
+        if (!found_.body) {
+            return;
+        }
+        const Meridian& meridian = found_.body->meridian;
+        const CylinderPart part = cylinder_at(meridian, meridian.widest_mm());
+        const double longest_mm = machine_.fibre.max_free_length_mm + kFreeLengthSlack_mm;
+        if (part.to_mm - part.from_mm < 2.0 * longest_mm) {
+            return;
+        }
+        for (const LayerJob& layer : job_.layers) {
+            const double angle_rad = most_angle_rad(layer, part);
+            const double needed_mm =
+                free_length_over_cylinder_mm(part.radius_mm, off_wall_mm(), std::sin(angle_rad));
+            if (needed_mm > longest_mm) {
+                refuse("plan.free_length", machine_place(),
+                       "on the cylinder of radius " + fixed(part.radius_mm, 1) + " mm fibre at " +
+                           degrees(angle_rad, 1) + " or less leaves so flat that the eye needs " +
+                           fixed(needed_mm, 1) +
+                           " mm of free fibre to be off the wall; /fibre/max_free_length is " +
+                           fixed(machine_.fibre.max_free_length_mm, 1));
             }
         }
     }

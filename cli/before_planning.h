@@ -32,7 +32,8 @@ struct PlannedTask {
 /// point therefore never gets higher or further out than the eye can; and each friction turn runs
 /// around its rim once as a hoop, with the eye at the hoop's height, at least the shortest free
 /// fibre away, and the head as far from the extension as the clearance asks.
-/// \throws InputError plan.travel, plan.body, plan.tow_width, plan.no_turn, plan.amount
+/// \throws InputError plan.travel, plan.body, plan.tow_width, plan.no_turn, plan.free_length,
+/// plan.amount
 void require_can_be_wound(const PlannedTask& task);
 
 /// One line each: what the mandrel has to tell, and what may be meant otherwise but can be wound.

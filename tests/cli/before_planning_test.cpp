@@ -15,6 +15,7 @@
 #include "cli/plan_layer.h"
 #include "cli/setup.h"
 #include "core/error.h"
+#include "core/text_number.h"
 #include "core/units.h"
 #include "machines/machine_json.h"
 #include "mesh/import.h"
@@ -113,7 +114,7 @@ TEST(BeforePlanning, OneEndBeyondTheTravelStopsPatternsAndPlainTubes) {
 }
 
 TEST(BeforePlanning, PartsOfTheWrongUnitAreAskedAfter) {
-    const MakeValues pipe = {{"radius", 50.0}, {"length", 300.0}};
+    const MakeValues pipe = {{"radius", 50.0}, {"length", 500.0}};
     for (const double scale : {25.4, 1e4, 1e5}) {
         const Mandrel large = made("cylinder", pipe, scale, {});
         for (const char* name : {"four_axis", "six_axis"}) {
@@ -145,7 +146,7 @@ TEST(BeforePlanning, AnEyeAtOneDistanceGetsAroundWhatIsNarrower) {
     EXPECT_EQ(outcome(hobby, cone, helical).code, "plan.travel");
     EXPECT_EQ(outcome(hobby, made("cylinder", {{"radius", 25.0}, {"length", 400.0}}), job).code,
               "");
-    EXPECT_EQ(outcome(hobby, made("cylinder", {{"radius", 70.0}, {"length", 300.0}}), job).code,
+    EXPECT_EQ(outcome(hobby, made("cylinder", {{"radius", 70.0}, {"length", 500.0}}), job).code,
               "plan.travel");
 }
 
@@ -172,8 +173,8 @@ TEST(BeforePlanning, ABodyInTheWayOfTheTurningPartIsTold) {
     MachineBody bed;
     bed.shape = Capsule{{0.0, -90.0, -500.0}, {0.0, -90.0, 500.0}, 20.0};
     machine.bodies.assign(1, bed);
-    const Mandrel thin = made("cylinder", {{"radius", 60.0}, {"length", 300.0}});
-    const Mandrel thick = made("cylinder", {{"radius", 80.0}, {"length", 300.0}});
+    const Mandrel thin = made("cylinder", {{"radius", 60.0}, {"length", 500.0}});
+    const Mandrel thick = made("cylinder", {{"radius", 80.0}, {"length", 500.0}});
     EXPECT_EQ(outcome(machine, thin).code, "");
     const Outcome found = outcome(machine, thick);
     EXPECT_EQ(found.code, "plan.body");
@@ -238,6 +239,41 @@ TEST(BeforePlanning, RefusesNothingThatCanBeWound) {
     }
     EXPECT_GE(refused, 3);
     EXPECT_GE(wound, 3);
+}
+
+// Flat fibre comes off a wide cylinder slowly: with less free fibre than is told the machine
+// refuses the plan, and with twice as much it winds it.
+TEST(BeforePlanning, FlatFibreOnALongCylinderNeedsFreeLength) {
+    const std::filesystem::path mesh =
+        std::filesystem::path(testing::TempDir()) / "long_cylinder.stl";
+    (void)run_make({.kind = "cylinder",
+                    .shown_values = {{"radius", 60.0}, {"length", 500.0}},
+                    .options = {.edge_mm = 8.0},
+                    .output = mesh});
+    meshwind::Setup setup = read_setup({mesh, kSource / "machines" / "six_axis.json", {}, 1.0});
+    std::filesystem::remove(mesh);
+    setup.job.layers.front().kind = LayerKind::Helical;
+    setup.job.layers.front().angle_deg = 15.0;
+    setup.job.tow.width_mm = 12.0;
+    setup.job.mandrel.extension_mm = 500.0;
+    setup.job.tow.friction = 0.4;
+    // sqrt(R^2 + (L sin 18 deg)^2) = R + 7.5 mm: 5 of clearance, 3.5 of the ring, 1 of slack.
+    const double least_mm = 100.1;
+    for (const auto& [longest_mm, told] : {std::pair{95.0, true}, {200.0, false}}) {
+        setup.machine.fibre.max_free_length_mm = longest_mm;
+        setup.job.eye.free_length_mm = longest_mm;
+        const meshwind::Setup trial = setup_for(setup, setup.mandrel);
+        const Outcome found = outcome(trial.machine, trial.mandrel, trial.job);
+        EXPECT_EQ(found.code, told ? "plan.free_length" : "");
+        EXPECT_EQ(found.words.find(fixed(least_mm, 1) + " mm of free fibre") != std::string::npos,
+                  told)
+            << found.words;
+        LayerPlanOptions options;
+        options.refused = [](std::span<const Piece>) { return std::vector<std::size_t>{}; };
+        const Plan plan = plan_layer(trial, trial.job.layers.front(), options);
+        ASSERT_EQ(plan.failure, "");
+        EXPECT_EQ(program_of(trial, plan.pieces).refused.empty(), !told);
+    }
 }
 
 TEST(SizeWords, HaveExtentsAlongTheAxesOfTheFileAndTheUnit) {
