@@ -117,7 +117,11 @@ std::vector<Vector3d> first_centres(const Mandrel& mandrel) {
     std::vector<Vector3d> right(slices, Vector3d::Zero());
     std::vector<std::size_t> count(slices, 0);
     for (std::size_t v = 0; v < from.size(); ++v) {
-        const double share = from[v] / (from[v] + to[v]);
+        const double way = from[v] + to[v];
+        if (way == 0.0 || !std::isfinite(way)) {
+            continue;  // rims that touch there, or parts that no edge connects
+        }
+        const double share = from[v] / way;
         const auto slice =
             std::min(slices - 1, static_cast<std::size_t>(share * static_cast<double>(slices)));
         const Eigen::Matrix3d aside =
