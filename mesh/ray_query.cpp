@@ -43,8 +43,8 @@ constexpr double kNeedStep_mm = 5.0;
 // What rounding may take from an interpolated distance.
 constexpr double kTableRounding_mm = 1e-3;
 
-// Keeps a bound a bound in spite of rounding.
-constexpr double kRoundUp = 1.0 + 1e-12;
+// Keeps a bound a bound in spite of rounding: far more than that takes of lengths under a km.
+constexpr double kBound_mm = 1e-6;
 
 // Lengths in single precision are good to this share of the scene's size, with room to spare.
 constexpr double kSingle = 1e-6;
@@ -89,30 +89,46 @@ Eigen::Vector3d closest_bary(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
     return {va / sum, vb / sum, vc / sum};
 }
 
-// A ball around a triangle.
-struct Ball {
+// A disc that a triangle lies in.
+struct Disc {
     Eigen::Vector3d centre_mm;
+    Eigen::Vector3d normal;  // 0 where the triangle has none
     double radius_mm;
+
+    // True where all of it is further than `distance_mm` from a place. The root of what the height
+    // leaves of the distance, and the radius, are compared squared.
+    [[nodiscard]] bool is_beyond(const Eigen::Vector3d& place_mm, double distance_mm) const {
+        const Eigen::Vector3d off_mm = place_mm - centre_mm;
+        const double over_mm = off_mm.dot(normal);
+        const double reach_mm = distance_mm + kBound_mm;
+        const double left_mm2 = reach_mm * reach_mm - over_mm * over_mm;
+        const double more_mm2 =
+            off_mm.squaredNorm() - over_mm * over_mm - radius_mm * radius_mm - left_mm2;
+        return left_mm2 < 0.0 ||
+               (more_mm2 > 0.0 && more_mm2 * more_mm2 > 4.0 * radius_mm * radius_mm * left_mm2);
+    }
 };
 
-std::vector<Ball> balls_around(const TriangleSoup& soup) {
-    std::vector<Ball> balls;
-    balls.reserve(soup.faces.size());
+std::vector<Disc> discs_around(const TriangleSoup& soup) {
+    std::vector<Disc> discs;
+    discs.reserve(soup.faces.size());
     for (const auto& v : soup.faces) {
         const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
             return soup.points_mm[static_cast<std::size_t>(v[i])];
         };
         const Eigen::Vector3d centre = (corner(0) + corner(1) + corner(2)) / 3.0;
-        const double radius = std::max({(corner(0) - centre).norm(), (corner(1) - centre).norm(),
-                                        (corner(2) - centre).norm()});
-        balls.push_back({centre, radius});
+        const double radius =
+            kBound_mm + std::max({(corner(0) - centre).norm(), (corner(1) - centre).norm(),
+                                  (corner(2) - centre).norm()});
+        const Eigen::Vector3d across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        discs.push_back({centre, across.normalized(), radius});
     }
-    return balls;
+    return discs;
 }
 
 struct Search {
     const std::vector<TriangleSoup>* parts;
-    const std::vector<std::vector<Ball>>* balls;
+    const std::vector<std::vector<Disc>>* discs;
     Eigen::Vector3d query;
     ClosestPoint best;
 };
@@ -120,9 +136,8 @@ struct Search {
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     auto& search = *static_cast<Search*>(args->userPtr);
     // Most triangles whose boxes are near enough are not.
-    const Ball& ball = (*search.balls)[args->geomID][args->primID];
-    const double reach = search.best.distance_mm + ball.radius_mm;
-    if ((search.query - ball.centre_mm).squaredNorm() > kRoundUp * reach * reach) {
+    if ((*search.discs)[args->geomID][args->primID].is_beyond(search.query,
+                                                              search.best.distance_mm)) {
         return false;
     }
     const auto part = static_cast<std::int32_t>(args->geomID);
@@ -211,6 +226,30 @@ struct DistanceTable {
         return near->there_mm + near->off_mm + kSingle * (parts.diagonal().norm() + query.norm());
     }
 
+    // True where a corner of the cell around a place says that all triangles are further from it.
+    [[nodiscard]] bool is_beyond(const Eigen::Vector3d& query, double distance) const {
+        if (distance_mm.empty()) {
+            return false;
+        }
+        const Eigen::Vector3d scaled = (query - origin) / cell_mm;
+        if ((scaled.array() < 0.0).any() || (scaled.array() >= (nodes - 1).cast<double>()).any()) {
+            return false;
+        }
+        const Eigen::Array3i cell = scaled.array().cast<int>();
+        const Eigen::Array3d low = cell_mm * (scaled.array() - cell.cast<double>());
+        const Eigen::Array3d low_mm2 = low.square();
+        const Eigen::Array3d high_mm2 = (cell_mm - low).square();
+        for (int corner = 0; corner < 8; ++corner) {
+            const Eigen::Array3i up(corner & 1, corner >> 1 & 1, corner >> 2);
+            const double room_mm = static_cast<double>(distance_mm[index(cell + up)]) - distance;
+            const double off_mm2 = (up > 0).select(high_mm2, low_mm2).sum();
+            if (room_mm >= 0.0 && room_mm * room_mm >= off_mm2) {
+                return true;
+            }
+        }
+        return false;
+    }
+
     [[nodiscard]] double radius_mm(int x, int y) const {
         return std::hypot(origin.x() + cell_mm * x, origin.y() + cell_mm * y);
     }
@@ -258,7 +297,7 @@ struct RayQuery::Impl {
     RadialReach reach;
 
     std::vector<TriangleSoup> parts;
-    std::vector<std::vector<Ball>> balls;  // per part and face
+    std::vector<std::vector<Disc>> discs;  // per part and face
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
@@ -310,7 +349,7 @@ RayQuery::RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm)
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t i = 0; i < impl_->parts.size(); ++i) {
         impl_->add(static_cast<unsigned>(i), impl_->parts[i]);
-        impl_->balls.push_back(balls_around(impl_->parts[i]));
+        impl_->discs.push_back(discs_around(impl_->parts[i]));
     }
     rtcCommitScene(impl_->scene);
     impl_->reach = RadialReach(impl_->parts);
@@ -386,7 +425,7 @@ bool RayQuery::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) 
 }
 
 ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) const {
-    Search search{&impl_->parts, &impl_->balls, query, {}};
+    Search search{&impl_->parts, &impl_->discs, query, {}};
     search.best.distance_mm = std::min(radius_mm, impl_->table.at_most_mm(query));
     RTCPointQuery point{};
     point.x = static_cast<float>(query.x());
@@ -400,7 +439,8 @@ ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) c
 }
 
 bool RayQuery::is_beyond(const Eigen::Vector3d& query, double distance_mm) const {
-    return distance_at_least_mm(query) >= distance_mm || impl_->reach.is_beyond(query, distance_mm);
+    return distance_at_least_mm(query) >= distance_mm ||
+           impl_->reach.is_beyond(query, distance_mm) || impl_->table.is_beyond(query, distance_mm);
 }
 
 bool RayQuery::has_table() const {
