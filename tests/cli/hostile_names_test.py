@@ -31,8 +31,7 @@ class HostileNames(program.ProgramTest):
         return self.write("machine.json", json.dumps(machine))
 
     def wind(self, mandrel, machine):
-        return self.run_program(mandrel, "--machine", machine, "--job", self.job, "-o", self.out,
-                                timeout_s=300)
+        return self.run_program(mandrel, "--machine", machine, "--job", self.job, "-o", self.out)
 
     def code_of(self, text):
         """What the controller runs: the program without comments and blank lines."""
@@ -74,7 +73,7 @@ class HostileNames(program.ProgramTest):
                 json.loads((self.out / "layup.json").read_text())
                 again = self.run_program("verify", self.out / report["program"]["file"],
                                          "--mandrel", mandrel, "--machine", "machine.json", "--job",
-                                         self.job, "--plan", self.out, "--json", timeout_s=300)
+                                         self.job, "--plan", self.out, "--json")
                 self.assertEqual(again.returncode, 0, again.stderr)
                 self.assertEqual(json.loads(again.stdout)["machine"], name)
 
@@ -102,7 +101,7 @@ class HostileNames(program.ProgramTest):
         with open(mandrel, "wb") as file:
             file.write(self.mandrel.read_bytes())
         result = self.run_program(os.fsdecode(mandrel), "--job", self.job, "-o", self.out, "--json",
-                                  "--quiet", timeout_s=300)
+                                  "--quiet")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(json.loads(result.stdout)["mandrel"]["file"], "bad\ufffd.stl")
         self.assertEqual(json.loads((self.out / "report.json").read_text())["mandrel"]["file"],

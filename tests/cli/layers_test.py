@@ -7,15 +7,13 @@ import sys
 import program
 
 MACHINE = "six_axis.json"
-PLANNING_S = 600  # two covers; 10 s on an idle core, more with checks built in
 
 
 class Layers(program.ProgramTest):
-    def wind(self, mandrel, layers, code=0, timeout_s=program.TIMEOUT_S, **job):
+    def wind(self, mandrel, layers, code=0, **job):
         job["layers"] = layers
         text = self.write("job.json", json.dumps(job))
-        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out",
-                                  timeout_s=timeout_s)
+        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out")
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return json.loads((self.folder / "out" / "report.json").read_text())
 
@@ -111,7 +109,7 @@ class Layers(program.ProgramTest):
     # Rims stay circles under courses that cross, and what is wound on them holds all checks.
     def test_a_cover_is_covered(self):
         pipe = self.make("cylinder", "--radius", "25", "--length", "100", "--edge", "4")
-        report = self.wind(pipe, [{"kind": "cover"}, {"kind": "cover"}], timeout_s=PLANNING_S)
+        report = self.wind(pipe, [{"kind": "cover"}, {"kind": "cover"}])
         self.assertTrue(report["ok"])
         first, second = (layer["plan"]["coverage"]["fraction"] for layer in report["layers"])
         self.assertGreater(second, first - 0.02)

@@ -51,7 +51,7 @@ class MainJob(program.ProgramTest):
         if not mandrel.exists():
             self.make("tee", "--edge", "8", "--run-length", "240", "--branch-length", "140")
             self.write("job.json", JOB)
-        result = self.done(mandrel, "--job", "job.json", "-o", out, "--json", timeout_s=600)
+        result = self.done(mandrel, "--job", "job.json", "-o", out, "--json")
         for line in result.stderr.splitlines():
             self.assertTrue(line.endswith(" ...") or line.startswith("meshwind: "), line)
         return result
@@ -255,7 +255,7 @@ class MainJob(program.ProgramTest):
             job = json.loads(JOB) | {"fibres": fibres}
             self.write("job.json", json.dumps(job))
             result = self.done(self.folder / "tee.stl", "--machine", "machine.json", "--job",
-                               "job.json", "-o", "out", "--json", timeout_s=600)
+                               "job.json", "-o", "out", "--json")
             report = json.loads(result.stdout)
             self.assertEqual(report["plan"]["fibres"], fibres)
             self.assertGreaterEqual(len(report["plan"]["reach_of_fibres"]), 2)

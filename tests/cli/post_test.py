@@ -104,8 +104,7 @@ class Post(program.ProgramTest):
         mandrel = self.make("cylinder", "--radius", "30", "--length", "150", "--edge", "6")
         job = {"tow": {"width": 12}, "mandrel": {"extension": 80}}
         file = self.write("job.json", json.dumps(job))
-        self.done("wind", mandrel, "--machine", MACHINE, "--job", file, "-o", "planned",
-                  timeout_s=300)
+        self.done("wind", mandrel, "--machine", MACHINE, "--job", file, "-o", "planned")
         self.post("planned/path.csv", mandrel, "--frame", "mandrel", job=job)
         planned, again = self.report("planned"), self.report()
         for key in ("courses", "transitions"):
@@ -327,7 +326,7 @@ class Post(program.ProgramTest):
         job = {"tow": {"width": 12}, "mandrel": {"extension": 80},
                "eye": {"rule": "cylinder", "radius": 180}}
         self.done("wind", mandrel, "--machine", MACHINE, "--job",
-                  self.write("job.json", json.dumps(job)), timeout_s=300)
+                  self.write("job.json", json.dumps(job)))
         eyes = [math.hypot(float(r["ex_mm"]), float(r["ey_mm"]))
                 for r in self.rows("meshwind-out/motion.csv")]
         self.assertGreater(len(eyes), 10)

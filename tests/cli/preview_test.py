@@ -51,7 +51,7 @@ class Preview(program.ProgramTest):
             self.write("hoops.json", HOOPS)
         file = self.folder / "view.png"
         self.done("cylinder.stl", "--job", "hoops.json", "--force", "--png", file,
-                  "--png-size", "240x150", *arguments, timeout_s=300)
+                  "--png-size", "240x150", *arguments)
         return file.read_bytes()
 
     def test_picture_of_hoops(self):

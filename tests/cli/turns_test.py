@@ -14,8 +14,7 @@ class Turns(program.ProgramTest):
         job = {"mandrel": {"extension": 40.0, **mandrel_job}, "layers": [layer],
                "redundancy": "central-angle"}
         text = self.write("job.json", json.dumps(job))
-        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out",
-                                  timeout_s=300)
+        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out")
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 

@@ -67,7 +67,7 @@ class Words(program.ProgramTest):
         for name, distance in (("hobby_grbl.json", "60.000"), ("two_axis.json", "58.310")):
             self.assertIn(distance, self.done("validate", name).stdout)
             out = self.folder / f"out-{distance}"
-            result = self.done(pipe, "--machine", name, "-o", out, timeout_s=300)
+            result = self.done(pipe, "--machine", name, "-o", out)
             self.assertIn(distance, result.stdout)
             report = json.loads((out / "report.json").read_text())
             self.assertEqual(report["eye"]["rule"], "cylinder")
@@ -89,7 +89,7 @@ class Words(program.ProgramTest):
     def test_the_summary_has_unit_size_and_the_angle_that_was_asked_for(self):
         vessel = self.make("vessel", "--radius", 60, "--cylinder-length", 80, "--edge", 6)
         job = self.write("j.json", '{"layers": [{"kind": "helical", "angle": 30}]}')
-        result = self.done(vessel, "--job", job, "-o", self.folder / "out", timeout_s=300)
+        result = self.done(vessel, "--job", job, "-o", self.folder / "out")
         self.assertIn("120.0 x 120.0 x 176.8 mm (unit mm, assumed)", result.stdout)
         report = json.loads((self.folder / "out/report.json").read_text())
         self.assertEqual(report["plan"]["asked_angle_deg"], 30)

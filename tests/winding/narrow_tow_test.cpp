@@ -114,69 +114,62 @@ INSTANTIATE_TEST_SUITE_P(Widths, PatternOfTow,
                                           testing::Values(1.0, 4.0, 20.0)));
 
 TEST(NarrowTow, RibsOfALatticeHaveTheirMeanLayers) {
-    for (const double width_mm : {1.0, 2.8, 8.0}) {
-        for (const double edge_mm : {1.0, 5.0, 20.0}) {
-            const Mandrel mandrel = test::made_cylinder(kRadius_mm, kLength_mm, edge_mm);
-            PatternOptions options{.angle_rad = rad_from_deg(45.0)};
-            options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.2};
-            options.turn.extension_mm = 100.0;
-            options.lattice = LatticeWish{.circuits = 7};
-            const Plan plan = plan_pattern(mandrel, *find_revolution(mandrel).body, options);
-            ASSERT_EQ(plan.failure, "");
-            const double bands =
-                2.0 * static_cast<double>(plan.pattern->pattern.circuits) * width_mm;
-            EXPECT_NEAR(plan.coverage.mean_layers * 2.0 * kPi * kRadius_mm * std::sqrt(0.5) / bands,
-                        1.0, kMean + missing_area(mandrel.surface))
-                << "tow " << width_mm << " edge " << edge_mm;
-        }
+    for (const auto& [width_mm, edge_mm] :
+         {std::pair{1.0, 20.0}, {1.0, 5.0}, {2.8, 1.0}, {8.0, 20.0}, {8.0, 1.0}}) {
+        const Mandrel mandrel = test::made_cylinder(kRadius_mm, kLength_mm, edge_mm);
+        PatternOptions options{.angle_rad = rad_from_deg(45.0)};
+        options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.2};
+        options.turn.extension_mm = 100.0;
+        options.lattice = LatticeWish{.circuits = 7};
+        const Plan plan = plan_pattern(mandrel, *find_revolution(mandrel).body, options);
+        ASSERT_EQ(plan.failure, "");
+        const double bands = 2.0 * static_cast<double>(plan.pattern->pattern.circuits) * width_mm;
+        EXPECT_NEAR(plan.coverage.mean_layers * 2.0 * kPi * kRadius_mm * std::sqrt(0.5) / bands,
+                    1.0, kMean + missing_area(mandrel.surface))
+            << "tow " << width_mm << " edge " << edge_mm;
     }
 }
 
 TEST(NarrowTow, CoverAgreesWithAnUnrolledGrid) {
-    for (const double width_mm : {1.5, 4.0}) {
-        for (const double edge_mm : {1.5, 5.0}) {
-            const Mandrel mandrel = test::made_cylinder(kRadius_mm, 60.0, edge_mm);
-            CoverOptions options;
-            options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.25};
-            options.turn.extension_mm = 100.0;
-            options.free_fibre.start_mm = 2.0 * edge_mm;
-            options.candidates = 500;
-            options.rounds = 0;
-            options.scarce_candidates = 0;
-            const Plan plan =
-                plan_cover(mandrel, test::obstacles_of(mandrel, 100.0, 60.0), options);
-            ASSERT_EQ(plan.failure, "");
-            const auto [low, high] = std::minmax_element(
-                mandrel.surface.position_mm.begin(), mandrel.surface.position_mm.end(),
-                [](const auto& a, const auto& b) { return a.z() < b.z(); });
-            const double expected = unrolled_mean(plan, width_mm, low->z(), high->z());
-            ASSERT_GT(expected, 0.2);
-            EXPECT_NEAR(plan.coverage.mean_layers / expected, 1.0, kMean)
-                << "tow " << width_mm << " edge " << edge_mm;
-            EXPECT_NEAR(mean_of_faces(mandrel.surface, plan) / expected, 1.0, kMean);
-        }
+    for (const auto& [width_mm, edge_mm] : {std::pair{1.5, 5.0}, {4.0, 1.5}}) {
+        const Mandrel mandrel = test::made_cylinder(kRadius_mm, 60.0, edge_mm);
+        CoverOptions options;
+        options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.25};
+        options.turn.extension_mm = 100.0;
+        options.free_fibre.start_mm = 2.0 * edge_mm;
+        options.candidates = 500;
+        options.rounds = 0;
+        options.scarce_candidates = 0;
+        const Plan plan = plan_cover(mandrel, test::obstacles_of(mandrel, 100.0, 60.0), options);
+        ASSERT_EQ(plan.failure, "");
+        const auto [low, high] = std::minmax_element(
+            mandrel.surface.position_mm.begin(), mandrel.surface.position_mm.end(),
+            [](const auto& a, const auto& b) { return a.z() < b.z(); });
+        const double expected = unrolled_mean(plan, width_mm, low->z(), high->z());
+        ASSERT_GT(expected, 0.2);
+        EXPECT_NEAR(plan.coverage.mean_layers / expected, 1.0, kMean)
+            << "tow " << width_mm << " edge " << edge_mm;
+        EXPECT_NEAR(mean_of_faces(mandrel.surface, plan) / expected, 1.0, kMean);
     }
 }
 
 TEST(NarrowTow, TapeOnAnElbowCoversItsLengthTimesItsWidth) {
-    for (const double width_mm : {1.0, 3.0}) {
-        for (const double edge_mm : {1.5, 6.0}) {
-            const Mandrel mandrel = build_mandrel(
-                make_elbow({20.0, 60.0, rad_from_deg(60.0), 40.0, 40.0}, {.edge_mm = edge_mm}),
-                "elbow", {.unit_mm = 1.0});
-            const TubeFinding found = find_tube(mandrel);
-            ASSERT_TRUE(found.tube) << found.why_not;
-            ElbowPlanOptions options;
-            options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.3};
-            options.turn.extension_mm = 100.0;
-            const Plan plan = plan_elbow(mandrel, *found.tube, options);
-            ASSERT_EQ(plan.failure, "");
-            const double expected =
-                course_length_mm(plan) * width_mm / test::wall_area_mm2(mandrel.surface);
-            EXPECT_NEAR(plan.coverage.mean_layers / expected, 1.0, kMean)
-                << "tow " << width_mm << " edge " << edge_mm;
-            EXPECT_NEAR(mean_of_faces(mandrel.surface, plan) / expected, 1.0, kMean);
-        }
+    for (const auto& [width_mm, edge_mm] : {std::pair{1.0, 6.0}, {3.0, 1.5}}) {
+        const Mandrel mandrel = build_mandrel(
+            make_elbow({20.0, 60.0, rad_from_deg(60.0), 40.0, 40.0}, {.edge_mm = edge_mm}), "elbow",
+            {.unit_mm = 1.0});
+        const TubeFinding found = find_tube(mandrel);
+        ASSERT_TRUE(found.tube) << found.why_not;
+        ElbowPlanOptions options;
+        options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.3};
+        options.turn.extension_mm = 100.0;
+        const Plan plan = plan_elbow(mandrel, *found.tube, options);
+        ASSERT_EQ(plan.failure, "");
+        const double expected =
+            course_length_mm(plan) * width_mm / test::wall_area_mm2(mandrel.surface);
+        EXPECT_NEAR(plan.coverage.mean_layers / expected, 1.0, kMean)
+            << "tow " << width_mm << " edge " << edge_mm;
+        EXPECT_NEAR(mean_of_faces(mandrel.surface, plan) / expected, 1.0, kMean);
     }
 }
 
