@@ -22,8 +22,8 @@ constexpr double kRadiusRounding_mm = 1e-6;
 // True when the eye, or what of an arm is from there on outward, is known to have room about it.
 // Its distance from the spindle does not get less along the arm.
 bool has_room(const RayQuery& obstacles, const Eigen::Vector3d& from_mm, double need_mm) {
-    return std::hypot(from_mm.x(), from_mm.y()) >=
-           obstacles.room_from_mm(from_mm.z(), need_mm) + kRadiusRounding_mm;
+    const double room_mm = obstacles.room_from_mm(from_mm.z(), need_mm) + kRadiusRounding_mm;
+    return from_mm.head<2>().squaredNorm() >= room_mm * room_mm;
 }
 
 // Marches along each part of the arm by what is free around it.
