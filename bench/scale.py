@@ -3,11 +3,13 @@
 memory of each phase grow, from 1 to 100 times the size, with the exponent fitted to them.
 
 KINDS, by commas: make, inspect, refine, trace (all of a tee, by triangles), job (the main job on
-that tee, by triangles), length (a pipe with a helical layer, by fibre length), tows (a vessel, by
-tows across: its radius; both on six_axis.json with longer ways). A case that takes longer than --limit seconds ends its row: larger ones
-are left out. Time is CPU time of a whole command, of a phase the clock's; memory is the peak, of a
-phase the largest seen while it ran. Phases with an exponent above 1.15 are listed at the end: n log n
-has 1.1 between 10^4 and 10^6. MESHWIND_HOME as for the program. Exit 1 where a phase grows faster.
+that tee, by triangles), length (a pipe with a helical layer that becomes longer), tows (a vessel
+that becomes wider: more tows across; both on six_axis.json with longer ways, by metres of fibre,
+which a program tells block by block). A case that takes longer than --limit seconds ends its row:
+larger ones are left out. Time is CPU time of a whole command, of a phase the clock's; memory is the
+peak, of a phase the largest seen while it ran. Phases with an exponent above 1.15 are listed at the
+end: n log n has 1.1 between 10^4 and 10^6. MESHWIND_HOME as for the program. Exit 1 where a phase
+grows faster.
 """
 
 import argparse
@@ -154,7 +156,9 @@ class Bench:
         found = run([*self.program, str(mandrel), "--machine", str(machine), "--job", str(job_file),
                      "-o", str(out)], self.limit_s)
         if found:
-            timing = json.loads((out / "report.json").read_text())["timing_s"]
+            report = json.loads((out / "report.json").read_text())
+            found["fibre_m"] = report["plan"]["fibre_length_mm"] / 1e3
+            timing = report["timing_s"]
             for stage in ("post", "verify", "import"):
                 found["phases_s"].pop(stage, None)
             told = {f"report {stage}": seconds for stage, seconds in timing.items()}
@@ -166,6 +170,10 @@ class Bench:
         file, _, triangles, _ = self.tee(factor)
         return triangles, self.wind(file, {"mandrel": {"units": "mm"}})
 
+    def by_fibre(self, mandrel, job):
+        found = self.wind(mandrel, job, self.large_machine())
+        return found["fibre_m"] if found else math.inf, found
+
     def length(self, factor):
         length_mm = PIPE_LENGTH_MM * factor
         file = self.folder / "pipe.stl"
@@ -173,7 +181,7 @@ class Bench:
              str(file)], self.limit_s)
         job = {"mandrel": {"units": "mm"}, "tow": {"width": 3.0},
                "layers": [{"kind": "helical", "angle": 50}]}
-        return length_mm, self.wind(file, job, self.large_machine())
+        return self.by_fibre(file, job)
 
     def tows(self, factor):
         radius_mm = VESSEL_RADIUS_MM * factor
@@ -183,7 +191,7 @@ class Bench:
              str(0.25 * radius_mm), "--edge", str(max(2.0, radius_mm / 20.0)), "-o", str(file)],
             self.limit_s)
         job = {"mandrel": {"units": "mm"}, "tow": {"width": 6.0}, "layers": [{"kind": "polar"}]}
-        return 2.0 * math.pi * radius_mm / 6.0, self.wind(file, job, self.large_machine())
+        return self.by_fibre(file, job)
 
 
 def exponent(points):
@@ -239,7 +247,7 @@ def main():
             for factor in [int(text) for text in arguments.factors.split(",")]:
                 size, found = getattr(bench, kind)(factor)
                 if found is None:
-                    print(f"{kind}: {size:.0f} takes more than {arguments.limit:.0f} s", file=sys.stderr)
+                    print(f"{kind}: factor {factor} takes more than {arguments.limit:.0f} s", file=sys.stderr)
                     break
                 rows.append((size, found))
             if rows:

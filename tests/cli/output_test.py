@@ -31,8 +31,8 @@ class OutputTest(program.ProgramTest):
         machine["controller"] = {"dialect": dialect}
         return self.write(dialect + ".json", json.dumps(machine))
 
-    def wind(self, job, *arguments, **options):
-        return self.run_program(self.mandrel, "--job", job, "-o", self.out, "--quiet", *arguments, **options)
+    def wind(self, job, *arguments):
+        return self.run_program(self.mandrel, "--job", job, "-o", self.out, "--quiet", *arguments)
 
     def programs(self):
         return sorted(p.name for p in self.out.iterdir() if p.suffix in EXTENSIONS.values())
