@@ -29,7 +29,9 @@ def flags_of(entry):
     for word in words:
         if word in ("-o", "-MT", "-MF", "-c", "-include"):
             next(words)
-        elif word.startswith(("-D", "-I", "-O", "-W", "-f", "-std=")) and word != "-Winvalid-pch":
+        elif word.startswith(("-Winvalid-pch", "-Wno-")):  # of headers compiled by GCC
+            continue
+        elif word.startswith(("-D", "-I", "-O", "-W", "-f", "-std=")):
             kept.append(word)
         elif word == "-isystem":
             kept += [word, next(words)]
