@@ -1,9 +1,7 @@
 #include "postproc/collision.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -150,25 +148,27 @@ private:
     std::vector<Step> steps_;
 };
 
-// The sweep of pieces over one step, in the mandrel frame. What the axes do is found once for
-// pieces of the same link in a row.
+// The sweep of a piece over one step, in the mandrel frame.
 class StepSweep {
 public:
     StepSweep(const Machine& machine, const RayQuery& obstacles, double need_mm,
               std::span<const double> from, std::span<const double> to)
         : machine_(machine), obstacles_(obstacles), need_mm_(need_mm), from_(from), to_(to) {}
 
-    [[nodiscard]] bool clear(const LinkedChunk& part) {
-        go_to(part.link);
-        return clear_at(part.chunk, whole());
+    [[nodiscard]] bool clear(const LinkedChunk& part) const {
+        const Way way(machine_, part.link, std::nullopt);
+        return clear_within(part, way, part.chunk, 0.0, 1.0);
     }
 
     // The same for a piece that is measured to be so far off at the step's end, up to the
     // resolution: mostly without a search.
-    [[nodiscard]] bool clear(const LinkedChunk& part, double end_clearance_mm) {
-        go_to(part.link);
+    [[nodiscard]] bool clear(const LinkedChunk& part, double end_clearance_mm) const {
+        const Way way(machine_, part.link, std::nullopt);
         const double room = end_clearance_mm - need_mm_ - 2.0 * kSweepResolution_mm;
-        return (room > 0.0 && motion_to_end_mm(part.chunk) < room) || clear_at(part.chunk, whole());
+        return (room > 0.0 &&
+                way.motion_mm(Joints(to_.begin(), to_.end()), from_, to_, 1.0, part.chunk.centre(),
+                              part.chunk.reach_mm() + part.chunk.radius_mm) < room) ||
+               clear_within(part, way, part.chunk, 0.0, 1.0);
     }
 
 private:
@@ -181,45 +181,20 @@ private:
         Isometry3d pose;
     };
 
-    void go_to(char link) {
-        if (!way_ || link != link_) {
-            link_ = link;
-            way_.emplace(machine_, link, std::nullopt);
-            whole_.reset();
-            end_turns_.reset();
-        }
-    }
-
-    [[nodiscard]] double motion_to_end_mm(const Chunk& chunk) {
-        if (end_.empty()) {
-            end_.assign(to_.begin(), to_.end());
-        }
-        if (!end_turns_) {
-            end_turns_ = way_->turns_of(end_);
-        }
-        return way_->motion_mm(end_, *end_turns_, from_, to_, 1.0, chunk.centre(),
-                               chunk.reach_mm() + chunk.radius_mm);
-    }
-
-    [[nodiscard]] const Middle& whole() {
-        if (!whole_) {
-            whole_ = middle_of(0.0, 1.0);
-        }
-        return *whole_;
-    }
-
-    [[nodiscard]] Middle middle_of(double low, double high) const {
+    [[nodiscard]] bool clear_within(const LinkedChunk& part, const Way& way, const Chunk& chunk,
+                                    double low, double high) const {
         Middle at{low, high, between(from_, to_, 0.5 * (low + high)), {}, {}};
-        at.turns = way_->turns_of(at.q);
+        at.turns = way.turns_of(at.q);
         at.pose =
-            base_from_mandrel(machine_, at.q).inverse() * base_from_part(machine_, at.q, link_);
-        return at;
+            base_from_mandrel(machine_, at.q).inverse() * base_from_part(machine_, at.q, part.link);
+        return clear_at(part, way, chunk, at);
     }
 
-    [[nodiscard]] bool clear_at(const Chunk& chunk, const Middle& at) const {
+    [[nodiscard]] bool clear_at(const LinkedChunk& part, const Way& way, const Chunk& chunk,
+                                const Middle& at) const {
         const double reach = chunk.reach_mm();
-        const double move = way_->motion_mm(at.q, at.turns, from_, to_, 0.5 * (at.high - at.low),
-                                            chunk.centre(), reach + chunk.radius_mm);
+        const double move = way.motion_mm(at.q, at.turns, from_, to_, 0.5 * (at.high - at.low),
+                                          chunk.centre(), reach + chunk.radius_mm);
         const double need = chunk.radius_mm + need_mm_;
         const double search = reach + need + move;
         const Vector3d centre = at.pose * chunk.centre();
@@ -237,11 +212,11 @@ private:
         }
         if (move > reach) {
             const double middle = 0.5 * (at.low + at.high);
-            return clear_at(chunk, middle_of(at.low, middle)) &&
-                   clear_at(chunk, middle_of(middle, at.high));
+            return clear_within(part, way, chunk, at.low, middle) &&
+                   clear_within(part, way, chunk, middle, at.high);
         }
         const auto halves = chunk.halves();
-        return clear_at(halves[0], at) && clear_at(halves[1], at);
+        return clear_at(part, way, halves[0], at) && clear_at(part, way, halves[1], at);
     }
 
     // True where a search would hardly settle a large piece: by what is tabulated the distance is
@@ -261,11 +236,6 @@ private:
     double need_mm_;
     std::span<const double> from_;
     std::span<const double> to_;
-    char link_ = '?';                                  // of the piece that is at hand
-    std::optional<Way> way_;                           // from there
-    std::optional<Middle> whole_;                      // of the step
-    Joints end_;                                       // of the step
-    std::optional<std::vector<Way::Turn>> end_turns_;  // there
 };
 
 // Head and free fibre against one body over one step, in the frame of the body's link.
@@ -353,22 +323,16 @@ private:
     std::span<const double> to_;
 };
 
-// Distance of a piece's centre, infinite where no part of the piece is nearer than `best`.
-double centre_distance(const RayQuery& obstacles, const Isometry3d& pose, const Chunk& chunk,
-                       double best) {
-    const double search = best + chunk.reach_mm() + chunk.radius_mm;
-    const Vector3d centre = pose * chunk.centre();
-    const double distance = obstacles.is_beyond(centre, search)
-                                ? search
-                                : obstacles.closest(centre, search).distance_mm;
-    return distance < search ? distance : std::numeric_limits<double>::infinity();
-}
-
-// Least distance of a piece at one joint position, if below `best`. Its centre is so far off.
+// Least distance of a piece at one joint position, if below `best`.
 double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const Chunk& chunk,
-                      double distance, double best) {
+                      double best) {
     const double reach = chunk.reach_mm();
-    if (distance >= best + reach + chunk.radius_mm) {
+    const double search = best + reach + chunk.radius_mm;
+    if (obstacles.is_beyond(pose * chunk.centre(), search)) {
+        return best;
+    }
+    const double distance = obstacles.closest(pose * chunk.centre(), search).distance_mm;
+    if (distance >= search) {
         return best;
     }
     best = std::min(best, distance - chunk.radius_mm);
@@ -377,22 +341,14 @@ double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const C
     }
     // The nearer half first: it may rule the other one out.
     auto halves = chunk.halves();
-    std::array<double, 2> of_half{};
-    for (std::size_t i = 0; i < 2; ++i) {
-        of_half[i] = centre_distance(obstacles, pose, halves[i], best);
-        best = std::min(best, of_half[i] - chunk.radius_mm);
+    if (obstacles.distance_at_least_mm(pose * halves[1].centre()) <
+        obstacles.distance_at_least_mm(pose * halves[0].centre())) {
+        std::swap(halves[0], halves[1]);
     }
-    const std::size_t nearer = of_half[1] < of_half[0] ? 1 : 0;
-    for (const std::size_t i : {nearer, 1 - nearer}) {
-        best = least_distance(obstacles, pose, halves[i], of_half[i], best);
+    for (const Chunk& half : halves) {
+        best = least_distance(obstacles, pose, half, best);
     }
     return best;
-}
-
-double least_distance(const RayQuery& obstacles, const Isometry3d& pose, const Chunk& chunk,
-                      double best) {
-    return least_distance(obstacles, pose, chunk, centre_distance(obstacles, pose, chunk, best),
-                          best);
 }
 
 bool fibre_blocked(const RayQuery& obstacles, const EyePoint& a, const EyePoint& b,
@@ -457,16 +413,11 @@ public:
         StepFinding found;
         found.clearance_mm = rule_.told_mm;
         found.fibre = fibre_blocked(obstacles_, path[before], path[i], rule_);
-        StepSweep sweep(machine_, obstacles_, rule_.clearance_mm, from, to);
+        const StepSweep sweep(machine_, obstacles_, rule_.clearance_mm, from, to);
         const Isometry3d mandrel = base_from_mandrel(machine_, to).inverse();
-        std::optional<char> link;
-        Isometry3d pose;  // of its parts
         for (const LinkedChunk& part : parts_) {
             if (rule_.told_mm > rule_.clearance_mm) {
-                if (link != part.link) {
-                    link = part.link;
-                    pose = mandrel * base_from_link(machine_, to, part.link);
-                }
+                const Isometry3d pose = mandrel * base_from_link(machine_, to, part.link);
                 found.clearance_mm =
                     least_distance(obstacles_, pose, part.chunk, found.clearance_mm);
             }
