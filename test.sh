@@ -19,7 +19,7 @@ build_tests() {
     shift 2
     install_packages build test
     [[ $folder == asan ]] || prepare_page
-    configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON \
+    configure "$folder" -DMESHWIND_TESTS=ON -DMESHWIND_WERROR=ON -DMESHWIND_PCH=tests \
         "-DMESHWIND_VIEWER=$page" "$@"
     echo "building the tests in build/$folder ..." >&2
     run_logged "$root/build/$folder/build.log" ninja -C "$root/build/$folder" "$target"
@@ -30,7 +30,7 @@ build_tests() {
 build_instrumented() {
     install_packages sanitize
     build_tests asan "$1" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" -DCMAKE_CXX_COMPILER=clang++-14 \
-        -DMESHWIND_SANITIZE=fuzzer-no-link,address,undefined
+        -DMESHWIND_SANITIZE=fuzzer-no-link,address,undefined -DMESHWIND_PCH=all
 }
 
 # run_tests FOLDER CTEST_OPTION...: an empty selection is a failure, not a success.

@@ -16,17 +16,17 @@ endfunction()
 # Warnings, reproducible arithmetic, sanitizers and the common headers for a target of this project.
 function(meshwind_flags target)
     meshwind_compile_flags(${target})
-    meshwind_use_precompiled(${target} meshwind_pch)
+    if(MESHWIND_PCH STREQUAL "all")
+        meshwind_use_precompiled(${target} meshwind_pch)
+    endif()
 endfunction()
 
-# A source file then compiles although it forgets to include what it uses: step tidy of .ci/run reads each without.
+# A source file then compiles although it forgets to include what it uses: ./test.sh builds the library without.
 function(meshwind_use_precompiled target from)
-    if(MESHWIND_PCH)
-        target_precompile_headers(${target} REUSE_FROM ${from})
-        # Out of such headers joined strings make GCC 12 warn falsely. The address sanitizer checks the same.
-        target_compile_options(
-            ${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>")
-    endif()
+    target_precompile_headers(${target} REUSE_FROM ${from})
+    # Out of such headers joined strings make GCC 12 warn falsely. The address sanitizer checks the same.
+    target_compile_options(
+        ${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>")
 endfunction()
 
 # meshwind_precompile(TARGET HEADER ...): headers of other projects that nearly every source file reads, compiled once.

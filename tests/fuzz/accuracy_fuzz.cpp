@@ -10,14 +10,9 @@
 
 namespace meshwind::fuzz {
 
-namespace {
-
-constexpr int kStarts = 2;
-
-}  // namespace
-
 void run(std::span<const std::uint8_t> bytes) {
     set_thread_count(1);
+    constexpr int kStarts = 2;
     const PathAccuracy accuracy =
         estimate_path_accuracy(build_mandrel(spoilt_mesh(bytes), "spoilt").surface, kStarts);
     if (!std::isfinite(accuracy.walk_mm_per_m) || !std::isfinite(accuracy.patches_mm_per_m)) {
