@@ -9,9 +9,10 @@
 
 #include "geodesic/connect.h"
 #include "mesh/edge_table.h"
-#include "mesh/feature_edges.h"
-#include "mesh/make_kinds.h"
-#include "mesh/rims.h"
+#include "mesh/segment/feature_edges.h"
+#include "mesh/segment/rims.h"
+#include "mesh/shapes/make_kinds.h"
+#include "mesh/smooth/freeze.h"
 
 namespace {
 

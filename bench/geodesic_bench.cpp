@@ -17,9 +17,10 @@
 #include "core/units.h"
 #include "geodesic/trace.h"
 #include "mesh/edge_table.h"
-#include "mesh/feature_edges.h"
-#include "mesh/make_kinds.h"
-#include "mesh/rims.h"
+#include "mesh/segment/feature_edges.h"
+#include "mesh/segment/rims.h"
+#include "mesh/shapes/make_kinds.h"
+#include "mesh/smooth/freeze.h"
 
 namespace {
 

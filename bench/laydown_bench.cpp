@@ -6,11 +6,11 @@
 
 #include "geodesic/trace.h"
 #include "machines/machine_json.h"
-#include "mesh/make.h"
-#include "postproc/choose_blocks.h"
-#include "postproc/laydown.h"
-#include "tests/mesh/frozen.h"
-#include "tests/postproc/synthetic_paths.h"
+#include "mesh/shapes/make.h"
+#include "postproc/motion/choose_blocks.h"
+#include "postproc/verify/laydown.h"
+#include "tests/support/frozen.h"
+#include "tests/support/synthetic_paths.h"
 
 namespace {
 

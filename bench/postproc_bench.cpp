@@ -8,11 +8,11 @@
 
 #include "core/parallel.h"
 #include "machines/machine_json.h"
-#include "postproc/block.h"
-#include "postproc/choose_blocks.h"
-#include "postproc/linuxcnc.h"
-#include "postproc/time_law.h"
-#include "tests/postproc/synthetic_paths.h"
+#include "postproc/motion/block.h"
+#include "postproc/motion/choose_blocks.h"
+#include "postproc/motion/time_law.h"
+#include "postproc/nc/linuxcnc.h"
+#include "tests/support/synthetic_paths.h"
 
 namespace {
 

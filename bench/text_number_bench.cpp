@@ -7,7 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/text_number.h"
+#include "core/text/text_number.h"
 
 namespace {
 

@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 
+#include "geodesic/on_surface.h"
 #include "geodesic/surface_path.h"
+#include "mesh/surface.h"
 
 namespace meshwind::bench {
 

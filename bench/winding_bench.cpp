@@ -1,13 +1,13 @@
 // What planning spends its time on: judging candidates and finding footprints, on the tee of data/.
 #include <benchmark/benchmark.h>
 
+#include "core/random.h"
 #include "core/units.h"
-#include "mesh/extension.h"
-#include "mesh/mandrel.h"
+#include "mesh/mandrel/extension.h"
+#include "mesh/mandrel/load_mandrel.h"
 #include "mesh/ray_query.h"
-#include "winding/library.h"
-#include "winding/random.h"
-#include "winding/samples.h"
+#include "winding/cover/library.h"
+#include "winding/laminate/samples.h"
 
 namespace {
 

@@ -1,41 +1,58 @@
 #include "cli/commands.h"
 
 #include <array>
+#include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
-#include "cli/check_controller.h"
-#include "cli/inspect.h"
-#include "cli/job.h"
 #include "cli/phases.h"
 #include "cli/progress.h"
-#include "cli/project_files.h"
-#include "cli/refine_command.h"
-#include "cli/report.h"
-#include "cli/report_carry.h"
-#include "cli/report_checks.h"
-#include "cli/report_design.h"
-#include "cli/report_mandrel.h"
-#include "cli/report_study.h"
-#include "cli/report_verify.h"
 #include "cli/streams.h"
-#include "cli/verify_command.h"
 #include "core/error.h"
-#include "core/text_number.h"
+#include "core/files/project_files.h"
+#include "core/files/write_file.h"
+#include "core/text/digest.h"
+#include "core/text/text_file.h"
+#include "core/text/text_number.h"
+#include "core/units.h"
+#include "core/version.h"
 #include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
-#include "postproc/dialect.h"
-#include "version.h"
+#include "mesh/io/export.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/smooth/refine.h"
+#include "pipeline/check_controller.h"
+#include "pipeline/load_inputs.h"
+#include "pipeline/run_names.h"
+#include "pipeline/verify_text.h"
+#include "pipeline/wind.h"
+#include "postproc/nc/dialect.h"
+#include "report/folder/output_files.h"
+#include "report/folder/run_files.h"
+#include "report/print_mandrel.h"
+#include "report/report.h"
+#include "report/report_carry.h"
+#include "report/report_checks.h"
+#include "report/report_design.h"
+#include "report/report_mandrel.h"
+#include "report/report_study.h"
+#include "report/report_verify.h"
+#include "report/write_run.h"
+#include "study/study_run.h"
 
 namespace meshwind {
 namespace {
+
+namespace fs = std::filesystem;
 
 double unit_mm(const std::string& name) {
     static const std::map<std::string, double> kUnits = {{"", 0.0},   {"auto", 0.0}, {"um", 1e-3},
@@ -80,86 +97,202 @@ int exit_code(const std::string& file, const std::vector<Check>& checks, const C
     return code;
 }
 
-// Runs the main job, shows what came of it.
-int run_main_job(const std::string& name, WindRequest& request, const PreviewOptions& png,
-                 const Common& common) {
-    check_preview(png);
+double seconds_since(std::chrono::steady_clock::time_point begun) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+fs::path found_or_none(const std::string& name) {
+    return name.empty() ? fs::path() : find_input(name);
+}
+
+// The winding surface refined onto its curved patches, in the frame and units of the mandrel's
+// file. Returns the number of triangles.
+std::size_t write_refined(const Mandrel& mandrel, double edge_mm, const fs::path& file) {
+    const MeshFormat format = mesh_format_of(file);  // before anything is made
+    TriangleSoup soup = refined(mandrel.surface, edge_mm).soup;
+    const Eigen::Affine3d mandrel_to_file = mandrel.file_to_mandrel.inverse();
+    for (Eigen::Vector3d& p : soup.points_mm) {
+        p = mandrel_to_file * p;
+    }
+    write_file(file, mesh_file_bytes(soup, format));
+    return soup.faces.size();
+}
+
+// \param file of the arguments, as it was found \param points of imported layers are read
+Job job_of(const JobArguments& arguments, const fs::path& file, bool points) {
+    std::vector<JobSetting> settings;
+    for (const std::string& text : arguments.settings) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0) {
+            throw InputError("cli.usage", "--set " + text,
+                             "is no setting; write a key of the job and its value, --set "
+                             "tow.width=8");
+        }
+        settings.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    }
+    if (points) {
+        return load_job(file, settings);
+    }
+    return file.empty() ? parse_job("{}", "job", settings) : read_job(file, settings);
+}
+
+// Reads the inputs, runs the main job, writes what came of it and shows it.
+int run_main_job(const WindArguments& arguments, const PostArguments* post, const Common& common) {
+    check_preview(arguments.png);
     Progress progress(common.quiet);
-    request.unit_mm = unit_mm(common.units);
-    request.seed = common.seed;
-    request.force = common.force;
-    request.progress = [&](const std::string& step, double share) {
+    WindOptions options;
+    options.context.seed = common.seed;
+    options.context.effort = arguments.effort;
+    options.context.progress = [&](const std::string& step, double share) {
         progress.show(phase_text(step), share);
     };
-    request.remark = [&](const std::string& words) { progress.say("meshwind: remark: " + words); };
-    const WindResult result = wind(request);
-    if (!png.file.empty()) {
-        progress.show(phase_text("picture"), 0.0);
-        write_preview(png, result.layers);
+    options.context.remark = [&](const std::string& words) {
+        progress.say("meshwind: remark: " + words);
+    };
+    options.force = common.force;
+    options.context.report_progress("import", 0.0);
+    const auto begun = std::chrono::steady_clock::now();
+    const fs::path mandrel_file = find_input(arguments.mandrel);
+    options.files = {.machine = find_input(arguments.machine),
+                     .job = found_or_none(arguments.job.file)};
+    require_machine_file(options.files.machine);
+    const Machine machine = load_machine(options.files.machine);
+    const Job job = job_of(arguments.job, options.files.job, post == nullptr);
+    if (post != nullptr) {
+        options.import = ImportRequest{.points = read_landing_points(post->points),
+                                       .mandrel_frame = post->frame == "mandrel",
+                                       .farthest_mm = post->within_mm};
+    }
+    Mandrel mandrel = load_mandrel(mandrel_file, mandrel_options(job, unit_mm(common.units)));
+    options.mandrel_digest = "sha256 " + sha256_hex(read_text_file(mandrel_file));
+    spare_inputs(arguments.out, {mandrel_file, options.files.machine, options.files.job,
+                                 post != nullptr ? fs::path(post->points) : fs::path()});
+    OutputFolder folder(arguments.out);  // unusable: better known now
+    options.reading_s = seconds_since(begun);
+    const Run run = wind(std::move(mandrel), machine, job, options);
+    options.context.report_progress("write", 0.0);
+    const std::string report = write_run(run, folder);
+    if (!arguments.png.file.empty()) {
+        options.context.report_progress("picture", 0.0);
+        write_preview(arguments.png, run.layers);
     }
     progress.clear();
     if (common.json) {
-        std::cout << report_json(result);
+        std::cout << report;
     } else if (!common.quiet) {
-        print_summary(std::cout, result, request.out);
+        print_summary(std::cout, run, arguments.out);
     }
-    return exit_code(name, result.checks, common);
+    return exit_code(post != nullptr ? post->points : arguments.mandrel, run.checks, common);
+}
+
+// The plan's table for a program: "path-2.csv" for "program-2.ngc", if there is one.
+NamedText table_of(const VerifyArguments& arguments, const std::string& name) {
+    const fs::path plan = arguments.plan;
+    const fs::path numbered = plan / (name + suffix_of(arguments.program) + ".csv");
+    const fs::path file = fs::exists(numbered) ? numbered : plan / (name + ".csv");
+    return {file.string(), read_text_file(file)};
+}
+
+std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double file_unit_mm) {
+    std::vector<std::string> names = arguments.mandrels;
+    if (names.empty()) {
+        names = {"cylinder", "torus", "ellipsoid", "tee"};
+    }
+    std::vector<StudyMandrel> mandrels;
+    for (const std::string& name : names) {
+        if (name == "cylinder") {
+            for (const double radius_mm : arguments.radii_mm) {
+                mandrels.push_back(cylinder_study(radius_mm));
+            }
+        } else if (name == "torus") {
+            mandrels.push_back(torus_study());
+        } else if (name == "ellipsoid") {
+            mandrels.push_back(ellipsoid_study());
+        } else if (name == "tee") {
+            mandrels.push_back(tee_study());
+        } else {
+            mandrels.push_back(
+                file_study(load_mandrel(find_input(name), {.unit_mm = file_unit_mm})));
+        }
+    }
+    return mandrels;
 }
 
 }  // namespace
 
-int run_wind(const WindOptions& options, const Common& common) {
-    WindRequest request;
-    request.mandrel = find_input(options.mandrel);
-    request.machine = find_input(options.machine);
-    request.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
-    request.out = options.out;
-    request.effort = options.effort;
-    return run_main_job(options.mandrel, request, options.png, common);
+int run_wind(const WindArguments& arguments, const Common& common) {
+    return run_main_job(arguments, nullptr, common);
 }
 
-int run_post(const PostOptions& options, const Common& common) {
-    WindRequest request = wind_request(options);
-    return run_main_job(options.points, request, options.png, common);
+int run_post(const PostArguments& arguments, const Common& common) {
+    WindArguments wind;
+    wind.mandrel = arguments.mandrel;
+    wind.machine = arguments.machine;
+    wind.job = arguments.job;
+    wind.out = arguments.out;
+    wind.png = arguments.png;
+    return run_main_job(wind, &arguments, common);
 }
 
-int run_verify_command(const VerifyOptions& options, const Common& common) {
-    VerifyRequest request;
-    request.program = options.program;
-    request.setup.mandrel = find_input(options.mandrel);
-    request.setup.machine = find_input(options.machine);
-    request.setup.job = options.job.empty() ? std::filesystem::path() : find_input(options.job);
-    request.setup.unit_mm = unit_mm(common.units);
-    request.plan = options.plan;
-    request.out = options.out;
-    if (!options.tie_on.empty()) {
-        request.tie_on_mm = vector_of("--tie-on", options.tie_on);
+int run_verify_command(const VerifyArguments& arguments, const Common& common) {
+    VerifyInputs inputs;
+    if (!arguments.tie_on.empty()) {
+        inputs.tie_on_mm = vector_of("--tie-on", arguments.tie_on);
     }
     Progress progress(common.quiet);
-    request.progress = [&](const std::string& step, double share) { progress.show(step, share); };
-    const VerifyOutcome outcome = run_verify(request);
+    RunContext context;
+    context.seed = common.seed;
+    context.progress = [&](const std::string& step, double share) { progress.show(step, share); };
+    context.report_progress("import", 0.0);
+    const auto begun = std::chrono::steady_clock::now();
+    const InputFiles files{.machine = find_input(arguments.machine),
+                           .job = found_or_none(arguments.job.file)};
+    require_machine_file(files.machine);
+    const Machine machine = load_machine(files.machine);
+    const Job job = job_of(arguments.job, files.job, false);
+    Setup setup = make_setup(
+        load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units))),
+        machine, job, files);
+    refuse_pins(job, files.job);
+    inputs.program = {arguments.program, read_text_file(arguments.program)};
+    if (!arguments.plan.empty()) {
+        inputs.path = table_of(arguments, "path");
+        inputs.motion = table_of(arguments, "motion");
+    }
+    std::optional<OutputFolder> folder;
+    if (!arguments.out.empty()) {
+        folder.emplace(arguments.out);  // unusable: better known now
+    }
+    const double reading_s = seconds_since(begun);
+    const VerifyOutcome outcome = verify_text(std::move(setup), inputs, context);
+    const std::string report = verify_json(outcome, reading_s);
+    if (folder) {
+        folder->add("verify.json", report);
+        folder->add("laid.csv", laid_csv(outcome.verification, outcome.blocks));
+        folder->publish();
+    }
     progress.clear();
     if (common.json) {
-        std::cout << verify_json(outcome);
+        std::cout << report;
     } else if (!common.quiet) {
         print_verify(std::cout, outcome);
     }
-    return exit_code(options.program, outcome.checks, common);
+    return exit_code(arguments.program, outcome.checks, common);
 }
 
-int run_inspect(const InspectOptions& options, const Common& common) {
-    if (options.refine_mm && options.out.empty()) {
+int run_inspect(const InspectArguments& arguments, const Common& common) {
+    if (arguments.refine_mm && arguments.out.empty()) {
         throw InputError("cli.output", "inspect --refine",
                          "name the mesh file to write with -o FILE");
     }
     Progress progress(!shows_bar(common));
     progress.show("mandrel", 0.0);
     const Mandrel mandrel =
-        load_mandrel(find_input(options.mandrel), {.unit_mm = unit_mm(common.units)});
+        load_mandrel(find_input(arguments.mandrel), {.unit_mm = unit_mm(common.units)});
     std::size_t refined_faces = 0;
-    if (options.refine_mm) {
+    if (arguments.refine_mm) {
         progress.show("refine", 0.0);
-        refined_faces = write_refined(mandrel, *options.refine_mm, options.out);
+        refined_faces = write_refined(mandrel, *arguments.refine_mm, arguments.out);
     }
     progress.show("accuracy", 0.0);
     const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface);
@@ -171,81 +304,91 @@ int run_inspect(const InspectOptions& options, const Common& common) {
         report["mandrel"]["revolution"] = revolution_report(revolution);
         report["mandrel"]["tube"] = tube_report(tube);
         report["mandrel"]["accuracy"] = accuracy_report(accuracy);
-        if (options.refine_mm) {
-            report["refined"] = {{"file", options.out},
-                                 {"longest_edge_mm", *options.refine_mm},
+        if (arguments.refine_mm) {
+            report["refined"] = {{"file", arguments.out},
+                                 {"longest_edge_mm", *arguments.refine_mm},
                                  {"triangles", refined_faces}};
         }
         std::cout << json_text(report);
     } else {
         print_mandrel(std::cout, mandrel, accuracy, revolution, tube);
-        if (options.refine_mm) {
-            std::cout << "refined       " << options.out << ": " << refined_faces
-                      << " triangles, edges of at most " << fixed(*options.refine_mm, 3) << " mm\n";
+        if (arguments.refine_mm) {
+            std::cout << "refined       " << arguments.out << ": " << refined_faces
+                      << " triangles, edges of at most " << fixed(*arguments.refine_mm, 3)
+                      << " mm\n";
         }
     }
     return kDone;
 }
 
-int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& common) {
-    TraceRequest& request = text.request;
-    request.mandrel = find_input(text.mandrel);
-    request.unit_mm = unit_mm(common.units);
-    request.start = vector_of("--start", text.start);
-    request.method = text.method == "walk" ? TraceMethod::Walk : TraceMethod::Patches;
-    request.file_frame = text.frame == "file";
+int run_trace_command(TraceArguments& arguments, bool has_angle, const Common& common) {
+    TraceRequest& request = arguments.request;
+    request.start = vector_of("--start", arguments.start);
+    request.method = arguments.method == "walk" ? TraceMethod::Walk : TraceMethod::Patches;
+    request.file_frame = arguments.frame == "file";
     if (has_angle) {
-        request.angle_deg = text.angle_deg;
-    } else if (!text.direction.empty()) {
-        request.direction = vector_of("--direction", text.direction);
-    } else if (!text.to.empty()) {
-        request.to = vector_of("--to", text.to);
+        request.angle_deg = arguments.angle_deg;
+    } else if (!arguments.direction.empty()) {
+        request.direction = vector_of("--direction", arguments.direction);
+    } else if (!arguments.to.empty()) {
+        request.to = vector_of("--to", arguments.to);
     } else {
         throw InputError("cli.direction", "trace",
                          "give --direction X,Y,Z, --angle DEG or --to X,Y,Z");
     }
     Progress progress(!shows_bar(common));
     progress.show("trace", 0.0);
-    const std::string line = run_trace(request);
+    const Mandrel mandrel =
+        load_mandrel(find_input(arguments.mandrel), {.unit_mm = unit_mm(common.units)});
+    const TraceTable table = trace_table(mandrel, request);
+    write_file(arguments.out, table.csv);
     progress.clear();
     if (!common.quiet) {
-        std::cout << line << '\n';
+        std::cout << arguments.out << ": " << table.words << '\n';
     }
     return kDone;
 }
 
-int run_mesh_size(StudyRequest& request, const Common& common) {
+int run_mesh_size(StudyArguments& arguments, const Common& common) {
     Progress progress(common.quiet);
-    request.unit_mm = unit_mm(common.units);
-    request.options.seed = common.seed;
-    request.options.progress = [&](const std::string& step, double share) {
+    arguments.options.context.seed = common.seed;
+    arguments.options.context.progress = [&](const std::string& step, double share) {
         progress.show(step, share);
     };
-    const StudyOutcome outcome = run_study(request);
+    arguments.options.validate();
+    OutputFolder folder(arguments.out);
+    const StudyOutcome outcome =
+        run_study(mandrels_of(arguments, unit_mm(common.units)), arguments.options);
+    write_study(outcome, folder);
     progress.clear();
     if (common.json) {
         std::cout << study_json(outcome);
     } else if (!common.quiet) {
-        print_study(std::cout, outcome, request.out);
+        print_study(std::cout, outcome, arguments.out);
     }
     return kDone;
 }
 
-int run_carry_command(CarryOptionsText& text, const Common& common) {
-    CarryRequest& request = text.request;
-    request.axis = find_input(text.axis);
-    request.machine = find_input(text.machine);
-    request.out = text.out;
-    request.tool = tool_of(text.tool);
-    request.unit_mm = unit_mm(common.units);
+int run_carry_command(CarryArguments& arguments, const Common& common) {
+    CarryRequest& request = arguments.request;
+    request.tool = tool_of(arguments.tool);
     request.force = common.force;
-    const CarryOutcome outcome = run_carry(request);
+    const fs::path axis_file = find_input(arguments.axis);
+    const fs::path machine_file = find_input(arguments.machine);
+    CarryAxis axis = read_carry_axis(
+        axis_file,
+        {unit_mm(common.units), {arguments.from_the_end, rad_from_deg(arguments.bend_turn_deg)}});
+    const Machine machine = load_machine(machine_file);
+    spare_inputs(arguments.out, {axis_file, machine_file});
+    OutputFolder folder(arguments.out);
+    const CarryOutcome outcome = carry(std::move(axis), machine, request, machine_file.string());
+    write_carry(outcome, folder);
     if (common.json) {
         std::cout << carry_json(outcome);
     } else if (!common.quiet) {
-        print_carry(std::cout, outcome);
+        print_carry(std::cout, outcome, arguments.out);
     }
-    return exit_code(text.axis, outcome.checks, common);
+    return exit_code(arguments.axis, outcome.checks, common);
 }
 
 int run_design_command(const DesignRequest& request, const Common& common) {
@@ -269,7 +412,16 @@ std::string main_job_words(const MachineClass& what) {
 }
 
 // A machine file names its schema; everything else is read as a job.
-int run_validate(const std::string& name, const Common& common) {
+int run_validate(const ValidateArguments& arguments, const Common& common) {
+    if (arguments.schema) {
+        std::cout << job_schema_text();
+        return kDone;
+    }
+    const std::string& name = arguments.file;
+    if (name.empty()) {
+        throw InputError("cli.usage", "validate",
+                         "needs a file to check; meshwind validate JOB.json");
+    }
     const std::string file = find_input(name).string();
     if (std::filesystem::is_directory(file)) {
         throw IoError("io.cannot_read", file, "is a folder; name a JSON file");

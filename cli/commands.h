@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "cli/carry_command.h"
-#include "cli/design_command.h"
 #include "cli/exit_codes.h"
-#include "cli/post_command.h"
-#include "cli/preview.h"
-#include "cli/study_command.h"
-#include "cli/trace_command.h"
-#include "cli/wind.h"
+#include "pipeline/trace_table.h"
+#include "postproc/ringhead/carry.h"
+#include "report/picture/preview.h"
+#include "study/mesh_size.h"
+#include "winding/vessel/vessel_table.h"
 
 namespace meshwind {
 
@@ -26,48 +25,82 @@ struct Common {
     std::string units;  ///< auto, um, mm, cm, m, in; empty: auto
 };
 
-struct WindOptions {
+/// A job file, and what is put over it.
+struct JobArguments {
+    std::string file;                   ///< empty: the defaults
+    std::vector<std::string> settings;  ///< "tow.width=8"
+};
+
+struct WindArguments {
     std::string mandrel;
     std::string machine = "six_axis.json";
-    std::string job;
+    JobArguments job;
     std::string out = "meshwind-out";
     int effort = 1;
     PreviewOptions png;
 };
 
-struct VerifyOptions {
-    std::string program, mandrel, machine, job, plan, out, tie_on;
+/// Landing points that were made elsewhere.
+struct PostArguments {
+    std::string points, mandrel, machine;
+    JobArguments job;
+    std::string frame = "file";  ///< "file" or "mandrel"
+    std::string out = "meshwind-out";
+    double within_mm = 1.0;  ///< > 0; a coarse mesh of the same part is nearer than that
+    PreviewOptions png;
 };
 
-struct InspectOptions {
+struct VerifyArguments {
+    std::string program, mandrel, machine, plan, out, tie_on;
+    JobArguments job;
+};
+
+struct ValidateArguments {
+    std::string file;
+    bool schema = false;  ///< print the schema of jobs instead
+};
+
+struct InspectArguments {
     std::string mandrel;
     std::optional<double> refine_mm;
     std::string out;
 };
 
-struct TraceOptionsText {
+struct TraceArguments {
     std::string mandrel, start, direction, to, frame = "mandrel", method = "patches";
+    std::string out;
     double angle_deg = 0.0;
     TraceRequest request;
 };
 
-struct CarryOptionsText {
+struct StudyArguments {
+    /// cylinder, torus, ellipsoid, tee or a file; empty: the four
+    std::vector<std::string> mandrels;
+    std::vector<double> radii_mm{20.0, 70.0, 450.0};  ///< of the cylinders
+    MeshSizeOptions options;
+    std::string out;
+};
+
+struct CarryArguments {
     std::string axis, machine = "robot_kr16.json", out = "meshwind-out", tool = "0,0,0,0,0,0";
+    bool from_the_end = false;     ///< of a mesh: TubeAxisOptions
+    double bend_turn_deg = 180.0;  ///< of a mesh: keeps longitudinal fibre from bridging in bends
     CarryRequest request;
 };
 
 /// Each runs one command: files are looked up as find_input() does, summary or JSON go to stdout,
 /// progress and a line for each failed check to stderr. Return the exit code.
 /// \throws Error for input that cannot be used
-[[nodiscard]] int run_wind(const WindOptions& options, const Common& common);
-[[nodiscard]] int run_post(const PostOptions& options, const Common& common);
-[[nodiscard]] int run_verify_command(const VerifyOptions& options, const Common& common);
-[[nodiscard]] int run_inspect(const InspectOptions& options, const Common& common);
+[[nodiscard]] int run_wind(const WindArguments& arguments, const Common& common);
+[[nodiscard]] int run_post(const PostArguments& arguments, const Common& common);
+[[nodiscard]] int run_verify_command(const VerifyArguments& arguments, const Common& common);
+[[nodiscard]] int run_inspect(const InspectArguments& arguments, const Common& common);
 /// \param has_angle the angle was given
-[[nodiscard]] int run_trace_command(TraceOptionsText& text, bool has_angle, const Common& common);
-[[nodiscard]] int run_mesh_size(StudyRequest& request, const Common& common);
-[[nodiscard]] int run_carry_command(CarryOptionsText& text, const Common& common);
+[[nodiscard]] int run_trace_command(TraceArguments& arguments, bool has_angle,
+                                    const Common& common);
+[[nodiscard]] int run_mesh_size(StudyArguments& arguments, const Common& common);
+[[nodiscard]] int run_carry_command(CarryArguments& arguments, const Common& common);
 [[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);
-[[nodiscard]] int run_validate(const std::string& name, const Common& common);
+[[nodiscard]] int run_validate(const ValidateArguments& arguments, const Common& common);
 
 }  // namespace meshwind

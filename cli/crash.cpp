@@ -12,6 +12,7 @@
 
 #include "cli/exit_codes.h"
 #include "cli/interrupt.h"
+#include "core/files/temporaries.h"
 #include "core/parallel.h"
 
 namespace meshwind {

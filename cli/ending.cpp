@@ -9,9 +9,9 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/report_error.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "report/report_error.h"
 
 namespace meshwind {
 namespace {

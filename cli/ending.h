@@ -10,7 +10,7 @@
 namespace meshwind {
 
 /// Runs, and makes of every way in which that can end an exit code and a line on stderr; where the
-/// arguments have `--json` an error is an object on stdout, too (cli/report_error.h).
+/// arguments have `--json` an error is an object on stdout, too (report/report_error.h).
 [[nodiscard]] int run_to_the_end(const std::function<int()>& run,
                                  std::span<const std::string> arguments);
 

@@ -1,15 +1,15 @@
 #include "cli/interrupt.h"
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <ctime>
-#include <string>
 #include <string_view>
-#include <utility>
 
 #include <unistd.h>
 
 #include "cli/exit_codes.h"
+#include "core/files/temporaries.h"
 #include "core/interrupt.h"
 
 namespace meshwind {
@@ -22,17 +22,8 @@ constexpr long kGrace_ns = 800'000'000;
 // An end at once that has to wait looks again after this time; what is done whole takes less.
 constexpr long kAgain_ns = 20'000'000;
 
-// A name to be removed. Entries are never freed, so that a handler that reads one finds it whole.
-struct Entry {
-    std::string path;
-    std::atomic<bool> registered{true};
-    Entry* older = nullptr;
-};
-
 // What a signal handler reads and writes: no locks, no memory of its own.
 struct State {
-    std::atomic<Entry*> newest{nullptr};
-    std::atomic<int> unbroken{0};
     std::atomic<bool> told{false};
     timer_t timer{};
     bool terminal = false;
@@ -123,49 +114,6 @@ void end_interrupted() {
     const int signal = interrupt_requested();
     tell(signal);
     ::_exit(kInterrupted + signal);
-}
-
-bool remove_temporaries() noexcept {
-    if (state().unbroken.load() != 0) {
-        return false;
-    }
-    // Newest first: files come before the folders they are in.
-    for (const Entry* entry = state().newest.load(); entry != nullptr; entry = entry->older) {
-        if (entry->registered.load() && ::unlink(entry->path.c_str()) != 0) {
-            ::rmdir(entry->path.c_str());
-        }
-    }
-    return true;
-}
-
-Temporary::Temporary(const std::filesystem::path& path) {
-    auto* const entry = new Entry{.path = path.string()};
-    entry->older = state().newest.load();
-    while (!state().newest.compare_exchange_weak(entry->older, entry)) {
-    }
-    registered_ = &entry->registered;
-}
-
-Temporary::~Temporary() {
-    if (registered_ != nullptr) {
-        registered_->store(false);
-    }
-}
-
-Temporary::Temporary(Temporary&& other) noexcept
-    : registered_(std::exchange(other.registered_, nullptr)) {}
-
-Temporary& Temporary::operator=(Temporary&& other) noexcept {
-    std::swap(registered_, other.registered_);
-    return *this;
-}
-
-Unbroken::Unbroken() {
-    ++state().unbroken;
-}
-
-Unbroken::~Unbroken() {
-    --state().unbroken;
 }
 
 }  // namespace meshwind

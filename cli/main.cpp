@@ -18,12 +18,13 @@
 #include "cli/help_text.h"
 #include "cli/interrupt.h"
 #include "cli/make_command.h"
-#include "cli/project_files.h"
 #include "cli/streams.h"
 #include "cli/usage.h"
 #include "core/error.h"
+#include "core/files/project_files.h"
 #include "core/parallel.h"
-#include "version.h"
+#include "core/version.h"
+#include "mesh/io/import.h"
 
 namespace meshwind {
 namespace {
@@ -83,9 +84,18 @@ void add_png(CLI::App& app, PreviewOptions& options) {
         ->capture_default_str();
 }
 
-void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
+void add_job(CLI::App& app, JobArguments& job, const char* meaning) {
+    app.add_option("--job", job.file, meaning)->type_name("FILE");
+    app.add_option("--set", job.settings,
+                   "a value over that of the job, as often as wanted: tow.width=8, "
+                   "layers.0.angle=55")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+void add_wind_options(CLI::App& app, WindArguments& options, bool required) {
     auto* mandrel =
-        app.add_option("mandrel", options.mandrel, "mesh of the part: .stl, .obj, .ply or .off")
+        app.add_option("mandrel", options.mandrel, "mesh of the part: " + mesh_endings())
             ->type_name("FILE");
     if (required) {
         mandrel->required();
@@ -94,9 +104,8 @@ void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
                    "machine file, JSON: axes, limits, eye, controller")
         ->type_name("FILE")
         ->capture_default_str();
-    app.add_option("--job", options.job,
-                   "job file, JSON: tow, layers, eye rule, tolerances, speed; without it defaults")
-        ->type_name("FILE");
+    add_job(app, options.job,
+            "job file, JSON: tow, layers, eye rule, tolerances, speed; without it defaults");
     app.add_option("-o,--out", options.out, "output folder")
         ->type_name("DIR")
         ->capture_default_str();
@@ -109,7 +118,7 @@ void add_wind_options(CLI::App& app, WindOptions& options, bool required) {
     add_png(app, options.png);
 }
 
-void add_post(CLI::App& app, PostOptions& options) {
+void add_post(CLI::App& app, PostArguments& options) {
     app.add_option("points", options.points, "table of landing points, CSV; columns below")
         ->type_name("FILE")
         ->required();
@@ -117,10 +126,9 @@ void add_post(CLI::App& app, PostOptions& options) {
     app.add_option("--machine", options.machine, "machine file, JSON")
         ->type_name("FILE")
         ->required();
-    app.add_option("--job", options.job,
-                   "job file, JSON: tow, eye rule, extensions, tolerances; its layers are not "
-                   "read; without it defaults")
-        ->type_name("FILE");
+    add_job(app, options.job,
+            "job file, JSON: tow, eye rule, extensions, tolerances; its layers are not read; "
+            "without it defaults");
     app.add_option("--frame", options.frame,
                    "axes of the table. file: those of the mandrel's file; mandrel: those of "
                    "meshwind's own tables, Z along the spindle, in mm")
@@ -137,16 +145,15 @@ void add_post(CLI::App& app, PostOptions& options) {
     add_png(app, options.png);
 }
 
-void add_verify(CLI::App& app, VerifyOptions& options) {
+void add_verify(CLI::App& app, VerifyArguments& options) {
     app.add_option("program", options.program,
                    "NC program, by meshwind or anybody; the machine file names its language")
         ->type_name("FILE")
         ->required();
     app.add_option("--mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
     app.add_option("--machine", options.machine, "machine file")->type_name("FILE")->required();
-    app.add_option("--job", options.job,
-                   "job file: tow, friction, extensions, tolerances; without it the defaults hold")
-        ->type_name("FILE");
+    add_job(app, options.job,
+            "job file: tow, friction, extensions, tolerances; without it the defaults hold");
     app.add_option(
            "--plan", options.plan,
            "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
@@ -160,7 +167,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
         ->type_name("DIR");
 }
 
-void add_inspect(CLI::App& app, InspectOptions& options) {
+void add_inspect(CLI::App& app, InspectArguments& options) {
     app.add_option("mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
     auto* refine = app.add_option("--refine", options.refine_mm,
                                   "write the winding surface with edges of at most so many mm, new "
@@ -211,7 +218,7 @@ void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>
     }
 }
 
-CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
+CLI::Option* add_trace(CLI::App& app, TraceArguments& text) {
     app.add_option("mandrel", text.mandrel, "mesh of the part")->type_name("FILE")->required();
     app.add_option("--start", text.start, "X,Y,Z in the file's frame; snapped to the surface")
         ->type_name("X,Y,Z")
@@ -241,11 +248,11 @@ CLI::Option* add_trace(CLI::App& app, TraceOptionsText& text) {
     app.add_option("--frame", text.frame, "frame of the output")
         ->check(one_of({"mandrel", "file"}))
         ->capture_default_str();
-    app.add_option("-o,--out", text.request.out, "table to write")->type_name("FILE")->required();
+    app.add_option("-o,--out", text.out, "table to write")->type_name("FILE")->required();
     return angle;
 }
 
-void add_mesh_size(CLI::App& app, StudyRequest& request) {
+void add_mesh_size(CLI::App& app, StudyArguments& request) {
     MeshSizeOptions& options = request.options;
     request.out = "study-mesh-size";
     app.add_option(
@@ -283,15 +290,15 @@ void add_mesh_size(CLI::App& app, StudyRequest& request) {
         ->capture_default_str();
 }
 
-void add_carry(CLI::App& app, CarryOptionsText& text) {
+void add_carry(CLI::App& app, CarryArguments& text) {
     CarryRequest& request = text.request;
     app.add_option("axis", text.axis,
                    "table of points along the frame's axis, CSV, columns below; or the frame's "
                    "mesh: .stl, .obj, .ply, .off")
         ->type_name("FILE")
         ->required();
-    app.add_flag("--from-end", request.from_the_end, "of a mesh: begin at its other end");
-    app.add_option("--bend-turn", request.bend_turn_deg,
+    app.add_flag("--from-end", text.from_the_end, "of a mesh: begin at its other end");
+    app.add_option("--bend-turn", text.bend_turn_deg,
                    "of a mesh: turn of the frame about its axis over each bend, degrees")
         ->type_name("DEG")
         ->capture_default_str();
@@ -414,7 +421,7 @@ int run(const std::vector<std::string>& arguments) {
         "meshwind");
     app.set_version_flag("--version", std::string("meshwind ") + kVersion);
     Common common;
-    WindOptions wind_options;
+    WindArguments wind_options;
     add_wind_options(app, wind_options, false);
     constexpr const char* kEvery = "Options of every command";
     app.add_option("--threads", common.threads, "threads to use; 0: one per core")
@@ -439,19 +446,19 @@ int run(const std::vector<std::string>& arguments) {
                  "write the program although a check failed; its head says so")
         ->group(kEvery);
 
-    WindOptions named_wind_options;
+    WindArguments named_wind_options;
     CLI::App* wind_command =
         app.add_subcommand("wind", "the main job: plan, post-process, check, write");
     add_wind_options(*wind_command, named_wind_options, true);
-    PostOptions post_options;
+    PostArguments post_options;
     CLI::App* post_command =
         app.add_subcommand("post", "a program for landing points made elsewhere");
     add_post(*post_command, post_options);
-    VerifyOptions verify_options;
+    VerifyArguments verify_options;
     CLI::App* verify_command =
         app.add_subcommand("verify", "wind a program again from its text, and check it");
     add_verify(*verify_command, verify_options);
-    InspectOptions inspect_options;
+    InspectArguments inspect_options;
     CLI::App* inspect = app.add_subcommand(
         "inspect", "what is read from a mandrel file: units, repairs, regions, rims, axis");
     add_inspect(*inspect, inspect_options);
@@ -460,14 +467,16 @@ int run(const std::vector<std::string>& arguments) {
     CLI::App* make = app.add_subcommand(
         "make", "write the mesh of a parametric mandrel: pipe, vessel, elbow, tee");
     add_make(*make, make_request, make_values);
-    TraceOptionsText trace_text;
+    TraceArguments trace_text;
     CLI::App* trace_command =
         app.add_subcommand("trace", "one fibre path over a mandrel, as a table");
     CLI::Option* angle = add_trace(*trace_command, trace_text);
-    std::string validate_file;
+    ValidateArguments validate_options;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
-    validate->add_option("file", validate_file, "JSON file")->type_name("FILE")->required();
-    CarryOptionsText carry_text;
+    validate->add_option("file", validate_options.file, "JSON file")->type_name("FILE");
+    validate->add_flag("--schema", validate_options.schema,
+                       "print the JSON Schema of job files instead");
+    CarryArguments carry_text;
     CLI::App* carry = app.add_subcommand(
         "carry", "a program for a robot that carries a frame through a fixed ring head");
     add_carry(*carry, carry_text);
@@ -477,7 +486,7 @@ int run(const std::vector<std::string>& arguments) {
     CLI::App* design_vessel = design->add_subcommand(
         "vessel", "a cylinder with isotensoid domes: what each winding angle gives");
     add_design_vessel(*design_vessel, design_request);
-    StudyRequest study_request;
+    StudyArguments study_request;
     CLI::App* study = app.add_subcommand("study", "studies of accuracy");
     study->require_subcommand(1);
     CLI::App* mesh_size =
@@ -553,7 +562,7 @@ int run(const std::vector<std::string>& arguments) {
         return run_mesh_size(study_request, common);
     }
     if (validate->parsed()) {
-        return run_validate(validate_file, common);
+        return run_validate(validate_options, common);
     }
     if (wind_options.mandrel.empty()) {
         std::cerr << app.help();

@@ -1,9 +1,8 @@
 #include "cli/make_command.h"
 
-#include "cli/output_files.h"
-#include "core/text_number.h"
-#include "core/units.h"
-#include "mesh/export.h"
+#include "core/files/write_file.h"
+#include "core/text/text_number.h"
+#include "mesh/io/export.h"
 
 namespace meshwind {
 namespace {
@@ -19,7 +18,7 @@ MakeValues values_of(const MakeRequest& request) {
         for (const MakeParameter& parameter : kind.parameters) {
             const auto value = values.find(parameter.name);
             if (value != values.end()) {
-                value->second = value_of_shown(parameter, value->second);
+                value->second = parameter.value_of_shown(value->second);
             }
         }
     }
@@ -28,30 +27,11 @@ MakeValues values_of(const MakeRequest& request) {
 
 }  // namespace
 
-double shown_value(const MakeParameter& parameter, double value) {
-    return parameter.unit == MakeUnit::Angle ? deg_from_rad(value) : value;
-}
-
-double value_of_shown(const MakeParameter& parameter, double shown) {
-    return parameter.unit == MakeUnit::Angle ? rad_from_deg(shown) : shown;
-}
-
-std::string shown_unit(const MakeParameter& parameter) {
-    switch (parameter.unit) {
-        case MakeUnit::Angle:
-            return "deg";
-        case MakeUnit::Ratio:
-            return "";
-        default:
-            return "mm";
-    }
-}
-
 std::string help_of(const MakeParameter& parameter) {
     std::string text(parameter.meaning);
-    const std::string unit = shown_unit(parameter);
+    const std::string unit(parameter.shown_unit());
     text += (unit.empty() ? "" : ", ") + unit + " [";
-    append_shortest(text, shown_value(parameter, parameter.value_default));
+    append_shortest(text, parameter.shown(parameter.value_default));
     return text + "]";
 }
 

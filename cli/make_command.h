@@ -4,16 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "mesh/make_kinds.h"
+#include "mesh/shapes/make_kinds.h"
 
 namespace meshwind {
-
-/// The number a user gives for a parameter, mm or degrees, from its value in mm or rad, and back.
-[[nodiscard]] double shown_value(const MakeParameter& parameter, double value);
-[[nodiscard]] double value_of_shown(const MakeParameter& parameter, double shown);
-
-/// "mm", "deg" or "".
-[[nodiscard]] std::string shown_unit(const MakeParameter& parameter);
 
 /// Line for the option's help: meaning, unit and default.
 [[nodiscard]] std::string help_of(const MakeParameter& parameter);

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "core/interrupt.h"
-#include "core/text_number.h"
+#include "core/text/text_number.h"
 
 namespace meshwind {
 namespace {

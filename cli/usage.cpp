@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "machines/strict_json.h"
+#include "core/text/strict_json.h"
 
 namespace meshwind {
 namespace {

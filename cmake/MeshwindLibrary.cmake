@@ -8,9 +8,111 @@ function(meshwind_library name)
     target_sources(
         ${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-    target_compile_features(${target} PUBLIC cxx_std_20)
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
     meshwind_flags(${target})
+    if(MESHWIND_UNITY GREATER 1)
+        meshwind_note_names(${ARG_HEADERS})
+        meshwind_unity(${target} ${ARG_SOURCES})
+    endif()
+endfunction()
+
+# meshwind_unity(TARGET SOURCE ...): several sources are compiled as one text, which takes half the time. No text has a source
+# that defines a name, in its anonymous namespace mostly, and another in which that name stands: each means by its names what
+# it means by itself, and results have the same digits (.ci/run golden). A source with a name of another's header stays by
+# itself. The names are read here, so that CMake has to run again after a change of sources; ./meshwind and ./test.sh see to
+# that.
+function(meshwind_unity target)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    # Variables may be called like another source's constants; only sources by themselves are main files.
+    target_compile_options(${target} PRIVATE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    set(groups 0)
+    foreach(source ${ARGN})
+        file(READ ${source} text)
+        # Each as long to compile as several others.
+        if(NOT source MATCHES "\\.cpp$" OR text MATCHES "#include <(CGAL|flann|regex)")
+            continue()
+        endif()
+        meshwind_names_in("${text}" defined used)
+        string(REGEX MATCH "#include \"([^\"]*)\"" own "${text}")
+        set(own "${CMAKE_MATCH_1}")
+        set(alone OFF)
+        foreach(name ${defined})
+            get_property(headers GLOBAL PROPERTY MESHWIND_HEADERS_WITH_${name})
+            if(headers AND NOT own IN_LIST headers)
+                set(alone ON)
+                break()
+            endif()
+        endforeach()
+        if(alone)
+            continue()
+        endif()
+        set(group 0)
+        while(group LESS groups)
+            set(fits ON)
+            foreach(name ${defined})
+                if(DEFINED used_${group}_${name})
+                    set(fits OFF)
+                    break()
+                endif()
+            endforeach()
+            foreach(name ${used})
+                if(DEFINED defined_${group}_${name})
+                    set(fits OFF)
+                    break()
+                endif()
+            endforeach()
+            if(fits AND count_${group} LESS MESHWIND_UNITY)
+                break()
+            endif()
+            math(EXPR group "${group} + 1")
+        endwhile()
+        if(group EQUAL groups)
+            math(EXPR groups "${groups} + 1")
+            set(count_${group} 0)
+        endif()
+        math(EXPR count_${group} "${count_${group}} + 1")
+        foreach(name ${defined})
+            set(defined_${group}_${name} ON)
+        endforeach()
+        foreach(name ${used})
+            set(used_${group}_${name} ON)
+        endforeach()
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+    endforeach()
+endfunction()
+
+# meshwind_note_names(HEADER ...): which names they declare.
+function(meshwind_note_names)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+    foreach(header ${ARGN})
+        file(READ ${header} text)
+        string(REPLACE "[[nodiscard]] " "" text "${text}")
+        meshwind_names_in("${text}" declared used)
+        foreach(name ${declared})
+            set_property(GLOBAL APPEND PROPERTY MESHWIND_HEADERS_WITH_${name} ${folder}/${header})
+        endforeach()
+    endforeach()
+endfunction()
+
+# Names that a source defines at the start of a line (types, and functions and constants behind their types; members of
+# classes have "::" instead), and all types, constants and calls in it but those of comments and members.
+function(meshwind_names_in text defined_in used_in)
+    string(REGEX REPLACE "(//|#)[^\n]*" "" text "\n${text}")
+    string(REGEX REPLACE "[][;]" "=" text "${text}")
+    string(REGEX MATCHALL "\n(struct|class|enum class|enum) [A-Za-z0-9_]+" types "${text}")
+    string(REGEX MATCHALL "\nusing [A-Za-z0-9_]+ =" aliases "${text}")
+    string(REGEX MATCHALL "\n[A-Za-z][A-Za-z0-9_:<>,&* ]*[A-Za-z0-9_>&*] [&*]?[A-Za-z0-9_]+ ?[({=]" others "${text}")
+    list(FILTER others EXCLUDE REGEX "^\n(using|namespace|struct|class|enum) ")
+    set(defined ${types} ${aliases} ${others})
+    list(TRANSFORM defined REPLACE " ?[({=]$" "")
+    list(TRANSFORM defined REPLACE "^.*[ &*\n]" "")
+    list(REMOVE_DUPLICATES defined)
+    string(REGEX REPLACE "[.>:][A-Za-z0-9_]+" "" text "${text}")
+    string(REGEX MATCHALL "k?[A-Z][A-Za-z0-9_]*|[a-z_][a-z0-9_]*\\(" used "${text}")
+    list(TRANSFORM used REPLACE "\\($" "")
+    list(REMOVE_DUPLICATES used)
+    set(${defined_in} ${defined} PARENT_SCOPE)
+    set(${used_in} ${used} PARENT_SCOPE)
 endfunction()
 
 # Warnings, reproducible arithmetic, sanitizers and the common headers for a target of this project.
@@ -24,15 +126,12 @@ endfunction()
 # A source file then compiles although it forgets to include what it uses: ./test.sh builds the library without.
 function(meshwind_use_precompiled target from)
     target_precompile_headers(${target} REUSE_FROM ${from})
-    # Out of such headers joined strings make GCC 12 warn falsely. The address sanitizer checks the same.
-    target_compile_options(
-        ${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>")
 endfunction()
 
 # meshwind_precompile(TARGET HEADER ...): headers of other projects that nearly every source file reads, compiled once.
 function(meshwind_precompile target)
-    file(TOUCH ${CMAKE_BINARY_DIR}/pch.cpp)
-    add_library(${target} OBJECT ${CMAKE_BINARY_DIR}/pch.cpp)
+    file(TOUCH ${PROJECT_BINARY_DIR}/pch.cpp)
+    add_library(${target} OBJECT ${PROJECT_BINARY_DIR}/pch.cpp)
     target_link_libraries(${target} PRIVATE Eigen3::Eigen)
     target_precompile_headers(
         ${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <set> <span>
@@ -40,10 +139,24 @@ function(meshwind_precompile target)
     meshwind_compile_flags(${target})
 endfunction()
 
+# Without fused multiply-add: the same digits on every x86-64 machine. Nobody reads what mathematical functions leave in
+# errno, or floating-point exceptions: without them -O3 makes the main job 6 % faster and changes no digit.
+#
+# NDEBUG is taken away again on purpose, where CMake's release types or a project around this one define it: assertions hold
+# in Release too, and end a run as an internal error instead of a wrong program. Eigen's stand in inner loops: off, but in
+# Debug. Headers have no assertions, so that a program built with NDEBUG and a library built without mean the same by them.
 function(meshwind_compile_flags target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    target_compile_options(
+        ${target} PRIVATE "$<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-fno-math-errno;-fno-trapping-math;-UNDEBUG>")
+    target_compile_definitions(${target} PRIVATE $<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:EIGEN_NO_DEBUG>)
     target_compile_options(
         ${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off
                           $<$<BOOL:${MESHWIND_WERROR}>:-Werror>)
+    # GCC 12 warns falsely of joined strings and unrolled loops. Clang and the address sanitizer check the same.
+    target_compile_options(
+        ${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>")
     if(MESHWIND_SANITIZE)
         # Without the checks of every access through a pointer, which double the time to build code that
         # uses Eigen: the address sanitizer sees what is out of bounds, null included.

@@ -87,14 +87,23 @@ prepare_page() {
     fi
 }
 
-# configure FOLDER OPTION...: CMake with Ninja; a folder configured for another place is made anew.
+# configure FOLDER SOURCE OPTION...: CMake with Ninja, several sources as one text, and lld and ccache where they are
+# installed; a folder configured for another place is made anew.
 configure() {
-    local folder=$root/build/$1
-    shift
+    local folder=$root/build/$1 source=$2 linker='' launcher=''
+    shift 2
     if [[ -f $folder/CMakeCache.txt ]] &&
-        ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+        ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$source" "$folder/CMakeCache.txt"; then
         rm -rf "$folder"
     fi
-    run_logged "$folder/configure.log" cmake -S "$root" -B "$folder" -G Ninja \
-        -DCMAKE_BUILD_TYPE=Release "$@"
+    ! command -v ld.lld >/dev/null || linker=-fuse-ld=lld
+    if command -v ccache >/dev/null; then
+        launcher=ccache
+        # As precompiled headers want it.
+        export CCACHE_DEPEND=${CCACHE_DEPEND:-1} \
+            CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
+    fi
+    run_logged "$folder/configure.log" cmake -S "$source" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+        -DMESHWIND_UNITY=8 "-DCMAKE_CXX_COMPILER_LAUNCHER=$launcher" "-DCMAKE_EXE_LINKER_FLAGS=$linker" \
+        "-DCMAKE_MODULE_LINKER_FLAGS=$linker" "$@"
 }

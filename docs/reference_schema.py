@@ -135,12 +135,11 @@ class _Page:
         return out
 
 
-def schema_page(path, title, more):
-    """The page of one schema, Markdown."""
-    schema = json.loads(path.read_text(encoding="utf-8"))
+def schema_page(schema, name, title, more):
+    """The page of one schema, Markdown. `name` is its file's."""
     page = _Page(schema)
     out = [f"<!-- {MADE} -->", f"# {title}", "",
-           *wrapped(f"{schema['description']} {more} The schema is `data/schema/{path.name}`.")]
+           *wrapped(f"{schema['description']} {more} The schema is `data/schema/{name}`.")]
     waiting = [("", schema)]
     while waiting:
         name, node = waiting.pop(0)

@@ -3,6 +3,7 @@
 
 #include "geodesic/shortest_path.h"
 #include "geodesic/trace.h"
+#include "mesh/surface.h"
 
 namespace meshwind {
 

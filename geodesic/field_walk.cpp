@@ -181,6 +181,7 @@ std::size_t FieldWalker::step(const Heading& from, double& h, const AimField& fi
 FieldWalk FieldWalker::walk(const AimField& field, double longest_mm, double longest_step_mm,
                             const Visit& visit) {
     FieldWalk walk;
+    entry_ = kNoEdge;  // another field may lead back over the edge that the last walk ended on
     Heading here = heading(field);
     int idle = 0;
     while (idle < kIdleSteps) {

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "geodesic/surface_path.h"
-#include "mesh/patch.h"
+#include "mesh/smooth/patch.h"
 
 namespace meshwind {
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geodesic/surface_path.h"
+#include "mesh/surface.h"
 
 namespace meshwind {
 

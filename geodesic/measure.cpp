@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/small_linear.h"
+
 namespace meshwind {
 namespace {
 
@@ -99,8 +101,7 @@ UnfoldedPath unfold(const SurfacePath& path) {
     for (std::size_t i = 0; i < path.size(); ++i) {
         const PathPoint& point = path[i];
         if (i > 0 && point.s_mm <= path[i - 1].s_mm) {
-            const Eigen::Quaterniond back =
-                Eigen::Quaterniond::FromTwoVectors(point.normal, path[i - 1].normal);
+            const Eigen::Quaterniond back = shortest_turn(point.normal, path[i - 1].normal);
             moved = moved * Eigen::Translation3d(point.position_mm) * back *
                     Eigen::Translation3d(-point.position_mm);
         }

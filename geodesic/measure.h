@@ -1,35 +1,15 @@
 /// What a finished path does under tension: bridging as a height, slip as a ratio.
 #pragma once
 
-#include <vector>
-
 #include "geodesic/trace.h"
 
 namespace meshwind {
-
-/// The taut string over a path: where the fibre really is. One entry per station.
-struct TautString {
-    std::vector<double> gap_mm;  ///< height of the string over the surface, >= 0
-    std::vector<double> slope;   ///< rise of the string against the path's tangent, mm per mm
-    double worst_gap_mm = 0.0;
-    std::size_t worst_station = 0;
-};
 
 /// The string is the least concave majorant of the path's height w(s) over the straight line, w'' =
 /// -kn with a kink of the crease angle at feature edges: the convex hull of the path in its own
 /// normal section. Exact in the flat limit; for a string that turns by theta between touching
 /// points the height is off by theta^2 / 4 of itself.
 [[nodiscard]] TautString taut_string(const SurfacePath& path);
-
-/// Slip measured from the positions of a finished path, independent of how it was steered.
-struct SlipMeasure {
-    std::vector<double> slip;  ///< per station, |kg| / kn; 0 where the fibre is straight or lifted
-    std::vector<double> kg_per_mm;  ///< per station, measured
-    std::vector<double> error;  ///< per station, stated error of the ratio; the friction where the
-                                ///< ratio has no meaning, infinite where nothing was measured
-    double worst = 0.0;
-    std::size_t worst_station = 0;
-};
 
 struct SlipOptions {
     double window_mm = 0.0;  ///< longest half length of the chords; 0: by the rule below

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/patch.h"
+#include "mesh/smooth/patch.h"
 
 namespace meshwind {
 namespace {

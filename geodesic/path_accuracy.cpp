@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/units.h"
 #include "geodesic/trace.h"
-#include "mesh/corner_fit.h"
+#include "mesh/smooth/corner_fit.h"
 
 namespace meshwind {
 namespace {

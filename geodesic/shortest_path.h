@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geodesic/surface_path.h"
+#include "mesh/surface.h"
 
 namespace meshwind {
 

@@ -1,4 +1,4 @@
-/// A point on the surface and a path over it.
+/// A point on the surface, a path over it, and what the fibre along the path does.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "mesh/surface.h"
+#include "mesh/triangle_soup.h"
 
 namespace meshwind {
 
@@ -30,6 +30,34 @@ struct PathPoint {
 
 using SurfacePath = std::vector<PathPoint>;
 
+/// The same way travelled backwards; arc length counts from the new start.
+[[nodiscard]] SurfacePath reversed(const SurfacePath& path);
+
+/// The taut string over a path: where the fibre really is. One entry per station.
+struct TautString {
+    std::vector<double> gap_mm;  ///< height of the string over the surface, >= 0
+    std::vector<double> slope;   ///< rise of the string against the path's tangent, mm per mm
+    double worst_gap_mm = 0.0;
+    std::size_t worst_station = 0;
+};
+
+/// Where the fibre of a station really is and leaves to: on the taut string over the path.
+struct StringPoint {
+    Eigen::Vector3d position_mm;
+    Eigen::Vector3d tangent;
+};
+[[nodiscard]] StringPoint string_point(const PathPoint& point, double gap_mm, double slope);
+
+/// Slip measured from the positions of a finished path, independent of how it was steered.
+struct SlipMeasure {
+    std::vector<double> slip;  ///< per station, |kg| / kn; 0 where the fibre is straight or lifted
+    std::vector<double> kg_per_mm;  ///< per station, measured
+    std::vector<double> error;  ///< per station, stated error of the ratio; the friction where the
+                                ///< ratio has no meaning, infinite where nothing was measured
+    double worst = 0.0;
+    std::size_t worst_station = 0;
+};
+
 /// The cubic between two places with unit tangents, as long as their chord, beside a point.
 struct CubicPlace {
     double share;  ///< of the chord, 0..1
@@ -51,15 +79,6 @@ struct CubicPlace {
     const Eigen::Vector3d bulge = r * in + s * out;
     return {s, a_mm + s * chord + s * r * bulge,
             (chord + (r - s) * bulge + s * r * (out - in)).normalized()};
-}
-
-/// Position of a surface point on its facet.
-[[nodiscard]] inline Eigen::Vector3d position_mm(const Surface& surface,
-                                                 const SurfacePoint& point) {
-    const auto& [a, b, c] = surface.face[static_cast<std::size_t>(point.face)];
-    return point.bary[0] * surface.position_mm[static_cast<std::size_t>(a)] +
-           point.bary[1] * surface.position_mm[static_cast<std::size_t>(b)] +
-           point.bary[2] * surface.position_mm[static_cast<std::size_t>(c)];
 }
 
 }  // namespace meshwind

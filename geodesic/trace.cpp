@@ -356,23 +356,4 @@ TraceResult trace(const Surface& surface, const SurfacePoint& start, const Vecto
     return Walker(surface, start, direction, steering, options).run();
 }
 
-Vector3d smooth_normal(const Surface& surface, const SurfacePoint& point) {
-    const auto& corner = surface.corner[at(point.face)];
-    return (point.bary[0] * surface.normal[at(corner[0])] +
-            point.bary[1] * surface.normal[at(corner[1])] +
-            point.bary[2] * surface.normal[at(corner[2])])
-        .normalized();
-}
-
-SurfacePath reversed(const SurfacePath& path) {
-    SurfacePath back(path.rbegin(), path.rend());
-    const double length = path.empty() ? 0.0 : path.back().s_mm;
-    for (PathPoint& point : back) {
-        point.tangent = -point.tangent;
-        point.kg_per_mm = -point.kg_per_mm;
-        point.s_mm = length - point.s_mm;
-    }
-    return back;
-}
-
 }  // namespace meshwind

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "geodesic/on_surface.h"
 #include "geodesic/surface_path.h"
 
 namespace meshwind {
@@ -53,20 +54,14 @@ struct TraceResult {
 /// sides are used. Positions lie on the facets. Second order in edge length.
 /// Source: the walk of polthier_1998_straightest, with the facet's angle rule replaced.
 ///
-/// TraceMethod::Patches: t' = kg b - kn n in the parameters of each curved patch (mesh/patch.h);
-/// edges are crossed by unfolding about the edge's tangent. Where two patches meet with slightly
-/// different normals, the turn of the normal there is part of kn and is steered for, so that what
-/// is steered for adds up to the turn of the normal along the whole path. Positions lie on the
-/// patches. Order 4 in edge length on smooth surfaces.
-/// Accuracy of both: tests/geodesic/trace_order_test.cpp.
+/// TraceMethod::Patches: t' = kg b - kn n in the parameters of each curved patch
+/// (mesh/smooth/patch.h); edges are crossed by unfolding about the edge's tangent. Where two
+/// patches meet with slightly different normals, the turn of the normal there is part of kn and is
+/// steered for, so that what is steered for adds up to the turn of the normal along the whole path.
+/// Positions lie on the patches. Order 4 in edge length on smooth surfaces. Accuracy of both:
+/// tests/geodesic/trace_order_test.cpp.
 [[nodiscard]] TraceResult trace(const Surface& surface, const SurfacePoint& start,
                                 const Eigen::Vector3d& direction, const Steering& steering = {},
                                 const TraceOptions& options = {});
-
-/// Smooth outward unit normal at a surface point, interpolated from the face's corners.
-[[nodiscard]] Eigen::Vector3d smooth_normal(const Surface& surface, const SurfacePoint& point);
-
-/// The same way travelled backwards; arc length counts from the new start.
-[[nodiscard]] SurfacePath reversed(const SurfacePath& path);
 
 }  // namespace meshwind

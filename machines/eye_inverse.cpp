@@ -5,10 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/SVD>
-
 #include "core/error.h"
-#include "core/text_number.h"
+#include "core/small_linear.h"
+#include "core/text/text_number.h"
 #include "core/units.h"
 #include "machines/arm_inverse.h"
 #include "machines/damped_least_squares.h"
@@ -290,7 +289,7 @@ double NumericEyeInverse::singular_ratio(const std::vector<double>& joints) cons
         // An axis unit is a mm or as far as a rad takes the eye.
         jacobian.col(j) << (linear ? 1.0 : 1.0 / length_mm_) * m.point, m.direction;
     }
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues();
+    const Eigen::VectorXd values = singular_values(jacobian);
     return values[0] > 0.0 ? values[kNeeded - 1] / values[0] : 0.0;
 }
 

@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "mesh/triangle_soup.h"
+
 namespace meshwind {
 
 enum class AxisType { Linear, Rotary };
@@ -41,6 +43,7 @@ struct Capsule {
 /// A triangle mesh fixed to a link, machine frame at zero, in mm.
 struct EnvelopeMesh {
     std::string file;  ///< path as it can be opened (relative names count from the machine file)
+    TriangleSoup triangles{};  ///< of the file; empty until they are read (load_machine)
 };
 
 /// A piece of the machine that must not touch the mandrel.
@@ -82,7 +85,7 @@ struct FibreLimits {
 enum class FeedMode { InverseTime, PerMinute };
 
 struct Controller {
-    std::string dialect;  ///< a name known to postproc/dialect.h
+    std::string dialect;  ///< a name known to postproc/nc/dialect.h
     FeedMode feed = FeedMode::InverseTime;
     std::vector<std::string> header;  ///< lines put before the first move as they are
     std::vector<std::string> footer;  ///< lines put after the last move as they are

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/text/strict_json.h"
 #include "core/units.h"
-#include "machines/strict_json.h"
 
 namespace meshwind {
 namespace {
@@ -126,7 +126,7 @@ std::variant<Capsule, EnvelopeMesh> read_shape(const JsonValue& value,
     }
     (void)value.object({"type", "link", "file", "note"});
     const std::filesystem::path name = object.required("file").string();
-    return EnvelopeMesh{(name.is_absolute() ? name : folder / name).string()};
+    return EnvelopeMesh{.file = (name.is_absolute() ? name : folder / name).string()};
 }
 
 MachineBody read_body(const JsonValue& value, const std::vector<Axis>& mandrel_chain,

@@ -8,7 +8,7 @@
 
 namespace meshwind {
 
-/// \throws IoError io.cannot_read; InputError json.* (machines/strict_json.h), and
+/// \throws IoError io.cannot_read; InputError json.* (core/text/strict_json.h), and
 ///   machine.schema            another schema than "meshwind-machine-1"
 ///   machine.letter            an axis letter that is not one of A to Z
 ///   machine.duplicate_letter  two axes with one letter

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SVD>
-
+#include "core/small_linear.h"
 #include "core/units.h"
 #include "machines/damped_least_squares.h"
 #include "machines/drawn_starts.h"
@@ -236,7 +235,7 @@ void PoseInverse::measure(std::span<const double> joints, PoseState& state) cons
         column.tail<3>() *= length_mm_;
         column /= column.norm();
     }
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues();
+    const Eigen::VectorXd values = singular_values(jacobian);
     state.singular = values[values.size() - 1] / values[0];
     state.nearest = Singularity::Other;
 }

@@ -3,18 +3,14 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "mesh/jet_fit.h"
+#include "mesh/height_jet.h"
 #include "mesh/triangle_soup.h"
 
 namespace meshwind {
-
-/// Edge e of a face runs from its corner e to its corner (e + 1) % 3.
-inline constexpr std::int32_t kNoFace = -1;
 
 /// How the smooth normals and shape operators were obtained.
 struct FitReport {
@@ -40,7 +36,8 @@ struct alignas(32) WalkCorner {
     Eigen::Matrix<double, 6, 1> shape_operator_per_mm;  ///< xx, yy, zz, xy, xz, yz
 };
 
-/// Positions, adjacency, smooth normals and curvature. Vertices on a feature edge have one normal
+/// Positions, adjacency, smooth normals and curvature. Edge e of a face runs from its corner e to
+/// its corner (e + 1) % 3. Vertices on a feature edge have one normal
 /// per smooth side, so normals and shape operators belong to `corner` indices, not to vertices.
 struct Surface {
     std::vector<Eigen::Vector3d> position_mm;       ///< per vertex
@@ -60,23 +57,5 @@ struct Surface {
     double mean_edge_mm = 0.0;
     FitReport fit;
 };
-
-/// What `freeze_surface` needs beside the triangles; all spans are per face and as long as
-/// `soup.faces`.
-struct FreezeInput {
-    std::span<const std::array<std::uint8_t, 3>> feature;  ///< 1 = feature edge
-    std::span<const std::int32_t> region;
-    std::span<const std::array<std::int32_t, 3>> rim;  ///< rim id per edge, -1 elsewhere
-};
-
-/// Flat arrays from an oriented manifold soup in the mandrel frame. Normals and shape operators
-/// come from a local least-squares height fit, of degree four where the neighbourhood allows; never
-/// across a feature edge. \pre soup is manifold, oriented, without degenerate faces (see repair.h)
-/// Accuracy: tests/mesh/surface_test.cpp (normals fourth order, curvature third in edge length).
-[[nodiscard]] Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input);
-
-/// Replaces the fit about a corner index, where the surface is known. \param jet passes through the
-/// corner's vertex
-void set_jet(Surface& surface, std::size_t corner, const Jet& jet);
 
 }  // namespace meshwind

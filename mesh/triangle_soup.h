@@ -9,6 +9,9 @@
 
 namespace meshwind {
 
+/// Index of the face across an edge at which a surface ends.
+inline constexpr std::int32_t kNoFace = -1;
+
 struct TriangleSoup {
     std::vector<Eigen::Vector3d> points_mm;          ///< n x 3
     std::vector<std::array<std::int32_t, 3>> faces;  ///< m x 3, counter-clockwise seen from outside

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/text_number.h"
+#include "core/text/text_number.h"
 #include "study/path_errors.h"
 
 namespace meshwind {
@@ -39,7 +39,7 @@ struct MandrelPaths {
 };
 
 MandrelPaths exact_paths(const StudyMandrel& mandrel, const MeshSizeOptions& options) {
-    MandrelPaths paths{random_starts(mandrel, options.paths, options.seed), {}};
+    MandrelPaths paths{random_starts(mandrel, options.paths, options.context.seed), {}};
     for (const double slip_ratio : options.slip_ratios) {
         std::vector<ReferencePath> exact(paths.starts.size());
         parallel_for(exact.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -82,7 +82,7 @@ public:
         MeshOutcome outcome;
         TriangleSoup soup;
         try {
-            soup = mandrel_.mesh({edge_mm, options_.irregular, options_.seed});
+            soup = mandrel_.mesh({edge_mm, options_.irregular, options_.context.seed});
         } catch (const InputError& error) {
             outcome.remark = error.what();
             return outcome;
@@ -231,10 +231,9 @@ public:
     Steps(const MeshSizeOptions& options, std::size_t count) : options_(options), count_(count) {}
 
     void begin(const std::string& step) {
-        if (options_.progress) {
-            const std::scoped_lock lock(mutex_);
-            options_.progress(step, static_cast<double>(done_) / static_cast<double>(count_));
-        }
+        const std::scoped_lock lock(mutex_);
+        options_.context.report_progress(step,
+                                         static_cast<double>(done_) / static_cast<double>(count_));
     }
     void end() {
         const std::scoped_lock lock(mutex_);

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/run_context.h"
 #include "study/study_mandrel.h"
 #include "study/tangent_rules.h"
 
@@ -45,10 +45,8 @@ struct MeshSizeOptions {
     double length_mm = 300.0;                   ///< > 0, or to the rim
     double free_length_mm = 200.0;              ///< > 0; as in fu_2009_post_processing
     bool irregular = true;
-    std::uint64_t seed = 1;
-    bool timing = false;  ///< measure, on one thread; the rest does not depend on it
-    /// Called from one thread at a time with what is worked on and the share done.
-    std::function<void(const std::string& step, double share)> progress{};
+    bool timing = false;   ///< measure, on one thread; the rest does not depend on it
+    RunContext context{};  ///< progress is reported from one thread at a time
 
     /// \throws InputError study.not_positive, study.slip_ratio, study.too_long
     void validate() const;

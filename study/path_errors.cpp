@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/small_linear.h"
 #include "geodesic/measure.h"
 
 namespace meshwind {
@@ -26,7 +27,7 @@ constexpr double kTrustedSlip = 0.05;
 constexpr double kLeastSpacingEdges = 1e-3;
 
 Vector3d turned_between(const Vector3d& vector, const Vector3d& from, const Vector3d& to) {
-    return Eigen::Quaterniond::FromTwoVectors(from, to) * vector;
+    return shortest_turn(from, to) * vector;
 }
 
 void add_slip(const Surface& surface, const SurfacePath& path, const PathErrorOptions& options,

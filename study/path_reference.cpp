@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
-#include "mesh/patch.h"
+#include "mesh/smooth/patch.h"
 
 namespace meshwind {
 namespace {

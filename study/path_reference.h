@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include "geodesic/trace.h"
-#include "mesh/make_kinds.h"
 #include "mesh/ray_query.h"
+#include "mesh/shapes/make_kinds.h"
 
 namespace meshwind {
 

@@ -7,14 +7,15 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
-#include "core/text_number.h"
+#include "core/random.h"
+#include "core/text/text_number.h"
 #include "core/units.h"
-#include "mesh/coarsen.h"
 #include "mesh/edge_table.h"
-#include "mesh/feature_edges.h"
-#include "mesh/refine.h"
-#include "mesh/rims.h"
-#include "winding/random.h"
+#include "mesh/segment/feature_edges.h"
+#include "mesh/segment/rims.h"
+#include "mesh/shapes/coarsen.h"
+#include "mesh/smooth/freeze.h"
+#include "mesh/smooth/refine.h"
 
 namespace meshwind {
 namespace {

@@ -2,4 +2,4 @@
 file(READ ${IN} page)
 file(
     WRITE ${OUT}
-    "#include \"cli/report_page.h\"\n\nstd::string_view meshwind::page_template() {\n    return R\"meshwind~(${page})meshwind~\";\n}\n")
+    "#include \"report/report_page.h\"\n\nstd::string_view meshwind::page_template() {\n    return R\"meshwind~(${page})meshwind~\";\n}\n")

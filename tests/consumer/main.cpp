@@ -1,13 +1,17 @@
 #include <cstdio>
 
-#include "core/text_number.h"
-#include "mesh/triangle_soup.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "pipeline/load_inputs.h"
+#include "pipeline/wind.h"
+#include "report/report.h"
 
-int main() {
-    meshwind::TriangleSoup soup;
-    soup.points_mm = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}};
-    soup.faces = {{0, 1, 2}};
-    const std::string area = meshwind::fixed(meshwind::area_mm2(soup), 3);
-    std::puts(area.c_str());
-    return area == "6.000" ? 0 : 1;
+// consumer MANDREL MACHINE: program and summary on stdout; nothing is written.
+int main(int /*count*/, char** arguments) {
+    const meshwind::Machine machine = meshwind::load_machine(arguments[2]);
+    const meshwind::Job job;
+    const meshwind::Run run = meshwind::wind(
+        meshwind::load_mandrel(arguments[1], meshwind::mandrel_options(job)), machine, job);
+    std::puts(run.layers.front().programs.front().text.c_str());
+    std::puts(meshwind::report_text(run).c_str());
+    return run.passed() ? 0 : 1;
 }

@@ -4,7 +4,7 @@
 
 #include "core/parallel.h"
 #include "geodesic/path_accuracy.h"
-#include "mesh/mandrel.h"
+#include "mesh/mandrel/load_mandrel.h"
 #include "tests/fuzz/harness.h"
 #include "tests/fuzz/spoilt_mesh.h"
 

@@ -1,7 +1,7 @@
 // A job file. What was read, written again, must be read alike.
 #include <string>
 
-#include "cli/job.h"
+#include "pipeline/job/job.h"
 #include "tests/fuzz/harness.h"
 
 namespace meshwind::fuzz {

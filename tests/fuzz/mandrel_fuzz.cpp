@@ -1,8 +1,8 @@
 // The whole build of a mandrel from a spoilt mesh, and what is found out about it.
 #include "core/parallel.h"
-#include "mesh/mandrel.h"
-#include "mesh/revolution.h"
-#include "mesh/tube.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/revolution/revolution.h"
+#include "mesh/tube/tube.h"
 #include "tests/fuzz/harness.h"
 #include "tests/fuzz/spoilt_mesh.h"
 

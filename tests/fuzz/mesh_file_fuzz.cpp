@@ -1,18 +1,19 @@
-// A mesh file: '0' STL, '1' OBJ, '2' PLY, '3' OFF, then its bytes.
-#include <array>
+// A mesh file: '0' STL, '1' OBJ, and on as kMeshReaders has them, then its bytes.
+#include <string>
 
-#include "mesh/import.h"
+#include "mesh/io/import.h"
+#include "mesh/io/mesh_readers.h"
 #include "tests/fuzz/harness.h"
 
 namespace meshwind::fuzz {
 
 void run(std::span<const std::uint8_t> bytes) {
-    static constexpr std::array<const char*, 4> kNames = {"a.stl", "a.obj", "a.ply", "a.off"};
     if (bytes.empty()) {
         return;
     }
+    const auto format = static_cast<std::uint8_t>(bytes[0] - '0') % kMeshReaders.size();
     const TriangleSoup soup =
-        parse_triangles(text_of(bytes.subspan(1)), kNames[bytes[0] % kNames.size()]);
+        parse_triangles(text_of(bytes.subspan(1)), "a" + std::string(kMeshReaders[format].ending));
     for (const auto& face : soup.faces) {
         for (const std::int32_t v : face) {
             if (v < 0 || static_cast<std::size_t>(v) >= soup.points_mm.size()) {

@@ -8,12 +8,12 @@
 #include <string>
 
 #include "machines/machine_json.h"
-#include "mesh/extension.h"
-#include "mesh/make.h"
-#include "mesh/mandrel.h"
-#include "postproc/dialect.h"
-#include "postproc/krl.h"
-#include "postproc/verify.h"
+#include "mesh/mandrel/extension.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/shapes/make.h"
+#include "postproc/nc/dialect.h"
+#include "postproc/ringhead/krl.h"
+#include "postproc/verify/verify.h"
 #include "tests/fuzz/harness.h"
 
 namespace meshwind::fuzz {
@@ -41,8 +41,7 @@ Machine machine_of(const char* dialect) {
 // What a program is wound on, and by.
 struct World {
     explicit World(const char* dialect)
-        : machine(machine_of(dialect)),
-          envelope(head_envelope(machine, [](const std::string&) { return TriangleSoup{}; })) {
+        : machine(machine_of(dialect)), envelope(head_envelope(machine)) {
         CylinderShape tube;
         tube.radius_mm = 50.0;
         tube.length_mm = 160.0;

@@ -2,9 +2,9 @@
 #include <string>
 
 #include "machines/machine_json.h"
-#include "postproc/frame_axis.h"
-#include "postproc/landing_csv.h"
-#include "postproc/plan_tables.h"
+#include "postproc/ringhead/frame_axis.h"
+#include "postproc/tables/landing_csv.h"
+#include "postproc/tables/plan_tables.h"
 #include "tests/fuzz/harness.h"
 
 namespace meshwind::fuzz {

@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 
 #include "core/units.h"
-#include "mesh/make_kinds.h"
-#include "tests/geodesic/reference.h"
-#include "tests/mesh/frozen.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/frozen.h"
+#include "tests/support/reference.h"
 
 namespace meshwind {
 namespace {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "geodesic/measure.h"
-#include "mesh/make.h"
-#include "tests/geodesic/hourglass.h"
-#include "tests/geodesic/reference.h"
+#include "mesh/shapes/make.h"
+#include "tests/support/hourglass.h"
+#include "tests/support/reference.h"
 
 namespace meshwind {
 namespace {

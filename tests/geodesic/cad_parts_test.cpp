@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "../mesh/shapes.h"
-#include "mesh/export.h"
-#include "mesh/make_kinds.h"
-#include "mesh/mandrel.h"
-#include "reference.h"
+#include "mesh/io/export.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/reference.h"
+#include "tests/support/shapes.h"
 
 namespace meshwind {
 namespace {

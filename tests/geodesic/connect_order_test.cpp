@@ -7,8 +7,8 @@
 #include <GeographicLib/GeodesicExact.hpp>
 
 #include "geodesic/connect.h"
-#include "mesh/make_kinds.h"
-#include "reference.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/reference.h"
 
 namespace meshwind {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "../mesh/shapes.h"
-#include "mesh/make_kinds.h"
 #include "mesh/ray_query.h"
-#include "reference.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/reference.h"
+#include "tests/support/shapes.h"
 
 namespace meshwind {
 namespace {

@@ -9,9 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/make.h"
-#include "tests/geodesic/reference.h"
-#include "tests/mesh/shapes.h"
+#include "core/units.h"
+#include "mesh/shapes/make.h"
+#include "tests/support/reference.h"
+#include "tests/support/shapes.h"
 
 namespace meshwind {
 namespace {
@@ -277,6 +278,27 @@ TEST(FieldWalk, SlidesAlongAnEdgeThatBothSidesLeadInto) {
     EXPECT_NEAR(walker.position_mm().y(), 20.0, 1e-6);
     // 12 mm across take 6 mm along; kArrival_mm at each edge passed.
     EXPECT_NEAR(walk.length_mm, std::hypot(12.0, 6.0) + 43.0, 1e-6);
+}
+
+// The last edge crossed says nothing of where the next field leads: at a vertex most lead back.
+TEST(FieldWalk, LeavesAVertexIntoAnyDirection) {
+    const Surface flat = plate();
+    constexpr double kWay_mm = 12.0;
+    for (int from = 0; from < 16; ++from) {
+        for (int into = 0; into < 16; ++into) {
+            const auto direction = [](int i) {
+                const double angle = 2.0 * kPi * (i + 0.3) / 16.0;
+                return Vector3d(std::cos(angle), std::sin(angle), 0.0);
+            };
+            FieldWalker walker(flat, test::patch_point(flat, 3.0 * direction(from)));
+            ASSERT_TRUE(walker.move_under(Vector3d::Zero()));
+            (void)walker.walk(constant(direction(from)), 1e-12, kNoLimit);
+            const FieldWalk walk = walker.walk(constant(direction(into)), kWay_mm, kNoLimit);
+            EXPECT_EQ(walk.stop, FieldStop::Length);
+            EXPECT_LT((walker.position_mm() - kWay_mm * direction(into)).norm(), 1e-6)
+                << from << " into " << into;
+        }
+    }
 }
 
 TEST(FieldWalk, ShowsBothSidesOfAFeatureEdge) {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "../mesh/shapes.h"
-#include "mesh/make_kinds.h"
-#include "reference.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/reference.h"
+#include "tests/support/shapes.h"
 
 namespace meshwind {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/make_kinds.h"
-#include "mesh/refine.h"
-#include "reference.h"
+#include "mesh/shapes/make_kinds.h"
+#include "mesh/smooth/refine.h"
+#include "tests/support/reference.h"
 
 namespace meshwind {
 namespace {

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "along_path.h"
-#include "mesh/make_kinds.h"
-#include "reference.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/along_path.h"
+#include "tests/support/reference.h"
 
 namespace meshwind {
 namespace {

@@ -6,8 +6,8 @@
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/GeodesicExact.hpp>
 
-#include "mesh/make_kinds.h"
-#include "reference.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/reference.h"
 
 namespace meshwind {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "mesh/mandrel/load_mandrel.h"
 
 namespace meshwind {
 namespace {

@@ -1,22 +1,27 @@
 #!/bin/bash
-# check_headers.sh [ROOT]: every header compiles alone. Where a source file includes it before all else, compiling that
-# file shows it, and nothing is left to do; the others are compiled here. All of them compile together in one source as
-# well: no name stands for two things. Exit 1 when something does not compile.
+# check_headers.sh [together]: all headers compile together in one source, so no name stands for two things; and, without
+# "together", each compiles alone. What cmake/MeshwindLibrary.cmake compiles once for all is compiled once here too: that a
+# header includes what it uses of it, check_includes.py sees. Exit 1 when something does not compile.
 set -euo pipefail
-cd "${1:-"$(dirname -- "${BASH_SOURCE[0]}")/../.."}"
+cd "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 
-folders=(core mesh geodesic winding machines postproc study cli)
-first=$(find "${folders[@]}" -name '*.cpp' -exec grep -m 1 -h '^ *# *include' {} \; | sort -u)
+folders=(core mesh geodesic winding machines postproc study pipeline report cli)
+flags=(-std=c++20 -Wall -Wextra -Wshadow -Wconversion -Werror -I. -isystem /usr/include/eigen3)
+mapfile -t headers < <(find "${folders[@]}" -name '*.h' | LC_ALL=C sort)
 broken=0
-alone=0
-compile() {
-    c++ -std=c++20 -Wall -Wextra -Wshadow -Wconversion -Werror -fsyntax-only -I. -isystem /usr/include/eigen3 -x c++ -
-}
-while read -r header; do
-    [[ $'\n'$first$'\n' != *$'\n'"#include \"$header\""$'\n'* ]] || continue
-    alone=$((alone + 1))
-    compile <<<"#include \"$header\"" || broken=1
-done < <(find "${folders[@]}" -name '*.h' | LC_ALL=C sort)
-find "${folders[@]}" -name '*.h' | LC_ALL=C sort | sed 's/.*/#include "&"/' | compile || broken=1
-echo "$alone headers that no source file includes first"
+printf '#include "%s"\n' "${headers[@]}" | c++ "${flags[@]}" -fsyntax-only -x c++ - || broken=1
+if [[ ${1:-} == together ]]; then
+    echo "${#headers[@]} headers together"
+    exit "$broken"
+fi
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mapfile -t common < <(sed -n '/target_precompile_headers($/,/)$/p' cmake/MeshwindLibrary.cmake | grep -o '<[A-Za-z/]*>')
+((${#common[@]} > 10)) || { echo "cmake/MeshwindLibrary.cmake is read wrongly"; exit 1; }
+printf '#include %s\n' "${common[@]}" >"$work/common.h"
+clang++-14 "${flags[@]}" -x c++-header "$work/common.h" -o "$work/common.pch"
+printf '%s\0' "${headers[@]}" | xargs -0 -P "$(nproc)" -I '{}' \
+    clang++-14 "${flags[@]}" -Wno-pragma-once-outside-header -Wno-unused-const-variable -include-pch "$work/common.pch" -fsyntax-only -x c++ '{}' || broken=1
+echo "${#headers[@]} headers together, and each alone"
 exit "$broken"

@@ -12,7 +12,8 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ["core", "mesh", "geodesic", "winding", "machines", "postproc", "study", "cli"]
+FOLDERS = ["core", "mesh", "geodesic", "winding", "machines", "postproc", "study", "pipeline", "report",
+           "cli"]
 DEFINITION = re.compile(
     r"^(?:class|struct|union|enum class|enum struct|enum)\s+(?:alignas\([^)]*\)\s+)?(\w+)\b(?!::)[^;]*$")
 

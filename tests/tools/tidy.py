@@ -31,11 +31,18 @@ def flags_of(entry):
             next(words)
         elif word.startswith(("-Winvalid-pch", "-Wno-")):  # of headers compiled by GCC
             continue
-        elif word.startswith(("-D", "-I", "-O", "-W", "-f", "-std=")):
+        elif word.startswith(("-D", "-U", "-I", "-O", "-W", "-f", "-std=")):
             kept.append(word)
         elif word == "-isystem":
             kept += [word, next(words)]
     return kept
+
+
+def sources_of(file):
+    """Those that CMake has compiled as one text, for this one."""
+    if not file.name.startswith("unity_"):
+        return [file]
+    return [pathlib.Path(name) for name in re.findall(r'^#include "(.*)"', file.read_text(), re.MULTILINE)]
 
 
 def names_in(source):
@@ -59,7 +66,7 @@ def batches_of(sources):
 
 
 def tidy(source, flags, folders):
-    filters = f"--header-filter=/({'|'.join(folders)})/[a-z_0-9]+\\.(h|cpp)$"
+    filters = f"--header-filter=/({'|'.join(folders)})/([a-z_]+/)?[a-z_0-9]+\\.(h|cpp)$"
     run = subprocess.run(["clang-tidy-14", "--quiet", filters, str(source), "--", *flags], cwd=ROOT, text=True,
                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     return run.returncode, run.stdout + (run.stderr if run.returncode else "")
@@ -79,9 +86,9 @@ def main():
     build, jobs, folders = pathlib.Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
     groups = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        source = pathlib.Path(entry["file"])
-        if source.parent.parent == ROOT and source.parent.name in folders:
-            groups.setdefault((source.parent.name, tuple(flags_of(entry))), []).append(source)
+        for source in sources_of(pathlib.Path(entry["file"])):
+            if ROOT in source.parents and source.relative_to(ROOT).parts[0] in folders:
+                groups.setdefault((source.parent.name, tuple(flags_of(entry))), []).append(source)
     if not groups:
         sys.exit("tidy: no sources")
     scratch = build / "tidy"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Walks through the pages as a newcomer would: runs every ```sh block of README.md, docs/tutorial.md and docs/how-to.
 
-    walk.py [--program build/release/cli/meshwind] [--exact] [--keep] [PAGE.md ...]
+    walk.py [--program build/release/cli/meshwind] [--exact] [--outputs DIR] [--keep] [PAGE.md ...]
 
 The commands run from top to bottom, a shell for each page, in a copy of the files that git tracks or would add, in a
 temporary folder. Stops at the first command that fails and names page and line. A ```text block behind a ```sh block is
@@ -134,6 +134,7 @@ def main():
     parser.add_argument("--program", default=ROOT / "build/release/cli/meshwind", help="the built meshwind")
     parser.add_argument("--fresh", action="store_true", help="let the copy build its own meshwind")
     parser.add_argument("--exact", action="store_true", help="compare the numbers that are shown, too")
+    parser.add_argument("--outputs", type=pathlib.Path, help="where the copy's meshwind-out goes in the end")
     parser.add_argument("--keep", action="store_true", help="leave the copy where it is, and say where")
     options = parser.parse_args()
     pages = options.pages or PAGES + sorted(str(p.relative_to(ROOT)) for p in (ROOT / "docs/how-to").glob("*.md"))
@@ -153,6 +154,8 @@ def main():
                 print(f"walk: {wrong}")
                 return 1
             print(f"walk: {name}: {count} blocks, {time.monotonic() - begun:.0f} s", flush=True)
+        if options.outputs:
+            shutil.copytree(folder / "meshwind-out", options.outputs)
         return 0
     finally:
         if options.keep:

@@ -1,0 +1,318 @@
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/smooth/freeze.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/text/text_number.h"
+#include "core/units.h"
+#include "mesh/io/import.h"
+#include "mesh/repair/repair.h"
+#include "mesh/repair/weld.h"
+#include "mesh/revolution/crease_rings.h"
+#include "mesh/revolution/revolution.h"
+#include "mesh/segment/rims.h"
+#include "mesh/segment/segment.h"
+#include "mesh/segment/spindle_axis.h"
+
+namespace meshwind {
+namespace {
+
+// Beyond these no part is real and single precision (Embree) would overflow or lose all digits.
+constexpr double kLargestCoordinate = 1e9;  // file units
+constexpr double kSmallestDiagonal = 1e-6;  // file units
+
+constexpr double kSmallestInMm = 10.0;  // a part shorter than this many units is taken for metres
+
+void check_options(const MandrelOptions& options, const std::string& name) {
+    if (!std::isfinite(options.unit_mm) || options.unit_mm < 0.0) {
+        throw InputError("mesh.bad_unit", name,
+                         "the unit must be a length above 0 mm, give mm, cm, m or in");
+    }
+    if (options.axis &&
+        (!options.axis->origin.allFinite() || !options.axis->direction.allFinite() ||
+         options.axis->direction.norm() == 0.0)) {
+        throw InputError("mesh.bad_axis", name,
+                         "the spindle axis needs a finite origin and a direction other than 0");
+    }
+}
+
+void check_triangles(const TriangleSoup& soup, const std::string& name) {
+    const auto count = static_cast<std::int32_t>(soup.points_mm.size());
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        for (const std::int32_t v : soup.faces[f]) {
+            if (v < 0 || v >= count) {
+                throw InputError("mesh.bad_index", name,
+                                 "triangle " + std::to_string(f + 1) + " names point " +
+                                     std::to_string(v) + " of " + std::to_string(count) +
+                                     ", export the part again");
+            }
+            if (!soup.points_mm[static_cast<std::size_t>(v)].allFinite()) {
+                throw InputError("mesh.not_finite", name,
+                                 "triangle " + std::to_string(f + 1) +
+                                     " has a coordinate that is no finite number, export again");
+            }
+        }
+    }
+    const bool far_out = std::any_of(
+        soup.points_mm.begin(), soup.points_mm.end(),
+        [](const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() > kLargestCoordinate; });
+    if (far_out || (!soup.faces.empty() && diagonal_mm(soup) < kSmallestDiagonal)) {
+        throw InputError("mesh.size_out_of_range", name,
+                         far_out ? "has coordinates beyond 1e9 units, the file is damaged: export "
+                                   "it again"
+                                 : "is smaller than 1e-6 units, export it in another unit");
+    }
+    if (soup.faces.empty()) {
+        throw InputError("mesh.no_triangles", name,
+                         "holds no triangle, export the part's surface as triangles");
+    }
+}
+
+void decide_unit(Mandrel& mandrel, const MandrelOptions& options, double stated_mm) {
+    if (options.unit_mm > 0.0) {
+        mandrel.unit_mm = options.unit_mm;
+        mandrel.unit_rule = "given";
+        return;
+    }
+    if (stated_mm > 0.0) {
+        mandrel.unit_mm = stated_mm;
+        mandrel.unit_rule = "file";
+        return;
+    }
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : mandrel.whole.points_mm) {
+        box.extend(p);
+    }
+    const Eigen::Vector3d size = box.sizes();
+    const bool metres = size.maxCoeff() < kSmallestInMm;
+    mandrel.unit_mm = metres ? 1000.0 : 1.0;
+    mandrel.unit_rule = "assumed";
+    if (metres) {
+        mandrel.remarks.push_back("the file states no unit and measures " + fixed(size.x(), 2) +
+                                  " x " + fixed(size.y(), 2) + " x " + fixed(size.z(), 2) +
+                                  " units: taken for metres, pass --units mm if it is not");
+    }
+}
+
+void keep_named_regions(Segmentation& segmentation, const std::vector<std::int32_t>& ids,
+                        const std::string& name) {
+    if (ids.empty()) {
+        return;
+    }
+    const std::set<std::int32_t> wanted(ids.begin(), ids.end());
+    const auto count = static_cast<std::int32_t>(segmentation.regions.size());
+    if (*wanted.begin() < 0 || *wanted.rbegin() >= count) {
+        const std::int32_t bad = *wanted.begin() < 0 ? *wanted.begin() : *wanted.rbegin();
+        throw InputError("mesh.no_such_region", name,
+                         "has no region " + std::to_string(bad) + ", its regions are 0 to " +
+                             std::to_string(count - 1) + " (see meshwind inspect)");
+    }
+    for (Region& region : segmentation.regions) {
+        region.kept = wanted.count(region.id) != 0;
+    }
+}
+
+std::string words_of(const Region& region) {
+    const std::string why = region.kind == RegionKind::EndCap
+                                ? std::string("a flat end")
+                                : "taken for a bore, " + percent(region.visible_fraction, 0) +
+                                      " of it sees the outside";
+    return std::to_string(region.id) + " (" + std::string(name_of(region.kind)) + ", " +
+           fixed(region.area_mm2, 1) + " mm2, " + why + ")";
+}
+
+// Nothing that follows means anything without a surface to wind.
+void check_wall(const std::vector<Region>& regions, const std::string& name) {
+    constexpr std::size_t kNamed = 5;  // the largest; inspect has no more to say of the others
+    if (std::any_of(regions.begin(), regions.end(), [](const Region& r) { return r.kept; })) {
+        return;
+    }
+    std::string words;
+    for (std::size_t i = 0; i < std::min(kNamed, regions.size()); ++i) {
+        words += (i > 0 ? ", " : " ") + words_of(regions[i]);
+    }
+    if (regions.size() > kNamed) {
+        words += " and " + std::to_string(regions.size() - kNamed) + " smaller ones";
+    }
+    throw InputError("mesh.no_wall", name,
+                     "none of its regions is an outer wall:" + words +
+                         "; if one is to be wound, name it in the job, \"mandrel\": "
+                         "{\"keep_regions\": [0]}, else export the part's outside");
+}
+
+// What is wound, still in the file's frame, with the per-face arrays the freezing needs.
+struct Kept {
+    TriangleSoup soup;
+    std::vector<std::array<std::uint8_t, 3>> feature;
+    std::vector<std::int32_t> region;
+};
+
+Kept kept_part(const TriangleSoup& whole, const Segmentation& segmentation) {
+    Kept kept;
+    std::vector<std::int32_t> renumbered(whole.points_mm.size(), -1);
+    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+        const std::int32_t region = segmentation.region[f];
+        if (!segmentation.regions[static_cast<std::size_t>(region)].kept) {
+            continue;
+        }
+        std::array<std::int32_t, 3> face = whole.faces[f];
+        for (std::int32_t& v : face) {
+            std::int32_t& target = renumbered[static_cast<std::size_t>(v)];
+            if (target < 0) {
+                target = static_cast<std::int32_t>(kept.soup.points_mm.size());
+                kept.soup.points_mm.push_back(whole.points_mm[static_cast<std::size_t>(v)]);
+            }
+            v = target;
+        }
+        std::array<std::uint8_t, 3> feature = segmentation.feature[f];
+        for (std::size_t e = 0; e < 3; ++e) {
+            const std::int32_t g = segmentation.neighbours[f][e];
+            const bool open = g < 0 || !segmentation
+                                            .regions[static_cast<std::size_t>(
+                                                segmentation.region[static_cast<std::size_t>(g)])]
+                                            .kept;
+            feature[e] = open ? std::uint8_t{0} : feature[e];
+        }
+        kept.soup.faces.push_back(face);
+        kept.feature.push_back(feature);
+        kept.region.push_back(region);
+    }
+    split_vertex_fans(kept.soup);
+    return kept;
+}
+
+void move(TriangleSoup& soup, const Eigen::Isometry3d& motion) {
+    for (Eigen::Vector3d& p : soup.points_mm) {
+        p = motion * p;
+    }
+}
+
+void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
+    const RepairReport& r = mandrel.repairs;
+    if (r.components > 1) {
+        mandrel.remarks.push_back("the file holds " + std::to_string(r.components) +
+                                  " separate shells; all are kept as obstacles");
+    }
+    if (r.self_intersecting_faces > 0) {
+        mandrel.remarks.push_back(std::to_string(r.self_intersecting_faces) +
+                                  " triangles cross others; paths near them may be wrong, mend the "
+                                  "part in the modeller");
+    }
+    if (holes > 0) {
+        mandrel.remarks.push_back(std::to_string(holes) +
+                                  " small holes in the wall are not rims: courses end at them");
+    }
+    if (open_shells > 1) {
+        mandrel.remarks.push_back("the winding surface consists of " + std::to_string(open_shells) +
+                                  " separate pieces; keep one with keep_regions");
+    }
+    constexpr double kRoundShare = 0.02;  // of its radius: a rim further off is worth a word
+    for (const Rim& rim : mandrel.rims) {
+        if (rim.circularity_mm > kRoundShare * rim.radius_mm) {
+            mandrel.remarks.push_back("rim " + std::to_string(rim.id) + " is no circle: up to " +
+                                      fixed(rim.circularity_mm, 2) + " mm off radius " +
+                                      fixed(rim.radius_mm, 2) + " mm");
+        }
+    }
+    if (mandrel.axis.rule == "principal") {
+        mandrel.remarks.push_back(
+            "no coaxial rims and no axis of revolution: the spindle is a principal axis of "
+            "inertia, give another with \"axis\"");
+    }
+}
+
+int count_pieces(const std::vector<std::array<std::int32_t, 3>>& neighbours) {
+    std::vector<char> reached(neighbours.size(), 0);
+    int pieces = 0;
+    for (std::size_t seed = 0; seed < neighbours.size(); ++seed) {
+        if (reached[seed] != 0) {
+            continue;
+        }
+        ++pieces;
+        std::vector<std::size_t> stack{seed};
+        reached[seed] = 1;
+        while (!stack.empty()) {
+            const std::size_t f = stack.back();
+            stack.pop_back();
+            for (const std::int32_t g : neighbours[f]) {
+                if (g >= 0 && reached[static_cast<std::size_t>(g)] == 0) {
+                    reached[static_cast<std::size_t>(g)] = 1;
+                    stack.push_back(static_cast<std::size_t>(g));
+                }
+            }
+        }
+    }
+    return pieces;
+}
+
+Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& name,
+              const MandrelOptions& options) {
+    check_options(options, name);
+    check_triangles(file_units, name);
+    Mandrel mandrel;
+    mandrel.file = std::filesystem::path(name).filename().string();
+    mandrel.whole = std::move(file_units);
+    check_interrupt();
+    const WeldReport welded = weld(mandrel.whole);
+    mandrel.repairs.welded_points = welded.welded_points;
+    mandrel.repairs.edges_stitched = welded.edges_stitched;
+    check_interrupt();
+    repair(mandrel.whole, name, mandrel.repairs);
+    check_interrupt();
+    decide_unit(mandrel, options, stated_mm);
+    for (Eigen::Vector3d& p : mandrel.whole.points_mm) {
+        p *= mandrel.unit_mm;
+    }
+
+    Segmentation segmentation = segment(mandrel.whole);
+    keep_named_regions(segmentation, options.keep_regions, name);
+    check_wall(segmentation.regions, name);
+    check_interrupt();
+    Kept kept = kept_part(mandrel.whole, segmentation);
+    const Rims rims = find_rims(kept.soup);
+    std::optional<MandrelOptions::Axis> given = options.axis;
+    if (given) {
+        given->origin *= mandrel.unit_mm;
+    }
+    const SpindleFrame frame = find_spindle(kept.soup, rims.rims, given);
+
+    move(mandrel.whole, frame.mandrel_from_file);
+    move(kept.soup, frame.mandrel_from_file);
+    const FreezeInput frozen{.feature = kept.feature, .region = kept.region, .rim = rims.of_edge};
+    check_interrupt();
+    mandrel.surface = freeze_surface(kept.soup, frozen);
+    check_interrupt();
+    mandrel.whole_region = std::move(segmentation.region);
+    mandrel.regions = std::move(segmentation.regions);
+    mandrel.rims = rims.rims;
+    for (Rim& rim : mandrel.rims) {
+        rim.centre_mm = frame.mandrel_from_file * rim.centre_mm;
+        rim.axis = frame.mandrel_from_file.linear() * rim.axis;
+    }
+    const RevolutionFinding found = find_revolution(mandrel.surface, mandrel.rims);
+    if (found.body && mark_crease_rings(*found.body, kept.soup, kept.feature)) {
+        mandrel.surface = freeze_surface(kept.soup, frozen);
+    }
+    mandrel.axis = frame.axis;
+    mandrel.file_to_mandrel = frame.mandrel_from_file * Eigen::Scaling(mandrel.unit_mm);
+    add_remarks(mandrel, rims.holes, count_pieces(mandrel.surface.neighbour));
+    return mandrel;
+}
+
+}  // namespace
+
+Mandrel load_mandrel(const std::filesystem::path& file, const MandrelOptions& options) {
+    TriangleSoup soup = read_triangles(file);
+    return build(std::move(soup), stated_unit_mm(file), file.string(), options);
+}
+
+Mandrel build_mandrel(const TriangleSoup& file_units, const std::string& name,
+                      const MandrelOptions& options) {
+    return build(TriangleSoup(file_units), 0.0, name, options);
+}
+
+}  // namespace meshwind

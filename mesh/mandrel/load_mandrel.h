@@ -1,0 +1,21 @@
+/// From a user's file to the surface that is wound: units, repair, regions, rims, spindle axis.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "mesh/mandrel.h"
+#include "mesh/triangle_soup.h"
+
+namespace meshwind {
+
+/// Reads, repairs, segments and freezes a mandrel file (STL, OBJ, PLY, OFF).
+/// \throws IoError mesh.unreadable; InputError mesh.* with the file, the place and the mend
+[[nodiscard]] Mandrel load_mandrel(const std::filesystem::path& file,
+                                   const MandrelOptions& options = {});
+
+/// The same from triangles in memory; `name` stands in for the file's name.
+[[nodiscard]] Mandrel build_mandrel(const TriangleSoup& file_units, const std::string& name,
+                                    const MandrelOptions& options = {});
+
+}  // namespace meshwind

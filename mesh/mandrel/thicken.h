@@ -1,0 +1,25 @@
+/// A mandrel with something on it: its wall moved outward by what lies there.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/mandrel.h"
+
+namespace meshwind {
+
+/// Moves the vertices of the winding surface along their normals; what else the file holds (caps,
+/// bores) keeps its place but for the points it shares with the wall. At a feature edge a vertex
+/// moves so that each side is moved by its thickness. The grown mesh is looked at as if it came
+/// from a file: repairs, regions, rims; spindle and mandrel frame stay.
+///
+/// Accuracy: on a smooth wall the normals are of fourth order in the edge length, so vertices of a
+/// cylinder or sphere lie on the grown one to T dn^2 / 2 for a thickness T and an error dn;
+/// tests/mesh/mandrel/thicken_test.cpp.
+/// \param thickness_mm per vertex of mandrel.surface, >= 0
+/// \throws InputError thicken.folds where the wall is more hollow than the thickness allows, so
+/// that triangles fold or cross, with the place; thicken.changed where the grown mesh is another
+/// surface
+[[nodiscard]] Mandrel thicken(const Mandrel& mandrel, std::span<const double> thickness_mm);
+
+}  // namespace meshwind

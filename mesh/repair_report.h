@@ -1,0 +1,18 @@
+/// What the repair of a file has changed.
+#pragma once
+
+namespace meshwind {
+
+/// What was done to the triangles before they could be used; every count is what was changed.
+struct RepairReport {
+    int welded_points = 0;
+    int degenerate_faces_removed = 0;
+    int duplicate_faces_removed = 0;
+    int faces_flipped = 0;
+    int edges_stitched = 0;
+    int non_manifold_vertices_split = 0;
+    int self_intersecting_faces = 0;  ///< reported, not mended
+    int components = 0;
+};
+
+}  // namespace meshwind

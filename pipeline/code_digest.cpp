@@ -1,0 +1,35 @@
+#include "pipeline/code_digest.h"
+
+#include "core/text/digest.h"
+
+namespace meshwind {
+
+std::string code_digest(const Dialect& dialect, std::string_view text, const std::string& file) {
+    constexpr std::size_t kDigits = 32;
+    return "sha256/128 " + sha256_hex(dialect.code_of(text, file)).substr(0, kDigits);
+}
+
+std::string write_with_digest(const Dialect& dialect, const Machine& machine, const BlockList& list,
+                              const ProgramLayout& layout, ProgramHeader header) {
+    header.code_digest.clear();
+    header.code_digest =
+        code_digest(dialect, dialect.write(machine, list, layout, header), machine.name);
+    return dialect.write(machine, list, layout, header);
+}
+
+std::optional<Check> code_check(const Dialect& dialect, std::string_view text,
+                                const std::string& file, const BlockList& program) {
+    if (!program.head || program.head->code_digest.empty()) {
+        return std::nullopt;
+    }
+    const std::string& written = program.head->code_digest;
+    const std::string is = code_digest(dialect, text, file);
+    Check check{"code", is == written, {}, {}};
+    if (!check.ok) {
+        check.words = "the blocks are not those that were written: their digest is " + is +
+                      ", the program's head says " + written;
+    }
+    return check;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,28 @@
+/// Whether a program's code is what was written.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "postproc/motion/block.h"
+#include "postproc/nc/dialect.h"
+#include "postproc/verify/verify.h"
+
+namespace meshwind {
+
+/// "sha256/128 " and the first 32 hexadecimal digits of what Dialect::code_of makes of a text: they
+/// fit in a line of every controller, and nobody changes a program by chance without changing them.
+[[nodiscard]] std::string code_digest(const Dialect& dialect, std::string_view text,
+                                      const std::string& file);
+
+/// The program with its own digest in the head.
+[[nodiscard]] std::string write_with_digest(const Dialect& dialect, const Machine& machine,
+                                            const BlockList& list, const ProgramLayout& layout,
+                                            ProgramHeader header);
+
+/// Check "code": the digest in the head is that of the code. Nothing where the head has none.
+[[nodiscard]] std::optional<Check> code_check(const Dialect& dialect, std::string_view text,
+                                              const std::string& file, const BlockList& program);
+
+}  // namespace meshwind

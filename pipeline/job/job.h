@@ -1,0 +1,134 @@
+/// The user's request: what to wind on the mandrel, and how. docs/files.md describes the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "postproc/eye/eye_rules.h"
+#include "winding/revolution/pattern_wish.h"
+#include "winding/turn/pin_turn.h"
+
+namespace meshwind {
+
+/// Length of a unit of the mandrel's file. Auto: what the file states, else mm, else metres for a
+/// part under 10 units.
+enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
+
+/// How the fibre turns round beyond a rim.
+enum class TurnKind { Friction, Pins, Pole };
+
+enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice };
+
+/// Who decides the mandrel's turn where several would do; docs/post.md.
+enum class RedundancyRule { CentralAngle, Hold, Oscillate, Optimal };
+
+/// What the pattern of a layer is to be; what is left out is free
+/// (winding/revolution/pattern_wish.h).
+struct PatternJob {
+    std::int64_t circuits = 0;  ///< > 0: so many; not of lattices
+    std::int64_t starts = 0;    ///< > 0: the pattern number
+    std::optional<BandOrder> lead{};
+    std::optional<double> most_overlap{};    ///< 0 .. 1, share of the bands' distance
+    double dwell_deg = 0.0;                  ///< >= 0: least dwell at each rim
+    std::optional<double> most_dwell_deg{};  ///< >= dwell_deg, at each rim
+    double band_offset_mm = 0.0;             ///< > 0: distance of bands; 0: the tow's width
+};
+
+/// A table of landing points (postproc/tables/landing_csv.h).
+struct LandingText {
+    std::filesystem::path file;  ///< named in messages
+    std::string text;
+};
+
+/// One layer; each kind reads what concerns it.
+struct LayerJob {
+    LayerKind kind = LayerKind::Auto;
+    std::optional<double> angle_deg;  ///< 0 (axial) .. 90 (hoop), from the local axial direction
+    double target_layers = 1.0;       ///< > 0; how often each place is to be covered
+    std::optional<PatternJob> pattern{};   ///< Helical, Polar and Lattice layers only
+    std::optional<LatticeWish> lattice{};  ///< set for Lattice layers and no others
+    std::string file;      ///< landing points of an Imported layer; empty for all others
+    LandingText points{};  ///< what that file holds, once read (pipeline/load_inputs.h)
+};
+
+/// Each fibre more is one more time that somebody cuts it and ties it on.
+inline constexpr int kMostFibres = 9;
+
+struct Job {
+    struct MandrelAxis {
+        Eigen::Vector3d origin;     ///< in the file's frame and units
+        Eigen::Vector3d direction;  ///< not zero, any length
+    };
+    struct MandrelJob {
+        LengthUnit units = LengthUnit::Auto;     ///< as `meshwind inspect` reads the part
+        std::optional<MandrelAxis> axis;         ///< none: found
+        std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
+        double extension_mm = 100.0;             ///< >= 0; room for turns beyond each rim
+        TurnKind turn = TurnKind::Friction;
+        PinWish pins{};  ///< read with TurnKind::Pins only
+    };
+    struct TowJob {
+        double width_mm = 6.0;       ///< > 0
+        double thickness_mm = 0.25;  ///< > 0
+        double friction = 0.2;       ///< >= 0; dry carbon on a moulded surface, on the safe side
+        double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
+        double density_g_cm3 = 1.55;         ///< > 0; of the laid tow: carbon in epoxy, 60 % fibres
+    };
+    struct ToleranceJob {
+        double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways
+        double laydown_angle_deg = 0.3;  ///< > 0; and in direction
+        double clearance_mm = 5.0;       ///< >= 0; machine and free fibre against mandrel
+    };
+    struct SpeedJob {
+        double fibre_m_min = 30.0;  ///< > 0
+    };
+
+    MandrelJob mandrel;
+    TowJob tow;
+    std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
+    int fibres = 1;  ///< 1 .. kMostFibres; that may be wound one after the other, cut in between
+    EyeLaw eye;
+    RedundancyRule redundancy = RedundancyRule::Optimal;
+    ToleranceJob tolerance;
+    SpeedJob speed;
+};
+
+/// Millimetres per unit; 0 for Auto, which leaves the choice to the reader of the mandrel.
+[[nodiscard]] double mm_per(LengthUnit unit);
+
+/// One value that is put over what a file says: key layers.0.kind, value hoop.
+struct JobSetting {
+    std::string key;    ///< keys and indices, joined by dots
+    std::string value;  ///< JSON; what is none is a word
+};
+
+/// Reads a job from text, then puts the settings over it; what both leave out keeps its default.
+/// \param name file name for messages
+/// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
+///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced,
+///         job.pins_unused, json.no_such_place (of a setting); each with file and JSON pointer
+[[nodiscard]] Job parse_job(std::string_view text, const std::string& name,
+                            std::span<const JobSetting> settings = {});
+
+/// `parse_job` of a file. \throws IoError io.cannot_read; InputError as parse_job
+[[nodiscard]] Job read_job(const std::filesystem::path& file,
+                           std::span<const JobSetting> settings = {});
+
+/// The job as a complete job file: every key present, always in the same order, so that equal jobs
+/// give equal text. Reads back as the same job.
+[[nodiscard]] std::string job_text(const Job& job);
+
+/// JSON Schema of job files; data/schema/job.schema.json holds it.
+[[nodiscard]] std::string job_schema_text();
+
+/// As the job file says it.
+[[nodiscard]] std::string_view name_of(LayerKind kind);
+
+}  // namespace meshwind

@@ -1,0 +1,56 @@
+#include <array>
+#include <cstddef>
+
+#include "core/text/strict_json.h"
+#include "core/text/text_file.h"
+#include "pipeline/job/job.h"
+#include "pipeline/job/job_keys.h"
+
+namespace meshwind {
+namespace {
+
+Job job_of(const JsonDocument& document) {
+    Job job;
+    read_keys(job_keys(), document.root(), job);
+    return job;
+}
+
+}  // namespace
+
+double mm_per(LengthUnit unit) {
+    constexpr std::array<double, 6> kMillimetres = {0.0, 1e-3, 1.0, 10.0, 1e3, 25.4};
+    return kMillimetres[static_cast<std::size_t>(unit)];
+}
+
+std::string_view name_of(LayerKind kind) {
+    return layer_words()[static_cast<std::size_t>(kind)];
+}
+
+Job parse_job(std::string_view text, const std::string& name,
+              std::span<const JobSetting> settings) {
+    JsonDocument document = JsonDocument::parse(text, name);
+    for (const JobSetting& setting : settings) {
+        document.set(setting.key, setting.value);
+    }
+    return job_of(document);
+}
+
+Job read_job(const std::filesystem::path& file, std::span<const JobSetting> settings) {
+    return parse_job(read_text_file(file), file.string(), settings);
+}
+
+std::string job_text(const Job& job) {
+    return "{ " + keys_text(job_keys(), job, ",\n  ") + " }\n";
+}
+
+std::string job_schema_text() {
+    SchemaJson schema = {
+        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+        {"title", "meshwind job"},
+        {"description",
+         "What to wind, and how. Every key may be left out. Lengths in mm, angles in degrees."}};
+    schema.update(keys_schema(job_keys()));
+    return schema.dump(2) + "\n";
+}
+
+}  // namespace meshwind

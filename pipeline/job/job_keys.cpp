@@ -1,0 +1,441 @@
+#include "pipeline/job/job_keys.h"
+
+#include "pipeline/job/job_ranges.h"
+
+namespace meshwind {
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+constexpr std::string_view kFillWord = "fill";
+
+// Mandrel.
+
+std::string vector_text(const Eigen::Vector3d& vector) {
+    return "[" + number_text(vector[0]) + "," + number_text(vector[1]) + "," +
+           number_text(vector[2]) + "]";
+}
+
+Key<Job::MandrelJob> axis_key() {
+    const SchemaJson vector = {
+        {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+    const SchemaJson axis = {{"type", "object"},
+                             {"additionalProperties", false},
+                             {"required", SchemaJson::array({"origin", "direction"})},
+                             {"properties", {{"origin", vector}, {"direction", vector}}}};
+    const auto read = [](const JsonValue& value, Job::MandrelJob& mandrel) {
+        if (is_auto(value)) {
+            return;
+        }
+        const JsonObject object = value.object({"origin", "direction"});
+        const JsonValue direction = object.required("direction");
+        mandrel.axis = {object.required("origin").vector3(), direction.vector3()};
+        if (mandrel.axis->direction.isZero(0.0)) {
+            direction.fail("job.zero_direction",
+                           "all three numbers are 0; give the direction of the spindle");
+        }
+    };
+    const auto text = [](const Job::MandrelJob& mandrel) {
+        return mandrel.axis ? "{\"origin\":" + vector_text(mandrel.axis->origin) +
+                                  ", \"direction\":" + vector_text(mandrel.axis->direction) + "}"
+                            : string_text(kAutoWord);
+    };
+    return {"axis", "spindle axis in the file's frame and units", or_word(kAutoWord, axis), read,
+            text};
+}
+
+Key<Job::MandrelJob> regions_key() {
+    const SchemaJson list = {
+        {"type", "array"}, {"minItems", 1}, {"items", count_schema(0, kMostId)}};
+    const auto read = [](const JsonValue& value, Job::MandrelJob& mandrel) {
+        if (is_auto(value)) {
+            return;
+        }
+        for (const JsonValue& id : value.array()) {
+            mandrel.keep_regions.push_back(static_cast<std::int32_t>(id.integer(0, kMostId)));
+        }
+        if (mandrel.keep_regions.empty()) {
+            value.fail("json.out_of_range", "is empty; list region ids or write \"auto\"");
+        }
+    };
+    const auto text = [](const Job::MandrelJob& mandrel) {
+        std::string ids;
+        for (const std::int32_t id : mandrel.keep_regions) {
+            ids += (ids.empty() ? "" : ",") + std::to_string(id);
+        }
+        return ids.empty() ? string_text(kAutoWord) : "[" + ids + "]";
+    };
+    return {"keep_regions",
+            "ids of the regions that are wound, as meshwind inspect lists them; auto: the outer "
+            "wall",
+            or_word(kAutoWord, list), read, text};
+}
+
+const KeyTable<PinWish>& pin_keys() {
+    static const KeyTable<PinWish> kTable = {{
+        count_or_auto("count", &PinWish::count, kMostPins,
+                      "pins of a ring, a multiple of the pattern's circuits; auto: as many"),
+        number("diameter", &PinWish::diameter_mm, kLengthRange, "mm, of a pin"),
+        number_or_auto("height", &PinWish::height_mm, kLengthRange,
+                       "mm over the extension; auto: that which leaves the free fibre most room"),
+        count_or_auto("skip", &PinWish::skip, kMostPins,
+                      "pins that a turn runs behind; auto: as few as can be"),
+        number_or_auto("offset", &PinWish::offset_mm, kLengthRange,
+                       "least mm from the rim to the pins' axes; auto: a tow width and a diameter. "
+                       "What closes the pattern is added"),
+    }};
+    return kTable;
+}
+
+const KeyTable<Job::MandrelJob>& mandrel_keys() {
+    using Owner = Job::MandrelJob;
+    static const KeyTable<Owner> kTable = {{
+        word("units", &Owner::units, {"auto", "um", "mm", "cm", "m", "in"},
+             "length of a unit of the mandrel's file; auto: what the file states, else mm, else "
+             "metres if the part is under 10 units"),
+        axis_key(),
+        regions_key(),
+        number("extension", &Owner::extension_mm, kExtensionRange,
+               "mm of room beyond each rim where the fibre turns"),
+        word("turn", &Owner::turn, {"friction", "pins", "pole"},
+             "how the fibre turns there; pole: not at all, only on domes, where a pattern turns by "
+             "itself about the pole"),
+        only_if<Owner>([](const Owner& mandrel) { return mandrel.turn == TurnKind::Pins; },
+                       "job.pins_unused",
+                       "only \"turn\": \"pins\" reads it; write that, or remove it",
+                       object("pins", &Owner::pins, pin_keys(),
+                              "the rings of pins; with turn pins only. What is chosen stands in "
+                              "plan.pins of report.json")),
+    }};
+    return kTable;
+}
+
+// Tow, tolerance, speed.
+
+const KeyTable<Job::TowJob>& tow_keys() {
+    using Owner = Job::TowJob;
+    static const KeyTable<Owner> kTable = {{
+        number("width", &Owner::width_mm, kBandRange, "mm, of the band as it lies"),
+        number("thickness", &Owner::thickness_mm, kThicknessRange, "mm, of the band as it lies"),
+        number("friction", &Owner::friction, kFrictionRange, "largest slip ratio that holds"),
+        number("bridging_tolerance", &Owner::bridging_tolerance_mm, kGapRange,
+               "mm, largest gap under the fibre"),
+        number("density", &Owner::density_g_cm3, kDensityRange,
+               "g/cm3 of the tow as it is laid, resin included; for masses in the report"),
+    }};
+    return kTable;
+}
+
+const KeyTable<Job::ToleranceJob>& tolerance_keys() {
+    using Owner = Job::ToleranceJob;
+    static const KeyTable<Owner> kTable = {{
+        number("laydown", &Owner::laydown_mm, kDeviationRange,
+               "mm between laid and planned fibre, sideways"),
+        number("laydown_angle", &Owner::laydown_angle_deg, kDeviationRange,
+               "degrees between the directions of laid and planned fibre"),
+        number("clearance", &Owner::clearance_mm, kClearanceRange,
+               "mm between machine or free fibre and mandrel"),
+    }};
+    return kTable;
+}
+
+const KeyTable<Job::SpeedJob>& speed_keys() {
+    static const KeyTable<Job::SpeedJob> kTable = {
+        {number("fibre", &Job::SpeedJob::fibre_m_min, kSpeedRange, "m/min of fibre")}};
+    return kTable;
+}
+
+// Layers.
+
+// The words of the order, then none.
+Key<PatternJob> lead_key() {
+    const Words words = {"leading", "lagging", "any"};
+    return {"lead",
+            "whether that band lies ahead of the first one or behind it",
+            {{"enum", words}, {"default", words.back()}},
+            [words](const JsonValue& value, PatternJob& wish) {
+                const std::size_t found = value.one_of(words);
+                if (found + 1 < words.size()) {
+                    wish.lead = static_cast<BandOrder>(found);
+                }
+            },
+            [words](const PatternJob& wish) {
+                return string_text(wish.lead ? words[static_cast<std::size_t>(*wish.lead)]
+                                             : words.back());
+            }};
+}
+
+Key<PatternJob> most_dwell_key() {
+    Key<PatternJob> key =
+        number("most_dwell_deg", &PatternJob::most_dwell_deg, {.min = 0.0, .max = kMostDwell_deg},
+               "largest dwell at each rim, at least dwell_deg; without it any");
+    key.read = [](const JsonValue& value, PatternJob& wish) {
+        wish.most_dwell_deg = value.number({.min = wish.dwell_deg, .max = kMostDwell_deg});
+    };
+    return key;
+}
+
+const KeyTable<PatternJob>& pattern_keys() {
+    static const KeyTable<PatternJob> kTable = {{
+        count_if_any("circuits", &PatternJob::circuits, kMostCircuits,
+                     "so many circuits; not of lattices"),
+        count_if_any("starts", &PatternJob::starts, kMostCircuits,
+                     "pattern number: after so many circuits a band lies beside the first one; the "
+                     "interlacing"),
+        lead_key(),
+        number("most_overlap", &PatternJob::most_overlap, {.min = 0.0, .max = kMostOverlap},
+               "share of the distance between bands; without it 0.25, with circuits any; not of "
+               "lattices"),
+        number("dwell_deg", &PatternJob::dwell_deg, {.min = 0.0, .max = kMostDwell_deg},
+               "least dwell at each rim, the compensation angle"),
+        most_dwell_key(),
+        [] {
+            Key<PatternJob> key = number(
+                "band_offset_mm", &PatternJob::band_offset_mm, kBandRange,
+                "distance of neighbouring bands at the widest place, instead of the tow's width: "
+                "smaller overlaps, larger leaves gaps; of lattices, between the series of a rib");
+            key.schema.erase("default");
+            key.text = [](const PatternJob& wish) {
+                return wish.band_offset_mm > 0.0 ? number_text(wish.band_offset_mm) : "";
+            };
+            return key;
+        }(),
+    }};
+    return kTable;
+}
+
+bool is_lattice(const LayerJob& layer) {
+    return layer.kind == LayerKind::Lattice;
+}
+
+// A count of a lattice, which other layers refuse.
+Key<LayerJob> lattice_count(std::string_view name, int LatticeWish::*field, std::int64_t most,
+                            std::string_view meaning) {
+    return only_if<LayerJob>(
+        is_lattice, "job.pattern_unused",
+        "only a lattice reads it; a helical or polar layer has \"pattern\": {\"circuits\": N}",
+        {name, meaning, count_schema(1, most),
+         [=](const JsonValue& value, LayerJob& layer) {
+             LatticeWish& lattice = layer.lattice ? *layer.lattice : layer.lattice.emplace();
+             lattice.*field = static_cast<int>(value.integer(1, most));
+         },
+         [=](const LayerJob& layer) { return std::to_string((*layer.lattice).*field); }});
+}
+
+Key<LayerJob> series_key() {
+    Key<LayerJob> key =
+        lattice_count("series", &LatticeWish::series, kMostSeries,
+                      "bands side by side in a rib; fill: until the wall is closed; lattices only");
+    key.schema = with_default(or_word(kFillWord, key.schema), LatticeWish{}.series);
+    key.read = [read = key.read](const JsonValue& value, LayerJob& layer) {
+        if (is_lattice(layer) && value.is_string() && value.one_of({kFillWord}) == 0) {
+            layer.lattice->series = 0;
+        } else {
+            read(value, layer);
+        }
+    };
+    key.text = [text = key.text](const LayerJob& layer) {
+        return layer.lattice && layer.lattice->series == 0 ? string_text(kFillWord) : text(layer);
+    };
+    return key;
+}
+
+Key<LayerJob> pattern_key() {
+    Key<LayerJob> key = {
+        "pattern",
+        "what the pattern of a helical, polar or lattice layer is to be; what is left out is free. "
+        "Where there is no such pattern the plan fails with the nearest",
+        keys_schema(pattern_keys()),
+        [](const JsonValue& value, LayerJob& layer) {
+            read_keys(pattern_keys(), value, layer.pattern.emplace());
+            const JsonObject object = value.object(names_of(pattern_keys()));
+            for (const char* unused : {"circuits", "most_overlap"}) {
+                const auto found = object.optional(unused);
+                if (found && is_lattice(layer)) {
+                    found->fail("job.pattern_unused",
+                                "a lattice has its \"circuits\" beside \"kind\", and its bands do "
+                                "not overlap; remove it");
+                }
+            }
+        },
+        [](const LayerJob& layer) {
+            return layer.pattern ? "{" + keys_text(pattern_keys(), *layer.pattern) + "}" : "";
+        }};
+    return only_if<LayerJob>(
+        [](const LayerJob& layer) {
+            return is_lattice(layer) || layer.kind == LayerKind::Helical ||
+                   layer.kind == LayerKind::Polar;
+        },
+        "job.pattern_unused",
+        "only layers of kind \"helical\", \"polar\" and \"lattice\" read it; name one of these, or "
+        "remove it",
+        std::move(key));
+}
+
+Key<LayerJob> file_key() {
+    return only_if<LayerJob>(
+        [](const LayerJob& layer) { return layer.kind == LayerKind::Imported; }, "job.file_unused",
+        "only an imported layer reads a file; remove it or write \"kind\": \"imported\"",
+        {"file",
+         "CSV of landing points, in the axes of the mandrel's file; imported layers only. The name "
+         "counts from the job file",
+         {{"type", "string"}, {"minLength", 1}},
+         [](const JsonValue& value, LayerJob& layer) { layer.file = value.string(); },
+         [](const LayerJob& layer) {
+             return layer.file.empty() ? std::string() : string_text(layer.file);
+         }});
+}
+
+const KeyTable<LayerJob>& layer_keys() {
+    static const KeyTable<LayerJob> kTable = {
+        {
+            word("kind", &LayerJob::kind, layer_words(),
+                 "helical, polar and hoop: patterns on bodies of revolution, helical on elbows, "
+                 "too; lattice: an open grid of ribs on bodies of revolution; cover: courses on "
+                 "anything; imported: landing points made elsewhere; auto: a pattern where the "
+                 "mandrel is a body of revolution or an elbow that one covers, else cover"),
+            number("angle", &LayerJob::angle_deg, {.min = 0.0, .max = 90.0},
+                   "wanted winding angle: degrees from the axial direction of the pipe under the "
+                   "fibre; without it any. A cover comes as near as friction, turns and evenness "
+                   "let it"),
+            [] {
+                Key<LayerJob> key = lattice_count("circuits", &LatticeWish::circuits, kMostCircuits,
+                                                  "ribs of either hand; lattices only");
+                key.needed = is_lattice;
+                return key;
+            }(),
+            series_key(),
+            [] {
+                Key<LayerJob> key = lattice_count("plies", &LatticeWish::plies, kMostPlies,
+                                                  "how often all of a lattice is wound, band upon "
+                                                  "band; instead of target_layers");
+                key.schema["default"] = LatticeWish{}.plies;
+                return key;
+            }(),
+            only_if<LayerJob>([](const LayerJob& layer) { return !is_lattice(layer); },
+                              "job.pattern_unused",
+                              "a lattice is wound \"plies\" times; write that",
+                              number("target_layers", &LayerJob::target_layers, kLayersRange,
+                                     "how often each place is to be covered; a cover rounds it "
+                                     "up")),
+            pattern_key(),
+            file_key(),
+        },
+        [](const JsonObject& object, LayerJob& layer) {
+            if (layer.kind == LayerKind::Imported && layer.file.empty()) {
+                object.value().fail(
+                    "job.file_missing",
+                    "an imported layer needs \"file\", the CSV of its landing points");
+            }
+        },
+        schema_rules(R"({"allOf": [
+          {"if": {"required": ["kind"], "properties": {"kind": {"const": "imported"}}},
+           "then": {"required": ["file"]}, "else": {"not": {"required": ["file"]}}},
+          {"if": {"required": ["kind"], "properties": {"kind": {"const": "lattice"}}},
+           "then": {"required": ["circuits"],
+                    "not": {"required": ["target_layers"]},
+                    "properties": {"pattern": {"not": {"anyOf": [{"required": ["circuits"]},
+                                                                 {"required": ["most_overlap"]}]}}}},
+           "else": {"not": {"anyOf": [{"required": ["circuits"]}, {"required": ["series"]},
+                                      {"required": ["plies"]}]}}},
+          {"if": {"not": {"required": ["kind"],
+                          "properties": {"kind": {"enum": ["helical", "polar", "lattice"]}}}},
+           "then": {"not": {"required": ["pattern"]}}}
+        ]})")};
+    return kTable;
+}
+
+Key<Job> layers_key() {
+    const SchemaJson schema = {
+        {"type", "array"},
+        {"minItems", 1},
+        {"default", SchemaJson::array({SchemaJson::object({{"kind", layer_words().front()}})})},
+        {"items", keys_schema(layer_keys())}};
+    return {"layers", "what is wound, in this order", schema,
+            [](const JsonValue& value, Job& job) {
+                job.layers.clear();
+                for (const JsonValue& layer : value.array()) {
+                    read_keys(layer_keys(), layer, job.layers.emplace_back());
+                }
+                if (job.layers.empty()) {
+                    value.fail("json.out_of_range",
+                               "is empty; give one layer at least, or leave it out");
+                }
+            },
+            [](const Job& job) {
+                std::string text;
+                for (const LayerJob& layer : job.layers) {
+                    text += text.empty() ? "{" : ",\n             {";
+                    text += keys_text(layer_keys(), layer) + "}";
+                }
+                return "[" + text + "]";
+            }};
+}
+
+// The rules with planes leave no turn to choose, and "central-angle" is the word for that.
+bool turn_is_forced(const Job& job) {
+    return traits_of(job.eye.rule).forces_turn;
+}
+
+// The same for the schema.
+SchemaJson forced_turn_rule() {
+    SchemaJson forced = SchemaJson::array();
+    for (const EyeRuleTraits& rule : kEyeRules) {
+        if (rule.forces_turn) {
+            forced.push_back(rule.word);
+        }
+    }
+    SchemaJson all = schema_rules(R"({"allOf": [
+      {"if": {"required": ["eye"],
+              "properties": {"eye": {"required": ["rule"], "properties": {"rule": {}}}}},
+       "then": {"properties": {"redundancy": {"const": "central-angle"}}}}
+    ]})");
+    all["allOf"][0]["if"]["properties"]["eye"]["properties"]["rule"]["enum"] = forced;
+    return all;
+}
+
+}  // namespace
+
+const Words& layer_words() {
+    static const Words kWords = {"auto",  "helical",  "hoop",   "polar",
+                                 "cover", "imported", "lattice"};
+    return kWords;
+}
+
+const KeyTable<Job>& job_keys() {
+    static const KeyTable<Job> kTable = {
+        {
+            object("mandrel", &Job::mandrel, mandrel_keys(),
+                   "the part: how its file is read and what of it is wound"),
+            object("tow", &Job::tow, tow_keys(), "the band that is wound"),
+            layers_key(),
+            count("fibres", &Job::fibres, kMostFibres,
+                  "continuous fibres that may be wound one after the other, each by a program of "
+                  "its own; a further one is taken only where it covers more"),
+            object("eye", &Job::eye, eye_keys(), "where the delivery eye is"),
+            word("redundancy", &Job::redundancy, {"central-angle", "hold", "oscillate", "optimal"},
+                 "how the mandrel turns where several turns would do: with the eye in front of the "
+                 "spindle; not until the eye is 90 degrees (hold) or 30 degrees (oscillate) off "
+                 "that; or so that winding takes the least time (optimal). The rules with planes "
+                 "leave only central-angle, which is then the default"),
+            object("tolerance", &Job::tolerance, tolerance_keys(), "what the checks allow"),
+            object("speed", &Job::speed, speed_keys(), "how fast it is wound"),
+        },
+        [](const JsonObject& object, Job& job) {
+            if (!turn_is_forced(job)) {
+                return;
+            }
+            const auto said = object.optional("redundancy");
+            if (said && job.redundancy != RedundancyRule::CentralAngle) {
+                said->fail("job.turn_forced",
+                           "the eye rule \"" + std::string(name_of(job.eye.rule)) +
+                               "\" says how the mandrel turns; remove \"redundancy\" or choose "
+                               "another rule");
+            }
+            job.redundancy = RedundancyRule::CentralAngle;
+        },
+        forced_turn_rule()};
+    return kTable;
+}
+
+}  // namespace meshwind

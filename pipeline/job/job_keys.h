@@ -1,0 +1,15 @@
+/// Every key of the job file, each as one row.
+#pragma once
+
+#include "pipeline/job/job.h"
+#include "pipeline/job/key_table.h"
+
+namespace meshwind {
+
+[[nodiscard]] const KeyTable<Job>& job_keys();
+[[nodiscard]] const KeyTable<EyeLaw>& eye_keys();
+
+/// The words of the file for LayerKind, in the order of the enumerators.
+[[nodiscard]] const std::vector<std::string_view>& layer_words();
+
+}  // namespace meshwind

@@ -1,0 +1,69 @@
+/// The machine that winds a layer: what planners ask of it, and the programs that answer.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/run_context.h"
+#include "pipeline/piece_program.h"
+#include "pipeline/setup.h"
+#include "postproc/nc/dialect.h"
+#include "winding/plan/windability.h"
+
+namespace meshwind {
+
+/// The program that winds one fibre of a layer.
+struct FibreProgram {
+    PieceProgram made;
+    std::string text;
+    std::string file;  ///< name, e.g. "program.ngc"
+};
+
+/// The programs of a whole plan, one for each fibre.
+struct LayerPrograms : TrialWinding {
+    std::vector<FibreProgram> programs;
+};
+
+struct LayerMachineOptions {
+    std::string suffix;  ///< in names of files: "", "-layer-2"
+    /// What every program's head says: version, mandrel, digests.
+    ProgramHeader header;
+    /// Of the layer before: its fibre is wound on where a plan does so. Null for the first.
+    const FibreProgram* before = nullptr;
+    RunContext context{};
+    std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
+};
+
+class LayerMachine : public Windability {
+public:
+    /// \param setup, options are kept
+    LayerMachine(const Setup& setup, const LayerMachineOptions& options)
+        : setup_(setup), options_(options) {}
+
+    [[nodiscard]] Rejection follow(std::span<const Piece> pieces) const override;
+    [[nodiscard]] Rejection wind_alone(std::span<const Piece> pieces) const override;
+    [[nodiscard]] std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const override;
+
+    /// The way from a plan to its programs, and back: each is read from its text and wound again.
+    /// \param in_spite make programs even of what cannot be wound
+    [[nodiscard]] std::unique_ptr<LayerPrograms> programs_of(const Plan& plan, bool in_spite) const;
+
+    /// \param notes lines for its head
+    [[nodiscard]] std::string text_of(const PieceProgram& made, bool goes_on,
+                                      const std::vector<std::string>& notes = {}) const;
+
+private:
+    void wind_fibre(std::span<const Piece> pieces, bool goes_on, bool in_spite,
+                    FibreProgram& program) const;
+    void done(const char* stage) const;
+
+    const Setup& setup_;
+    const LayerMachineOptions& options_;
+};
+
+}  // namespace meshwind

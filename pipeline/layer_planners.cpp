@@ -1,0 +1,231 @@
+#include "pipeline/layer_planners.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/margins.h"
+#include "core/units.h"
+#include "mesh/tube/grown_tube.h"
+#include "winding/cover/cover.h"
+#include "winding/elbow/elbow_plan.h"
+#include "winding/revolution/hoop_path.h"
+#include "winding/revolution/pattern_plan.h"
+
+namespace meshwind {
+namespace {
+
+// Winding angles at the widest place that a helical layer without one is tried with.
+constexpr double kFirstAngle_deg = 45.0;
+constexpr double kLastAngle_deg = 80.0;
+constexpr double kAngleStep_deg = 5.0;
+
+TriedPlan untried(Plan plan) {
+    return {std::move(plan), nullptr};
+}
+
+// A plan that covers too little is none.
+Plan covering(Plan plan) {
+    if (plan.failure.empty() && plan.coverage.fraction < kCoveredShare) {
+        plan.failure = "the pattern covers too little";
+    }
+    return plan;
+}
+
+PatternKind pattern_of(LayerKind kind) {
+    switch (kind) {
+        case LayerKind::Polar:
+            return PatternKind::Polar;
+        case LayerKind::Hoop:
+            return PatternKind::Hoop;
+        default:
+            return PatternKind::Helical;
+    }
+}
+
+PatternWish wish_of(const PatternJob& job) {
+    PatternWish wish;
+    wish.circuits = job.circuits;
+    wish.starts = job.starts;
+    wish.order = job.lead;
+    wish.most_overlap = job.most_overlap;
+    wish.least_dwell_rad = rad_from_deg(job.dwell_deg);
+    if (job.most_dwell_deg) {
+        wish.most_dwell_rad = rad_from_deg(*job.most_dwell_deg);
+    }
+    wish.band_offset_mm = job.band_offset_mm;
+    return wish;
+}
+
+// Heights between which a bare body is a cylinder, at its widest place.
+std::optional<std::array<double, 2>> cylinder_of(const Mandrel& bare) {
+    const RevolutionFinding found = find_revolution(bare);
+    if (!found.body) {
+        return std::nullopt;
+    }
+    const Meridian& meridian = found.body->meridian;
+    const CylinderPart part = cylinder_at(meridian, meridian.widest_mm());
+    if (part.from_mm == part.to_mm) {
+        return std::nullopt;
+    }
+    return std::array{meridian.at(part.from_mm).z_mm, meridian.at(part.to_mm).z_mm};
+}
+
+// Patterns of bodies of revolution.
+
+bool makes_patterns(LayerKind kind) {
+    return kind != LayerKind::Cover;
+}
+
+std::string why_no_body(const LayerTask& task) {
+    const RevolutionFinding& found = task.revolution();
+    return found.body ? std::string()
+                      : "patterns are wound on bodies of revolution, helical ones on elbows, too, "
+                        "and this is none: " +
+                            found.why_not + "; use \"cover\"";
+}
+
+Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) {
+    const Job::MandrelJob& mandrel = task.setup.job.mandrel;
+    PatternOptions pattern;
+    pattern.kind = kind;
+    pattern.angle_rad = angle_rad;
+    pattern.layers = task.layer.target_layers;
+    pattern.tow = task.tow();
+    pattern.turn.extension_mm = mandrel.extension_mm;
+    if (kind == PatternKind::Hoop && task.options.bare != nullptr) {
+        pattern.hoop_z_mm = cylinder_of(*task.options.bare);
+    }
+    if (task.options.before != nullptr) {
+        pattern.before = fibre_end_of(*task.options.before);
+    }
+    pattern.context = task.options.context;
+    pattern.lattice = task.layer.lattice;
+    pattern.over_rims = mandrel.turn != TurnKind::Pole;
+    if (mandrel.turn == TurnKind::Pins) {
+        pattern.pins = mandrel.pins;
+    }
+    if (task.layer.pattern) {
+        pattern.wish = wish_of(*task.layer.pattern);
+    }
+    return plan_pattern(task.setup.mandrel, *task.revolution().body, pattern);
+}
+
+// Of `auto`: helical by the angle asked for; else polar where both ends are narrow, else helical by
+// the smallest angle that holds.
+TriedPlan plan_pattern_layer(const LayerTask& task) {
+    const LayerJob& layer = task.layer;
+    const auto helical = [&](double angle_deg) {
+        return plan_pattern_of(task, PatternKind::Helical, rad_from_deg(angle_deg));
+    };
+    if (layer.kind != LayerKind::Auto) {
+        return untried(plan_pattern_of(task, pattern_of(layer.kind),
+                                       rad_from_deg(layer.angle_deg.value_or(kFirstAngle_deg))));
+    }
+    if (layer.angle_deg) {
+        return untried(covering(helical(*layer.angle_deg)));
+    }
+    Plan plan = covering(plan_pattern_of(task, PatternKind::Polar, 0.0));
+    for (double next_deg = kFirstAngle_deg; !plan.failure.empty() && next_deg <= kLastAngle_deg;
+         next_deg += kAngleStep_deg) {
+        plan = covering(helical(next_deg));
+    }
+    return untried(std::move(plan));
+}
+
+// Lines of elbows.
+
+bool makes_elbows(LayerKind kind) {
+    return kind == LayerKind::Helical;
+}
+
+std::string why_no_tube(const LayerTask& task) {
+    return task.tube().tube ? std::string() : task.tube().why_not;
+}
+
+TriedPlan plan_elbow_layer(const LayerTask& task) {
+    const LayerJob& layer = task.layer;
+    if (layer.pattern) {
+        Plan plan;
+        plan.planner = Planner::Elbow;
+        plan.failure =
+            "\"pattern\" says how circuits of a body of revolution close; the lines of an elbow "
+            "follow from its bend, so leave it out";
+        return untried(std::move(plan));
+    }
+    ElbowPlanOptions elbow;
+    if (layer.angle_deg) {
+        elbow.angle_rad = rad_from_deg(*layer.angle_deg);
+    }
+    elbow.layers = layer.target_layers;
+    elbow.tow = task.tow();
+    elbow.turn.extension_mm = task.setup.job.mandrel.extension_mm;
+    elbow.context = task.options.context;
+    elbow.on_layers = task.options.bare != nullptr;
+    Plan plan = plan_elbow(task.setup.mandrel, *task.tube().tube, elbow);
+    if (task.options.before != nullptr) {
+        plan.cut_because = "the lines of an elbow are not led on from another layer";
+    }
+    return untried(layer.kind == LayerKind::Auto ? covering(std::move(plan)) : std::move(plan));
+}
+
+// Courses that cover any part.
+
+bool makes_covers(LayerKind kind) {
+    return kind == LayerKind::Cover;
+}
+
+std::string fits_all(const LayerTask& /*task*/) {
+    return {};
+}
+
+TriedPlan plan_cover_layer(const LayerTask& task) {
+    const Setup& setup = task.setup;
+    CoverOptions cover;
+    cover.tow = task.tow();
+    cover.turn.extension_mm = setup.job.mandrel.extension_mm;
+    cover.free_fibre = setup.rule.free_fibre;
+    cover.select.target_layers = static_cast<int>(std::ceil(task.layer.target_layers));
+    if (task.layer.angle_deg) {
+        cover.angle_rad = rad_from_deg(*task.layer.angle_deg);
+    }
+    cover.fibres = setup.job.fibres;
+    cover.context = task.options.context;
+    return plan_cover(setup.mandrel, *setup.obstacles, cover, &task.machine);
+}
+
+constexpr std::array kPlanners{
+    LayerPlanner{Planner::Pattern, makes_patterns, why_no_body, plan_pattern_layer},
+    LayerPlanner{Planner::Elbow, makes_elbows, why_no_tube, plan_elbow_layer},
+    LayerPlanner{Planner::Cover, makes_covers, fits_all, plan_cover_layer},
+};
+
+}  // namespace
+
+const RevolutionFinding& LayerTask::revolution() const {
+    if (!found_revolution) {
+        found_revolution = find_revolution(setup.mandrel);
+    }
+    return *found_revolution;
+}
+
+const TubeFinding& LayerTask::tube() const {
+    if (!found_tube) {
+        found_tube = find_tube(options.bare == nullptr ? setup.mandrel : *options.bare);
+        if (options.bare != nullptr && found_tube->tube) {
+            found_tube = grown_tube(*found_tube->tube, setup.mandrel, options.build_up_mm);
+        }
+    }
+    return *found_tube;
+}
+
+Tow LayerTask::tow() const {
+    const Job::TowJob& tow = setup.job.tow;
+    return {tow.width_mm, tow.thickness_mm, margin::kPlannedFriction * tow.friction,
+            tow.bridging_tolerance_mm};
+}
+
+std::span<const LayerPlanner> layer_planners() {
+    return kPlanners;
+}
+
+}  // namespace meshwind

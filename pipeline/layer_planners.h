@@ -1,0 +1,45 @@
+/// The planners that a layer may be given to.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "mesh/revolution/revolution.h"
+#include "mesh/tube/tube.h"
+#include "pipeline/plan_layer.h"
+#include "winding/plan/tow.h"
+
+namespace meshwind {
+
+/// A layer that is to be planned, with the shape of its part, found where it is asked for.
+struct LayerTask {
+    const Setup& setup;
+    const LayerJob& layer;
+    const Windability& machine;
+    const LayerPlanOptions& options;
+
+    mutable std::optional<RevolutionFinding> found_revolution{};
+    mutable std::optional<TubeFinding> found_tube{};
+
+    [[nodiscard]] const RevolutionFinding& revolution() const;
+    /// Layers follow the bare tube's line, whatever shape they have.
+    [[nodiscard]] const TubeFinding& tube() const;
+    /// What is planned with: less than all friction.
+    [[nodiscard]] Tow tow() const;
+};
+
+struct LayerPlanner {
+    Planner planner;
+    /// Whether it is for layers of this kind, not `auto`.
+    bool (*makes)(LayerKind kind);
+    /// Empty where the part has the shape for it, else in words what it lacks.
+    std::string (*why_not)(const LayerTask& task);
+    /// \pre the part has the shape for it. For `auto` the plan covers kCoveredShare or fails.
+    TriedPlan (*plan)(const LayerTask& task);
+};
+
+/// In the order in which `auto` tries them; the last one fits every part.
+[[nodiscard]] std::span<const LayerPlanner> layer_planners();
+
+}  // namespace meshwind

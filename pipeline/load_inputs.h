@@ -1,0 +1,25 @@
+/// Machine and job from their files, with the files that they name.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "machines/machine.h"
+#include "pipeline/job/job.h"
+
+namespace meshwind {
+
+/// A machine with the triangles of its envelope and bodies.
+/// \throws IoError io.cannot_read; InputError as read_machine() and read_triangles() have it
+[[nodiscard]] Machine load_machine(const std::filesystem::path& file);
+
+/// A job with the landing points of its imported layers. \param file empty: settings alone
+/// \throws IoError io.cannot_read; InputError as read_job() has it
+[[nodiscard]] Job load_job(const std::filesystem::path& file,
+                           std::span<const JobSetting> settings = {});
+
+/// The landing points of a file.
+/// \throws IoError io.cannot_read
+[[nodiscard]] LandingText read_landing_points(const std::filesystem::path& file);
+
+}  // namespace meshwind

@@ -1,0 +1,51 @@
+#include "pipeline/part_words.h"
+
+#include <array>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "core/text/text_number.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string unit_name(const Mandrel& mandrel) {
+    const std::array<std::pair<double, const char*>, 5> names = {
+        {{1e-3, "um"}, {1.0, "mm"}, {10.0, "cm"}, {1000.0, "m"}, {25.4, "in"}}};
+    for (const auto& [mm, name] : names) {
+        if (mandrel.unit_mm == mm) {
+            return name;
+        }
+    }
+    std::string text;
+    append_shortest(text, mandrel.unit_mm);
+    return text + " mm";
+}
+
+}  // namespace
+
+std::string size_words(const Mandrel& mandrel) {
+    const Eigen::Matrix3d file_from_mandrel =
+        (mandrel.file_to_mandrel.linear() / mandrel.unit_mm).transpose();
+    Eigen::AlignedBox3d box;
+    for (const Vector3d& point : mandrel.whole.points_mm) {
+        box.extend(file_from_mandrel * point);
+    }
+    const Vector3d size = box.sizes();
+    const std::string rule = mandrel.unit_rule == "file" ? "stated by the file" : mandrel.unit_rule;
+    return fixed(size.x(), 1) + " x " + fixed(size.y(), 1) + " x " + fixed(size.z(), 1) +
+           " mm (unit " + unit_name(mandrel) + ", " + rule + ")";
+}
+
+std::string unit_question(const Mandrel& mandrel) {
+    if (mandrel.unit_rule == "given") {
+        return "; the part measures " + size_words(mandrel);
+    }
+    return "; is the unit right? The part measures " + size_words(mandrel) +
+           "; --units mm, cm, m or in says another";
+}
+
+}  // namespace meshwind

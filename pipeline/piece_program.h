@@ -1,0 +1,68 @@
+/// Pieces of a plan on their way to a program, and back: the program is wound again.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/run_context.h"
+#include "pipeline/setup.h"
+#include "postproc/eye/eye_path.h"
+#include "postproc/motion/block.h"
+#include "postproc/motion/choose_blocks.h"
+#include "postproc/motion/joint_path.h"
+#include "postproc/motion/time_law.h"
+#include "postproc/nc/repeats.h"
+#include "postproc/verify/verify.h"
+#include "winding/plan/plan.h"
+
+namespace meshwind {
+
+/// What comes of pieces.
+struct PieceProgram {
+    EyePathResult eyes;           ///< at the stations
+    std::size_t path_points = 0;  ///< points that blocks were chosen from
+    BlockChoice choice;
+    BlockList blocks;      ///< what the program runs, one by one
+    BlockList exact;       ///< the ends of these as planned, rounded to nothing but 1e-9 mm or deg
+    ProgramLayout layout;  ///< how they are written
+    bool optimal = false;  ///< no other free lengths and turns that are known save 1 % of the time
+    double duration_s = 0.0;  ///< of the blocks, starting from rest and stopping
+    double least_s = 0.0;     ///< were the fibre at its full speed all along
+    std::vector<BindingLimit> binding;
+    BlockList read;             ///< the blocks as they were wound again
+    Verification verification;  ///< of these
+    /// Pieces that the machine cannot wind, or that the blocks do not lay as they are planned, each
+    /// with the first reason.
+    std::map<std::size_t, Rejection> refused;
+};
+
+struct PieceProgramOptions {
+    /// Make a program even of what the machine cannot wind.
+    bool in_spite = false;
+    /// Free lengths and turns of the mandrel for the least time.
+    bool optimal = false;
+    /// Where the spindle stands before, if the fibre goes on from there: it is turned on from the
+    /// nearest whole turn, where it turns without end.
+    std::optional<double> spindle_rad{};
+    /// From the blocks to their text and back. Empty: they are wound as they are.
+    std::function<BlockList(const PieceProgram&)> through_text;
+    RunContext context{};
+    std::function<void(const char* stage)> stage_done;  ///< "post", "verify"
+};
+
+/// Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason: no
+/// free length, beyond an axis' travel, or hitting something. Of a run of pieces that all lead
+/// beyond one axis' travel the worst one is named. Empty: all can be wound. Thread-safe.
+[[nodiscard]] std::map<std::size_t, Rejection> refused_by_machine(const Setup& setup,
+                                                                  std::span<const Piece> pieces);
+
+/// Eye, axes, blocks and time law of the pieces; then the blocks are wound again, and where that
+/// shows them too coarse they are made finer, a few times. Without blocks where the machine cannot
+/// wind the pieces, unless `in_spite`. Thread-safe. \pre there are pieces, all of one fibre
+[[nodiscard]] PieceProgram program_of(const Setup& setup, std::span<const Piece> pieces,
+                                      const PieceProgramOptions& options = {});
+
+}  // namespace meshwind

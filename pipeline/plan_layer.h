@@ -1,0 +1,44 @@
+/// From a layer of the job to its plan: which planner, with what options.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/run_context.h"
+#include "pipeline/job/job.h"
+#include "pipeline/setup.h"
+#include "winding/plan/windability.h"
+
+namespace meshwind {
+
+/// Share of the reachable wall that a plan must cover to count as one.
+inline constexpr double kCoveredShare = 0.9;
+
+struct LayerPlanOptions {
+    RunContext context{};
+    /// What the layers before lie on: hoops lie on its cylinder, elbows keep its line.
+    const Mandrel* bare = nullptr;
+    double build_up_mm = 0.0;      ///< of the layers before at most
+    const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
+};
+
+/// A cover of a body that has patterns is planned on a job's own account only where the wall is no
+/// larger than so many squares of the tow's width: ten times a tee of 0.19 m^2 with a tow of 6 mm,
+/// which takes half a minute. The time grows faster than that number.
+inline constexpr double kMostTowSquares = 5e4;
+
+struct PlannedLayer {
+    Plan plan;
+    std::unique_ptr<TrialWinding> trial;  ///< of this plan, where it was wound and held
+    std::string no_pattern;  ///< in words why courses cover a part that has patterns; else empty
+};
+
+/// A plan of the layer on the setup's mandrel, by the planners of layer_planners.h. `auto` takes a
+/// pattern where the part has one that covers kCoveredShare of it and that the machine winds, else
+/// courses that cover it; where the part has patterns and none is taken the context is told why,
+/// and a wall of more than kMostTowSquares is not covered. \pre the layer is not imported
+[[nodiscard]] PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer,
+                                      const Windability& machine,
+                                      const LayerPlanOptions& options = {});
+
+}  // namespace meshwind

@@ -1,0 +1,98 @@
+#include "pipeline/verify_text.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline/code_digest.h"
+#include "winding/laminate/measure_plan.h"
+
+namespace meshwind {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+VerifyPlan plan_of(const VerifyInputs& inputs, const Machine& machine) {
+    VerifyPlan plan;
+    if (inputs.path && inputs.motion) {
+        plan.fibre = read_path_csv(inputs.path->text, inputs.path->name);
+        plan.motion = read_motion_csv(inputs.motion->text, inputs.motion->name, machine);
+    }
+    return plan;
+}
+
+// The plan's motion, block by block.
+Check program_check(const Machine& machine, const BlockList& program,
+                    const std::vector<PlannedMotion>& motion, std::optional<std::size_t>& wrong) {
+    const MotionDifference difference = first_difference(machine, program, motion);
+    Check check{"program", difference.words.empty(), {}, {}};
+    check.numbers["blocks"] = static_cast<double>(program.moves());
+    if (!check.ok) {
+        // A block that is missing at the end is named by the last one there is.
+        wrong = std::min(difference.block, program.blocks.size() - 1);
+        check.words = "not the planned program from " + block_words(program, *wrong) +
+                      " on: " + difference.words;
+    }
+    return check;
+}
+
+}  // namespace
+
+TextChecks check_text(const Setup& setup, std::string_view text, const std::string& file,
+                      const BlockList& program, const VerifyPlan& plan) {
+    TextChecks found;
+    if (!plan.fibre.empty()) {
+        found.checks.push_back(
+            program_check(setup.machine, program, plan.motion, found.first_wrong));
+    }
+    if (const auto code = code_check(*setup.dialect, text, file, program)) {
+        found.checks.push_back(*code);
+    }
+    return found;
+}
+
+bool VerifyOutcome::passed() const {
+    return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
+}
+
+void refuse_pins(const Job& job, const std::filesystem::path& job_file) {
+    if (job.mandrel.turn == TurnKind::Pins) {
+        throw InputError("job.not_offered", job_file.string() + ": /mandrel/turn",
+                         "the pins are chosen with the plan, so a program that turns on them is "
+                         "not wound again without it; `meshwind` has done so when it made the "
+                         "program, see its report.json");
+    }
+}
+
+VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs, const RunContext& context) {
+    VerifyOutcome outcome;
+    outcome.setup = std::move(setup);
+    outcome.program = std::filesystem::path(inputs.program.name).filename().string();
+    const std::string& text = inputs.program.text;
+    const std::string& name = inputs.program.name;
+    outcome.blocks = outcome.setup.dialect->read(text, name, outcome.setup.machine);
+    if (inputs.tie_on_mm) {
+        outcome.blocks.tie_on_mm = inputs.tie_on_mm;
+    }
+    const VerifyPlan plan = plan_of(inputs, outcome.setup.machine);
+    const TextChecks texts = check_text(outcome.setup, text, name, outcome.blocks, plan);
+    outcome.checks = texts.checks;
+    const auto begun = Clock::now();
+    outcome.verification =
+        verify_program(outcome.setup, outcome.blocks, plan.fibre,
+                       [&](double share) { context.report_progress("verify", share); });
+    outcome.coverage = coverage_of_fibre(
+        outcome.setup.mandrel.surface, outcome.setup.wall->surface(),
+        outcome.setup.job.tow.width_mm, context.seed, outcome.verification.laid.path);
+    // Where the program is not the planned one is the cause, what the fibre does the effect.
+    if (texts.first_wrong) {
+        outcome.verification.first_wrong_block = texts.first_wrong;
+    }
+    const std::vector<Check>& found = outcome.verification.checks;
+    outcome.checks.insert(outcome.checks.end(), found.begin(), found.end());
+    outcome.verifying_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    return outcome;
+}
+
+}  // namespace meshwind

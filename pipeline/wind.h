@@ -1,0 +1,63 @@
+/// The main job: mandrel, machine and job in; plan, program and checks out. No file is read or
+/// written.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/run_context.h"
+#include "machines/machine.h"
+#include "mesh/mandrel.h"
+#include "pipeline/imported_plan.h"
+#include "pipeline/job/job.h"
+#include "pipeline/setup.h"
+#include "pipeline/wind_layer.h"
+#include "postproc/verify/verify.h"
+
+namespace meshwind {
+
+struct WindOptions {
+    RunContext context{};
+    /// Landing points to wind instead of what the job's layers ask for.
+    std::optional<ImportRequest> import{};
+    bool force = false;  ///< the program is for use although a check failed
+    InputFiles files{};  ///< named in messages
+    /// What the programs' heads say of the mandrel's file, "sha256 ..."; empty: digest of its mesh.
+    std::string mandrel_digest{};
+    double reading_s = 0.0;  ///< that the inputs took before; counts as "import"
+};
+
+/// Everything that was found.
+struct Run {
+    std::vector<WoundLayer> layers;  ///< >= 1, in winding order, as far as they could be wound
+    /// Of all layers: those of a further one end in its number, "slip-layer-2".
+    std::vector<Check> checks;
+    std::vector<std::string> remarks;  ///< what may be meant otherwise, one line each
+    std::map<std::string, double> timing_s;
+    std::uint64_t seed = 1;
+    bool usable = false;  ///< the programs may be run: all was planned and passed, or by force
+
+    /// Every layer that the job asks for has a plan.
+    [[nodiscard]] bool planned() const;
+
+    [[nodiscard]] bool passed() const {
+        for (const Check& check : checks) {
+            if (!check.ok) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+
+/// Plans every layer of the job, makes its programs and winds them again from their text.
+/// \param mandrel as load_mandrel() has it, with mandrel_options(job) \param machine as
+/// load_machine() has it
+/// \throws InputError for input that cannot be wound at all; what a plan cannot do is a check of
+/// the result that failed
+[[nodiscard]] Run wind(Mandrel mandrel, const Machine& machine, const Job& job,
+                       const WindOptions& options = {});
+
+}  // namespace meshwind

@@ -1,0 +1,53 @@
+#include "postproc/nc/dialect.h"
+
+#include <memory>
+
+#include "core/error.h"
+#include "postproc/nc/nc_dialects.h"
+#include "postproc/nc/pulses.h"
+
+namespace meshwind {
+void Dialect::check(const Machine& machine) const {
+    BlockList list;
+    for (std::size_t a = 0; a < machine.axis_count(); ++a) {
+        const Axis& axis = machine.axis(a);
+        list.axes.push_back({axis.letter, axis.type, axis.resolution_nano});
+    }
+    list.blocks = {{}, {.duration_s = 1.0}};
+    list.nano.assign(2 * list.axes.size(), 0);
+    for (std::size_t a = 0; a < list.axes.size(); ++a) {
+        list.nano[list.axes.size() + a] = list.axes[a].resolution_nano;
+    }
+    // A name that no controller takes for a command: it may stand in comments alone.
+    const ProgramHeader header{.version = "version", .mandrel = "part.stl"};
+    (void)write(machine, list, header);
+}
+
+std::vector<std::string> dialect_names() {
+    std::vector<std::string> names;
+    for (const NcFlavour* flavour : nc_flavours()) {
+        names.emplace_back(flavour->dialect);
+    }
+    names.push_back(Pulses().name());
+    return names;
+}
+
+std::unique_ptr<Dialect> make_dialect(std::string_view name) {
+    for (const NcFlavour* flavour : nc_flavours()) {
+        if (flavour->dialect == name) {
+            return std::make_unique<NcDialect>(*flavour);
+        }
+    }
+    if (name == Pulses().name()) {
+        return std::make_unique<Pulses>();
+    }
+    std::string known;
+    for (const std::string& word : dialect_names()) {
+        known += (known.empty() ? "" : ", ") + word;
+    }
+    throw InputError("dialect.unknown", "",
+                     "dialect \"" + std::string(name) + "\" is not known; choose one of " + known +
+                         " (KRL is written by meshwind carry)");
+}
+
+}  // namespace meshwind

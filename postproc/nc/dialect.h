@@ -1,0 +1,106 @@
+/// What every controller language offers: blocks to text and text to blocks.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "machines/machine.h"
+#include "postproc/motion/block.h"
+#include "postproc/nc/repeats.h"
+
+namespace meshwind {
+
+/// What the head of a program tells the operator; empty texts are left out.
+struct ProgramHeader {
+    std::string version{};         ///< of meshwind
+    std::string mandrel{};         ///< file name
+    std::string mandrel_digest{};  ///< e.g. "sha256 1f2e.."
+    std::string job_digest{};
+    std::string code_digest{};  ///< of code_of() what is written
+    double fibre_length_mm = 0.0;
+    std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
+    /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is
+    /// where it lies already.
+    std::string goes_on_from{};
+    std::vector<std::string> notes{};  ///< a line each, e.g. that a failed check was overruled
+};
+
+/// One controller language. Stateless; positions survive write and read to the last digit,
+/// durations to six digits.
+class Dialect {
+public:
+    virtual ~Dialect() = default;
+
+    [[nodiscard]] virtual std::string name() const = 0;
+    /// With the point, e.g. ".ngc".
+    [[nodiscard]] virtual std::string extension() const = 0;
+
+    /// How the machine's header lines make the controller go past corners; no words where the
+    /// language has none.
+    [[nodiscard]] virtual PathMode path_mode(const Machine&) const { return {}; }
+    /// How far the controller may leave the corners between blocks, mm of the linear axes, as the
+    /// machine's header lines tell it; infinite when they do not say, for then it keeps the feed.
+    [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const {
+        return path_mode(machine).corner_mm;
+    }
+    /// Blocks last whole ticks of this length; 0: any time.
+    [[nodiscard]] virtual double tick_s() const { return 0.0; }
+
+    /// What the machine file asks of the controller, before anything is planned for it.
+    /// \throws InputError what `write` throws for letters, feed and header lines
+    void check(const Machine& machine) const;
+
+    /// The blocks as the controller needs them: what it would execute wrongly is written in another
+    /// way (more blocks, same positions). Tables beside the program are made from this result.
+    /// prepare(prepare(list)) = prepare(list). Axes may get other steps, then with positions on
+    /// these. \throws InputError dialect.float32
+    [[nodiscard]] virtual BlockList prepare(BlockList list) const = 0;
+
+    /// Folds circuits that repeat where the language has subprograms; here nothing.
+    /// \param list a result of prepare()
+    /// \return what the program will really run (tables are made from it), and how it is written
+    [[nodiscard]] virtual FoldedProgram fold(BlockList list) const { return {std::move(list), {}}; }
+
+    /// The program of prepare(list), a line for each block.
+    /// \pre list has the axes of the machine and at least one block
+    /// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line,
+    /// dialect.placeholder, dialect.duration, dialect.digits, dialect.long_line
+    [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
+                                    const ProgramHeader& header) const {
+        return write(machine, prepare(list), {}, header);
+    }
+
+    /// The program of what fold() returned; the same errors.
+    [[nodiscard]] virtual std::string write(const Machine& machine, const BlockList& list,
+                                            const ProgramLayout& layout,
+                                            const ProgramHeader& header) const = 0;
+
+    /// Reads a program of the subset that `write` uses (and what is harmless besides): the blocks
+    /// that the controller would run, one by one, whatever the text repeats.
+    /// \param file name used in messages
+    /// \return positions and durations; `piece` from the course marks, `line` of each block, the
+    /// tie-on of the head to three decimals
+    /// \throws InputError nc.* with the place "file:line" for anything else
+    [[nodiscard]] virtual BlockList read(std::string_view text, const std::string& file,
+                                         const Machine& machine) const = 0;
+
+    /// What a program is but for its looks, to tell whether it was changed: its code in lower case
+    /// without blanks, line numbers and comments, and the comment that ties the fibre on; lines end
+    /// in \n. \throws InputError nc.comment
+    [[nodiscard]] virtual std::string code_of(std::string_view text,
+                                              const std::string& file) const = 0;
+};
+
+/// Names of all languages, in the order in which messages list them.
+[[nodiscard]] std::vector<std::string> dialect_names();
+
+/// \throws InputError dialect.unknown with the names that exist
+[[nodiscard]] std::unique_ptr<Dialect> make_dialect(std::string_view name);
+
+}  // namespace meshwind

@@ -1,0 +1,104 @@
+/// What tells one G-code language from another: the one writer and the one reader go by it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "postproc/nc/feed_rule.h"
+#include "postproc/nc/linuxcnc_words.h"
+#include "postproc/nc/program_flow.h"
+
+namespace meshwind {
+
+/// A code that changes nothing in what the axes do, and the letters that may stand beside it.
+struct NcHarmless {
+    int tenths = 0;  ///< G61.1 is 611
+    std::string_view parameters{};
+    bool path = false;  ///< it says how corners are passed (PathMode)
+};
+
+/// What a controller counts of a line that may be too long for it.
+enum class NcCounted {
+    All,
+    UpToComment,  ///< what stands behind ; is dropped before
+    Code,         ///< nor do blanks and comments in brackets count
+};
+
+/// How circuits that repeat are written.
+enum class NcRepeats {
+    None,
+    Subprograms,  ///< O1001 .. M99 behind the end, M98 P1001 L20
+    Sections,  ///< CIRCUIT_1: .. CIRCUIT_1_END: in its place, REPEAT CIRCUIT_1 CIRCUIT_1_END P=19
+};
+
+/// How a controller that keeps positions in 32-bit floats makes them from text.
+enum class Float32Text {
+    None,        ///< positions are exact enough
+    Rounded,     ///< to the nearest float
+    ByHundreds,  ///< digits as an integer, times 0.01 and 0.1 in floats, eight digits at most
+};
+
+struct NcFlavour {
+    using Flow = ProgramFlow (*)(std::span<const std::string_view> lines, const std::string& file);
+
+    std::string_view dialect;     ///< its name
+    std::string_view controller;  ///< as messages name it
+    std::string_view extension;
+
+    // Axes.
+    std::string_view letters;    ///< in the order in which they are written
+    bool typed_letters = false;  ///< A B C must be rotary, the others linear
+    bool free_xyz = false;       ///< but X Y Z may be either
+
+    // Text.
+    NcComments comments = NcComments::BracketsOrSemicolon;
+    std::string_view not_in_comments{};  ///< characters with a meaning even there
+    char stand_in = '?';                 ///< written in their place
+    std::size_t line_length = 252;       ///< characters of a line
+    NcCounted counted = NcCounted::All;
+    std::size_t most_digits = 0;  ///< of a number, leading zeros as well; 0: any
+    bool needs_point = false;     ///< in every number of an axis and F
+    bool one_command = false;     ///< one G or M a line, in front, in upper case
+    bool percent = false;         ///< % in the first and in the last line
+    bool o_number = false;        ///< O0001 (TITLE) in the second
+
+    // Modes.
+    std::string_view first_modes;    ///< lines
+    std::string_view absolute;       ///< before the start moves, e.g. "G90 "
+    std::string_view message;        ///< before a comment that the operator is shown
+    std::string_view tie_on;         ///< that comment before the stop
+    std::string_view winding_modes;  ///< after the stop, without the feed mode
+    bool inverse_time = true;        ///< G93 may be written
+    bool per_minute = false;         ///< G94, or nothing else, may be written
+    bool has_feed_modes = true;      ///< G93 and G94 are known
+    FeedRule feed_rule = FeedRule::Euclid;
+    std::string_view no_per_minute{};  ///< why not, in a message
+    SlowLinear slow_linear{};
+
+    // End.
+    std::string_view end;            ///< line that ends the main program
+    std::string_view end_comment{};  ///< of these words instead
+    bool runs_on = false;            ///< lines behind the end would be run
+
+    NcRepeats repeats = NcRepeats::None;
+    Flow flow = nullptr;  ///< none: line after line
+    Float32Text float32 = Float32Text::None;
+    int finest_binary = 9;  ///< 2^-9 is the finest step for float32 sums
+
+    std::span<const NcHarmless> harmless_g{};
+    std::span<const NcHarmless> harmless_m{};
+    std::span<const std::string_view> harmless_words{};  ///< e.g. SOFT; ADIS= takes a number
+};
+
+/// Every flavour, one row each.
+[[nodiscard]] std::span<const NcFlavour* const> nc_flavours();
+
+[[nodiscard]] const NcFlavour& linuxcnc_flavour();
+[[nodiscard]] const NcFlavour& fanuc_flavour();
+[[nodiscard]] const NcFlavour& siemens_flavour();
+[[nodiscard]] const NcFlavour& grbl_flavour();
+[[nodiscard]] const NcFlavour& marlin_flavour();
+
+}  // namespace meshwind

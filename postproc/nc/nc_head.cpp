@@ -1,0 +1,104 @@
+#include "core/text/text_number.h"
+#include "postproc/nc/float32_steps.h"
+#include "postproc/nc/nc_writer.h"
+
+namespace meshwind {
+namespace {
+
+constexpr double kMmPerM = 1000.0;
+
+void append_if(std::vector<std::string>& to, const std::string& key, const std::string& value) {
+    if (!value.empty()) {
+        to.push_back(key + value);
+    }
+}
+
+void make_plain(const NcFlavour& flavour, std::string& words) {
+    const bool brackets = flavour.comments != NcComments::Semicolon;
+    for (char& c : words) {
+        const bool plain =
+            c >= ' ' && c <= '~' && flavour.not_in_comments.find(c) == std::string_view::npos;
+        c = brackets && c == '(' ? '[' : brackets && c == ')' ? ']' : plain ? c : flavour.stand_in;
+    }
+}
+
+// Steps that differ from the machine's, and what float sums lose all the same.
+void append_float32(std::vector<std::string>& to, const Machine& machine, const BlockList& list,
+                    Float32Text text) {
+    for (std::size_t a = 0; a < list.axes.size(); ++a) {
+        const std::int64_t step = list.axes[a].resolution_nano;
+        const std::int64_t own = machine.axis(a).resolution_nano;
+        const auto shown = [](std::int64_t nano) {
+            std::string digits;
+            append_shortest(digits, static_cast<double>(nano) / static_cast<double>(kNanoPerUnit));
+            return digits;
+        };
+        const std::string name = std::string("axis ") + list.axes[a].letter;
+        if (step != own) {
+            to.push_back(name + " is in steps of " + shown(step) + " instead of " + shown(own) +
+                         ", so that sums in 32-bit floats are exact");
+        }
+        const double error = float32_error(list, a, text);
+        if (error > 0.5 * static_cast<double>(own) / static_cast<double>(kNanoPerUnit) &&
+            step == own) {
+            to.push_back(name + " is off by up to " + fixed(error, 4) +
+                         " at the controller, which adds in 32-bit floats");
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> head_comments(const Machine& machine, const BlockList& list,
+                                       const ProgramHeader& header, Float32Text float32) {
+    std::vector<std::string> lines{"meshwind " + header.version};
+    append_if(lines, "mandrel: ", header.mandrel);
+    append_if(lines, "mandrel digest: ", header.mandrel_digest);
+    lines.push_back("machine: " + machine.name);
+    append_if(lines, "job digest: ", header.job_digest);
+    append_if(lines, std::string(kCodeDigest), header.code_digest);
+    lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
+    lines.push_back("time: " + fixed(list.duration_s(), 1) + " s");
+    lines.push_back("blocks: " + std::to_string(list.moves()));
+    if (header.tie_on_mm) {
+        const Eigen::Vector3d& p = *header.tie_on_mm;
+        lines.push_back("tie on at X" + fixed(p.x(), 3) + " Y" + fixed(p.y(), 3) + " Z" +
+                        fixed(p.z(), 3) + " on the mandrel");
+    }
+    append_if(lines, "the fibre goes on, do not cut it: run after ", header.goes_on_from);
+    for (const std::string& note : header.notes) {
+        lines.push_back("note: " + note);
+    }
+    append_float32(lines, machine, list, float32);
+    return lines;
+}
+
+LineValues line_values(const NcFlavour& flavour, const Machine& machine, const BlockList& list,
+                       const ProgramHeader& header) {
+    const auto plain = [&](const std::string& words) {
+        std::string line = words.substr(0, flavour.line_length);
+        make_plain(flavour, line);
+        return line;
+    };
+    return {.program = std::to_string(machine.controller.program_number.value_or(1)),
+            .mandrel = plain(header.mandrel),
+            .machine = plain(machine.name),
+            .time_s = fixed(list.duration_s(), 1),
+            .fibre_m = fixed(header.fibre_length_mm / kMmPerM, 3),
+            .blocks = std::to_string(list.moves()),
+            .version = plain(header.version)};
+}
+
+std::string comment_lines(const NcFlavour& flavour, std::string words) {
+    const bool brackets = flavour.comments != NcComments::Semicolon;
+    make_plain(flavour, words);
+    std::string text;
+    const std::size_t width = flavour.line_length - 2;
+    for (std::size_t i = 0; i == 0 || i < words.size(); i += width) {
+        text +=
+            brackets ? '(' + words.substr(i, width) + ")\n" : "; " + words.substr(i, width) + '\n';
+    }
+    return text;
+}
+
+}  // namespace meshwind

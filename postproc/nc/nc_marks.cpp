@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "postproc/nc/nc_reader.h"
+
+namespace meshwind {
+namespace {
+
+constexpr std::string_view kTieOn = "tie on";
+
+[[noreturn]] void bad_tie_on(const NcLine& line) {
+    line.fail("nc.tie_on",
+              "a comment \"tie on\" must read (tie on at X1.000 Y2.000 Z3.000 on the mandrel)");
+}
+
+}  // namespace
+
+void NcMarks::read(const NcLine& line, BlockList& list) {
+    for (std::string_view comment : line.comments) {
+        tie_on(line, comment, list);
+        head(line, comment, list);
+        constexpr std::string_view kCourse = "course ";
+        if (comment.substr(0, kCourse.size()) == kCourse) {
+            comment.remove_prefix(kCourse.size());
+            std::int32_t piece = 0;
+            const auto [end, error] =
+                std::from_chars(comment.data(), comment.data() + comment.size(), piece);
+            if (error == std::errc{} && end == comment.data() + comment.size()) {
+                piece_ = piece;
+            }
+        }
+    }
+}
+
+void NcMarks::head(const NcLine& line, std::string_view comment, BlockList& list) {
+    if (!list.head) {
+        return;
+    }
+    constexpr std::string_view kMadeBy = "meshwind ";
+    // Behind "%" and the title at most.
+    constexpr std::int32_t kLastOfMaker = 3;
+    if (line.number <= kLastOfMaker && comment.substr(0, kMadeBy.size()) == kMadeBy) {
+        list.head->by_meshwind = true;
+    }
+    if (comment.substr(0, kCodeDigest.size()) == kCodeDigest) {
+        list.head->code_digest = comment.substr(kCodeDigest.size());
+    }
+}
+
+void NcMarks::tie_on(const NcLine& line, std::string_view comment, BlockList& list) {
+    static constexpr std::array<std::string_view, 3> kBefore = {"tie on at X", " Y", " Z"};
+    if (comment.substr(0, kTieOn.size()) != kTieOn) {
+        return;
+    }
+    if (list.tie_on_mm) {
+        line.fail("nc.tie_on", "a second place to tie the fibre on; keep one");
+    }
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < kBefore.size(); ++i) {
+        const bool key = comment.substr(0, kBefore[i].size()) == kBefore[i];
+        comment.remove_prefix(key ? kBefore[i].size() : comment.size());
+        double& value = place[static_cast<Eigen::Index>(i)];
+        const auto [end, error] = std::from_chars(comment.data(), comment.data() + comment.size(),
+                                                  value, std::chars_format::fixed);
+        if (error != std::errc{} || !std::isfinite(value)) {
+            bad_tie_on(line);
+        }
+        comment.remove_prefix(static_cast<std::size_t>(end - comment.data()));
+    }
+    if (comment != " on the mandrel") {
+        bad_tie_on(line);
+    }
+    list.tie_on_mm = place;
+}
+
+std::string code_of_nc(NcComments comments, std::string_view text, const std::string& file) {
+    NcLine line;
+    line.file = &file;
+    line.style = comments;
+    std::string all;
+    for (const std::string_view words : lines_of_text(text)) {
+        ++line.number;
+        std::string code = line.split_comments(words);
+        if (!code.empty() && code.front() == 'n') {
+            code.erase(0, std::min(code.find_first_not_of("0123456789", 1), code.size()));
+        }
+        for (const std::string_view comment : line.comments) {
+            if (comment.substr(0, kTieOn.size()) == kTieOn) {
+                code += comment.substr(0, comment.find_last_not_of(" \t") + 1);
+            }
+        }
+        all += code.empty() || code == "%" ? "" : code + '\n';
+    }
+    return all;
+}
+
+std::vector<std::string_view> lines_of_text(std::string_view text) {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        if (!line.empty() && line.back() == '\r') {
+            line.remove_suffix(1);
+        }
+        lines.push_back(line);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return lines;
+}
+
+}  // namespace meshwind

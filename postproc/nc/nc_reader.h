@@ -1,0 +1,51 @@
+/// The one reader of G-code: text to blocks, as a flavour has it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/motion/block.h"
+#include "postproc/nc/nc_flavour.h"
+
+namespace meshwind {
+
+/// The blocks that the controller would run. Taken are G0 G1 G90 G91 G93 G94, F, N, M0 M1, the ends
+/// and what the flavour calls harmless.
+/// \param file name used in messages
+/// \throws InputError nc.* with the place "file:line" for anything else
+[[nodiscard]] BlockList read_nc(const NcFlavour& flavour, std::string_view text,
+                                const std::string& file, const Machine& machine);
+
+/// A line of the controller's own must be one that the reader takes, and must neither move nor end
+/// the program nor tie the fibre on. \throws InputError dialect.header_line
+void check_own_line(const NcFlavour& flavour, const Machine& machine, const std::string& line);
+
+/// How the machine's own header lines make the controller go past corners. Lines that cannot be
+/// used (check_own_line) say nothing. \throws InputError dialect.placeholder
+[[nodiscard]] PathMode path_mode_of(const NcFlavour& flavour, const Machine& machine);
+
+/// Dialect::code_of. \throws InputError nc.comment
+[[nodiscard]] std::string code_of_nc(NcComments comments, std::string_view text,
+                                     const std::string& file);
+
+/// Text as lines without their ends.
+[[nodiscard]] std::vector<std::string_view> lines_of_text(std::string_view text);
+
+/// The comments with a meaning: "course 3", "tie on at X1.000 Y2.000 Z3.000 on the mandrel",
+/// "code digest: 0f.." and, in the first line, "meshwind 1.0".
+class NcMarks {
+public:
+    /// \throws InputError nc.tie_on
+    void read(const NcLine& line, BlockList& list);
+    [[nodiscard]] std::int32_t piece() const { return piece_; }
+
+private:
+    static void tie_on(const NcLine& line, std::string_view comment, BlockList& list);
+    static void head(const NcLine& line, std::string_view comment, BlockList& list);
+    std::int32_t piece_ = -1;
+};
+
+}  // namespace meshwind

@@ -1,0 +1,36 @@
+/// The one writer of G-code: blocks to text, as a flavour has it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/motion/block.h"
+#include "postproc/nc/dialect.h"
+#include "postproc/nc/header_lines.h"
+#include "postproc/nc/nc_flavour.h"
+
+namespace meshwind {
+
+/// The program of prepared blocks, as laid out.
+/// \pre list has the axes of the machine and at least one block
+/// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line, dialect.placeholder,
+/// dialect.duration, dialect.digits, dialect.long_line
+[[nodiscard]] std::string write_nc(const NcFlavour& flavour, const Machine& machine,
+                                   const BlockList& list, const ProgramLayout& layout,
+                                   const ProgramHeader& header);
+
+/// The head's comments, one entry each and of any length: who made the program, of what, how long
+/// it takes, where the fibre is tied on, what float sums ask for, notes.
+[[nodiscard]] std::vector<std::string> head_comments(const Machine& machine, const BlockList& list,
+                                                     const ProgramHeader& header,
+                                                     Float32Text float32);
+
+/// What the controller's own lines may ask for, such that it can stand in a comment of the flavour.
+[[nodiscard]] LineValues line_values(const NcFlavour& flavour, const Machine& machine,
+                                     const BlockList& list, const ProgramHeader& header);
+
+/// Words as comments of the flavour, a line each or as many as it takes.
+[[nodiscard]] std::string comment_lines(const NcFlavour& flavour, std::string words);
+
+}  // namespace meshwind

@@ -1,0 +1,82 @@
+/// Circuits that repeat, written once as subprograms.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "postproc/motion/block.h"
+
+namespace meshwind {
+
+/// A stretch of a program as it is written.
+struct ProgramPart {
+    enum class Kind { Blocks, Call };
+    Kind kind = Kind::Blocks;
+    std::size_t first =
+        0;                 ///< Blocks: first..last of the list; Call: the block that it begins with
+    std::size_t last = 0;  ///< Blocks
+    std::size_t subprogram = 0;  ///< Call: index
+    std::int64_t times = 1;      ///< Call
+
+    friend bool operator==(const ProgramPart&, const ProgramPart&) = default;
+};
+
+/// How the blocks of a list are written. Without subprograms, `main` is empty and every block has
+/// its line.
+struct ProgramLayout {
+    std::vector<ProgramPart> main{};
+    /// A subprogram calls none before its own place in this order, so each stands behind its calls.
+    std::vector<std::vector<ProgramPart>> subprograms{};
+    /// For each axis, how far the blocks are from those planned at most, 1e-9 mm or deg.
+    std::vector<std::int64_t> drift_nano{};
+
+    /// Lines of calls, those in subprograms included.
+    [[nodiscard]] std::size_t calls() const;
+};
+
+/// What a program really runs, block by block, and how it is written.
+struct FoldedProgram {
+    BlockList list;
+    ProgramLayout layout;
+};
+
+/// How far repetition may take an axis from its planned position. A circuit that is repeated is
+/// rounded once and so loses up to half a step each time: half a step over all repeats, as written
+/// out blocks hold it, cannot be had. The defaults are a tenth of the lateral precision of the best
+/// winding machines (0.1 mm; 0.01 deg are 0.02 mm at a radius of 100 mm). An axis whose resolution
+/// is coarser has one step of it instead.
+struct RepeatTolerance {
+    double linear_mm = 0.01;   ///< >= 0
+    double rotary_deg = 0.01;  ///< >= 0
+};
+
+/// A circuit is repeated at least so often to become a subprogram.
+inline constexpr std::size_t kLeastCircuits = 3;
+
+/// And saves at least as many lines, about a page of them: less is not worth looking elsewhere for.
+inline constexpr std::size_t kLeastLinesSaved = 40;
+
+/// Repeats are folded only if the program then has at most this share of its lines: what is shorter
+/// by less is easier to follow written out.
+inline constexpr double kFoldedShare = 0.5;
+
+/// Folds runs of equal circuits. A circuit is a stretch after which the linear axes, having moved,
+/// are back where they were; circuits are equal when all increments are so to within a step (what
+/// the rounding of positions leaves) and all durations to within six digits.
+///
+/// The circuit is closed in steps: its offsets are the means over the run, rounded, the same each
+/// time. What the true circuit has beyond that adds up until it would pass the tolerance. Then the
+/// first block of the next circuit is written out, to its planned position, and a second subprogram
+/// has the rest of the circuit; so no correction takes a block or time of its own. The block after
+/// a run is written to its planned position, too; where a run ends the program, its last circuit
+/// begins so that it ends exactly as planned. So the tolerance holds in between and nothing is off
+/// at the end.
+///
+/// \return the list unchanged, with an empty layout, when nothing repeats or it does not pay.
+/// Otherwise as many blocks with the same pieces and points, positions within the tolerance (or a
+/// step) of those given, durations within six digits. Time grows linearly with the number of
+/// blocks. Accuracy: Repeats.* in tests/postproc/nc/repeats_test.cpp.
+[[nodiscard]] FoldedProgram fold_repeats(BlockList list, const RepeatTolerance& tolerance = {});
+
+}  // namespace meshwind

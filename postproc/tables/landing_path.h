@@ -1,0 +1,103 @@
+/// Landing points made elsewhere, as paths on the wall.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "geodesic/measure.h"
+#include "geodesic/surface_path.h"
+#include "mesh/ray_query.h"
+#include "postproc/tables/landing_csv.h"
+
+namespace meshwind {
+
+struct LandingOptions {
+    /// Of the table in its units to the mandrel frame in mm.
+    Eigen::Affine3d mandrel_from_table = Eigen::Affine3d::Identity();
+    /// > 0; points further off the wall are refused: they belong to another part or frame.
+    double farthest_mm = 1.0;
+    std::string file;  ///< name for messages
+};
+
+/// How far points were moved onto the wall.
+struct LandingMoves {
+    std::size_t points = 0;    ///< rows that were looked at, repeated ones among them
+    std::size_t repeated = 0;  ///< rows left out: the same place as the row before
+    double worst_mm = 0.0;
+    double sum_mm = 0.0;  ///< over the points
+    int worst_line = 0;   ///< of the file
+};
+
+/// Puts landing points on the curved patches of a wall and lays paths through them.
+///
+/// Each point goes to the nearest place of the wall. Its tangent is that of the parabola through
+/// it and its two neighbours, (P3 - P2) d1 / d2 + (P2 - P1) d2 / d1 with the distances d1 and d2,
+/// laid into the wall: second order at any spacing, where fu_2009_post_processing, sec. 1, takes
+/// chords. At both ends it is that of the parabola through the three last points. Tangents that
+/// the table gives are taken instead, for they come from whoever knows the path between the points;
+/// they must agree with the parabola's within kTangentOff_rad. Two points that are twice
+/// kLandingStation_mm apart or more get stations between them, on the cubic with their tangents,
+/// laid on the wall: all are less than that apart, and a table of stations is left as it is.
+/// Normals and kn are the wall's, kg is left at 0.
+class LandingPaths {
+public:
+    /// \param wall outlives this
+    LandingPaths(const Surface& wall, const LandingOptions& options);
+
+    /// \throws InputError import.too_far, import.sparse, import.normal, import.tangent,
+    /// import.empty, each with the line of the file
+    [[nodiscard]] SurfacePath through(const LandingCourse& course);
+
+    /// The taut string over a path that this gave, worked out with stations kStringStation_mm
+    /// apart: bridges begin and end between its stations, and what makes them is seen there alone.
+    /// \return one entry per station of the path; the worst gap is that of the dense path
+    [[nodiscard]] TautString string_over(const SurfacePath& path) const;
+
+    [[nodiscard]] const LandingMoves& moves() const { return moves_; }
+
+private:
+    struct Landing;
+
+    [[nodiscard]] Landing landing_of(const LandingRow& row) const;
+    [[nodiscard]] std::vector<std::vector<Landing>> stretches_of(const LandingCourse& course);
+    [[nodiscard]] std::vector<Eigen::Vector3d> tangents_of(
+        const std::vector<Landing>& stretch) const;
+    void check_turns(const std::vector<Landing>& stretch,
+                     const std::vector<Eigen::Vector3d>& tangents) const;
+    void check_normal(const Landing& landing, const Eigen::Vector3d& normal) const;
+    void append(const std::vector<Landing>& stretch, SurfacePath& path) const;
+    [[noreturn]] void fail(const char* code, int line, const std::string& words) const;
+
+    const Surface& wall_;
+    LandingOptions options_;
+    RayQuery facets_;
+    LandingMoves moves_;
+};
+
+/// Stations that are put between points are no nearer to each other: the distance that planned
+/// courses are thinned out to, whose stations are apart by this and what the tracer's step adds.
+inline constexpr double kLandingStation_mm = 4.0;
+
+/// Distance of stations at which bridges are looked for: half of what a traced course has on the
+/// faces of a fillet.
+inline constexpr double kStringStation_mm = 1.0;
+
+/// From point to point a fibre turns no more than this: through fewer points no curve is known.
+inline constexpr double kMostLandingTurn_rad = 0.8;
+
+inline constexpr double kTangentOff_rad = 0.3;
+
+/// Direction of travel at the middle of three points by the parabola through them, unit.
+/// \pre neighbours differ
+[[nodiscard]] Eigen::Vector3d parabola_tangent(const Eigen::Vector3d& before,
+                                               const Eigen::Vector3d& here,
+                                               const Eigen::Vector3d& after);
+
+/// The same at the first of three points.
+[[nodiscard]] Eigen::Vector3d parabola_end_tangent(const Eigen::Vector3d& here,
+                                                   const Eigen::Vector3d& next,
+                                                   const Eigen::Vector3d& after_next);
+
+}  // namespace meshwind

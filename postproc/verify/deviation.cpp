@@ -1,0 +1,122 @@
+#include "postproc/verify/deviation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Stations of the plan closer together than this have no direction between them: the joint of two
+// pieces, the two sides of a feature edge.
+constexpr double kOneStation_mm = 0.01;
+
+// How far ahead of the present planned station a laid one is looked for. A laid fibre that is
+// further away has left the plan.
+constexpr double kAhead_mm = 50.0;
+
+// The planned fibre at a laid station.
+struct Matched {
+    Vector3d position_mm, normal, tangent;
+};
+
+// The cubic between two stations at the place beside `x`.
+Matched between(const PlannedStation& a, const PlannedStation& b, const Vector3d& x) {
+    const CubicPlace place = beside(a.position_mm, a.tangent, b.position_mm, b.tangent, x);
+    const Vector3d normal = (1.0 - place.share) * a.normal + place.share * b.normal;
+    return {place.position_mm, (normal - place.tangent * place.tangent.dot(normal)).normalized(),
+            place.tangent};
+}
+
+// How many stations from the first on are where that is.
+template <class Station>
+std::size_t stations_at_one_place(Station first, Station last) {
+    const auto apart = std::find_if(first, last, [&](const PathPoint& station) {
+        return !((station.position_mm - first->position_mm).norm() < kOneStation_mm);
+    });
+    return static_cast<std::size_t>(apart - first);
+}
+
+}  // namespace
+
+PlannedFibre planned_fibre(std::span<const Piece> pieces) {
+    PlannedFibre fibre;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const SurfacePath& path = pieces[p].path;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            fibre.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(i),
+                             path[i].position_mm, path[i].normal, path[i].tangent,
+                             pieces[p].string.gap_mm[i] > 0.0});
+        }
+    }
+    return fibre;
+}
+
+Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
+                  const LaydownTolerance& tolerance) {
+    Deviation deviation;
+    std::size_t j = 0;  // laid stations are between planned j and the next apart from it
+    const auto next_of = [&](std::size_t i) {
+        std::size_t next = i + 1;
+        while (next < planned.size() &&
+               (planned[next].position_mm - planned[i].position_mm).norm() < kOneStation_mm) {
+            ++next;
+        }
+        return next;
+    };
+    // Over a feature edge the fibre swings on the spot: any direction may be found there.
+    const auto swings = [&](std::size_t first, std::size_t end, const Vector3d& at) {
+        return end - first > 1 &&
+               (planned[first].position_mm - at).norm() <= tolerance.deviation_mm;
+    };
+    // Where the fibre begins and ends on the edge of a rim, stations lie on either side of it; the
+    // wall's is that beside the fibre.
+    const std::size_t begin = stations_at_one_place(laid.path.begin(), laid.path.end());
+    const std::size_t end =
+        laid.path.size() - stations_at_one_place(laid.path.rbegin(), laid.path.rend());
+    const auto beyond_end = [&](std::size_t i) { return i + 1 < begin || i > end; };
+    for (std::size_t i = 0; i < laid.path.size(); ++i) {
+        const PathPoint& station = laid.path[i];
+        std::size_t next = next_of(j);
+        while (next < planned.size() &&
+               (station.position_mm - planned[next].position_mm).dot(planned[next].tangent) > 0.0 &&
+               (station.position_mm - planned[next].position_mm).norm() < kAhead_mm) {
+            j = next;
+            next = next_of(j);
+        }
+        deviation.planned.push_back(j);
+        if (laid.at[i].lifted || next >= planned.size() || planned[j].lifted ||
+            planned[next].lifted) {
+            continue;
+        }
+        // Of several stations at one place the last leads on.
+        const Matched match = between(planned[next - 1], planned[next], station.position_mm);
+        const Vector3d across = match.normal.cross(match.tangent);
+        const double sideways = std::abs((station.position_mm - match.position_mm).dot(across));
+        // About a pin the fibre has the pin's direction, wherever it came from.
+        const bool on_the_spot = laid.at[i].held || beyond_end(i) ||
+                                 swings(j, next, station.position_mm) ||
+                                 swings(next, next_of(next), station.position_mm);
+        const double angle = on_the_spot ? 0.0
+                                         : std::abs(std::atan2(station.tangent.dot(across),
+                                                               station.tangent.dot(match.tangent)));
+        if (sideways > deviation.max_mm) {
+            deviation.max_mm = sideways;
+            deviation.max_at = i;
+        }
+        if (angle > deviation.max_angle_rad) {
+            deviation.max_angle_rad = angle;
+            deviation.max_angle_at = i;
+        }
+        if (sideways > tolerance.deviation_mm || angle > tolerance.angle_rad) {
+            deviation.wrong.push_back(i);
+        }
+    }
+    deviation.end_gap_mm = (laid.path.back().position_mm - planned.back().position_mm).norm();
+    return deviation;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,27 @@
+/// What report.html shows, in one binary text.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/wind.h"
+#include "report/layup.h"
+
+namespace meshwind {
+
+/// Mandrel, fibre, motion, machine, programs and report of a run, for the page (viewer/src/data.ts
+/// reads it). A header in JSON says what the arrays behind it are:
+///
+///     u32           length of the header, which is padded so that the arrays begin at a multiple
+///                   of 8 bytes
+///     header        "report", "machine", "tow", "extension", "layers" with their "fibres" and
+///                   these with their "pieces", "arrays": name -> type, width, count, offset
+///     arrays        little endian, each at a multiple of 8 bytes from the first
+///
+/// Positions are in the mandrel's frame, mm; angles deg. \param report report.json, whose
+/// timing_s is left out
+/// \pre run.planned()
+[[nodiscard]] std::string page_data(const Run& run, const Layup& layup, nlohmann::json report);
+
+}  // namespace meshwind

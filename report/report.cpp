@@ -1,0 +1,558 @@
+#include "report/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/counted.h"
+#include "core/text/text_number.h"
+#include "core/units.h"
+#include "core/version.h"
+#include "pipeline/part_words.h"
+#include "pipeline/run_names.h"
+#include "report/report_checks.h"
+#include "report/report_layers.h"
+#include "report/report_mandrel.h"
+#include "report/report_page.h"
+
+namespace meshwind {
+namespace {
+
+using nlohmann::json;
+
+const char* name_of(WhatIf::Rule rule) {
+    switch (rule) {
+        case WhatIf::Rule::Friction:
+            return "friction";
+        case WhatIf::Rule::Bridging:
+            return "bridging tolerance";
+        case WhatIf::Rule::Extension:
+            return "extension";
+    }
+    return "";
+}
+
+json what_if_report(const Plan& plan) {
+    json all = json::array();
+    for (const WhatIf& what_if : plan.what_if) {
+        all.push_back({{"rule", name_of(what_if.rule)},
+                       {"factor", what_if.factor},
+                       {"reachable", report_number(what_if.reachable)}});
+    }
+    return all;
+}
+
+json reach_report(const Plan& plan) {
+    json shares = json::array();
+    for (const double share : plan.reach_of_fibres) {
+        shares.push_back(report_number(share));
+    }
+    return shares;
+}
+
+json pins_report(std::span<const PinRing> rings) {
+    json report = json::array();
+    for (const PinRing& ring : rings) {
+        report.push_back({{"rim", ring.rim},
+                          {"count", ring.count},
+                          {"diameter_mm", report_number(ring.diameter_mm)},
+                          {"height_mm", report_number(ring.height_mm)},
+                          {"offset_mm", report_number(ring.offset_mm)},
+                          {"azimuth_deg", report_number(deg_from_rad(ring.azimuth_rad))},
+                          {"skip", ring.skip},
+                          {"strand_mm", report_number(2.0 * ring.strand_mm)}});
+    }
+    return report;
+}
+
+json turns_report(const Plan& plan) {
+    json rims = json::array();
+    for (std::size_t rim = 0; rim < plan.turns.size(); ++rim) {
+        rims.push_back({{"rim", rim},
+                        {"turns", plan.turns[rim].turns},
+                        {"extension_mm", report_number(plan.turns[rim].extension_mm)},
+                        {"dwell_deg", report_number(deg_from_rad(plan.turns[rim].dwell_rad))}});
+    }
+    return rims;
+}
+
+json families_report(const Plan& plan) {
+    const auto in_families = std::count_if(plan.family.begin(), plan.family.end(),
+                                           [](std::int32_t family) { return family >= 0; });
+    std::int32_t families = 0;
+    for (const std::int32_t family : plan.family) {
+        families = std::max(families, family + 1);
+    }
+    return {{"families", families}, {"courses", in_families}, {"per_course", plan.family}};
+}
+
+// Over pipes, degrees from the axial direction of each.
+json angles_report(const Plan& plan) {
+    json angles = {{"length_mm", report_number(plan.angle.measured_mm)},
+                   {"mean_deg", report_number(deg_from_rad(plan.angle.mean_rad))}};
+    if (plan.angle.wish_rad) {
+        angles["wish_deg"] = report_number(deg_from_rad(*plan.angle.wish_rad));
+        angles["rms_off_deg"] = report_number(deg_from_rad(plan.angle.rms_off_rad));
+        angles["off_share"] = report_number(plan.angle.off_share);
+    }
+    return angles;
+}
+
+const char* word_of(BandOrder order) {
+    return order == BandOrder::Leading ? "leading" : "lagging";
+}
+
+// Angles that differ by less are the same to whoever winds.
+constexpr double kSameAngle_deg = 0.05;
+
+// What the layer asks for, where another angle was laid.
+std::optional<double> other_angle_asked(const LayerJob& job, double laid_rad) {
+    const bool other =
+        job.angle_deg && std::abs(*job.angle_deg - deg_from_rad(laid_rad)) > kSameAngle_deg;
+    return other ? job.angle_deg : std::nullopt;
+}
+
+json pattern_report(const LaidPattern& laid) {
+    const Pattern& pattern = laid.pattern;
+    json report = {{"angle_deg", report_number(deg_from_rad(laid.angle_rad))},
+                   {"slip_ratio", report_number(laid.slip_ratio)},
+                   {"circuits", pattern.circuits},
+                   {"turns", pattern.turns},
+                   {"starts", pattern.starts},
+                   {"skip", pattern.skip},
+                   {"order", word_of(pattern.order)},
+                   {"circuit_turn_deg", report_number(deg_from_rad(pattern.turn_rad))},
+                   {"dwell_deg", report_number(deg_from_rad(pattern.dwell_rad))},
+                   {"overlap", report_number(pattern.overlap)},
+                   {"closure_deg", report_number(deg_from_rad(laid.closure_rad))},
+                   {"band_offset_mm", report_number(laid.band_offset_mm)},
+                   {"interlacing",
+                    {{"crossing_rows", laid.interlacing.crossing_rows},
+                     {"crossings", laid.interlacing.crossings},
+                     {"diamonds_around", laid.interlacing.diamonds_around}}}};
+    if (laid.lattice) {
+        const LaidLattice& lattice = *laid.lattice;
+        report["lattice"] = {{"ribs", 2 * pattern.circuits},
+                             {"series", lattice.series},
+                             {"plies", lattice.plies},
+                             {"circuits_in_all", laid.starts_rad.size()},
+                             {"offset_mm", report_number(lattice.offset_mm)},
+                             {"rib_mm", report_number(lattice.rib_mm)},
+                             {"rib_spacing_mm", report_number(lattice.rib_spacing_mm)},
+                             {"filled", lattice.filled}};
+    }
+    return report;
+}
+
+json elbow_report(const LaidElbow& laid) {
+    json legs = json::array();
+    for (const LaidElbowLeg& leg : laid.leg) {
+        legs.push_back({{"length_mm", report_number(leg.length_mm)},
+                        {"run_mm", report_number(leg.run_mm)},
+                        {"angle_deg", report_number(deg_from_rad(leg.angle_rad))},
+                        {"even", report_number(leg.even)},
+                        {"slip_ratio", report_number(leg.slip_ratio)},
+                        {"widest_mm", report_number(leg.widest_mm)},
+                        {"closed_mm", report_number(leg.closed_mm)}});
+    }
+    return {{"lines", laid.lines},
+            {"needed_by_bend", laid.needed_by_bend},
+            {"angle_deg", report_number(deg_from_rad(laid.angle_rad))},
+            {"inner_angle_deg", report_number(deg_from_rad(laid.inner_angle_rad))},
+            {"theta_cycle_deg", report_number(deg_from_rad(laid.theta_cycle_rad))},
+            {"thinnest_layers", report_number(laid.thinnest_layers)},
+            {"thickest_layers", report_number(laid.thickest_layers)},
+            {"legs", legs}};
+}
+
+json plan_report(const Plan& plan) {
+    json uncovered = json::array();
+    for (const Uncovered& u : plan.uncovered) {
+        uncovered.push_back(
+            {{"region", u.region}, {"area_mm2", report_number(u.area_mm2)}, {"reason", u.reason}});
+    }
+    json refusals = json::object();
+    for (std::size_t r = 0; r < kRefusals; ++r) {
+        refusals[name_of(static_cast<Refusal>(r))] = plan.effort.refusals[r];
+    }
+    json rejections = json::object();
+    for (std::size_t r = 1; r < kRejections; ++r) {
+        rejections[name_of(static_cast<Rejection>(r))] = plan.effort.rejections[r];
+    }
+    json report = {
+        {"planner", name_of(plan.planner)},
+        {"courses", plan.courses},
+        {"transitions", std::max(0, static_cast<int>(plan.pieces.size()) - plan.courses)},
+        {"fibres", plan.fibres},
+        {"reach_of_fibres", reach_report(plan)},
+        {"fibre_length_mm", report_number(plan.fibre_length_mm)},
+        {"coverage",
+         {{"fraction", report_number(plan.coverage.fraction)},
+          {"reachable", report_number(plan.coverage.reachable)},
+          {"mean_layers", report_number(plan.coverage.mean_layers)},
+          {"max_layers", plan.coverage.max_layers},
+          {"cv", report_number(plan.coverage.cv)}}},
+        {"uncovered", uncovered},
+        {"what_if", what_if_report(plan)},
+        {"annealing",
+         {{"seed", plan.effort.seed},
+          {"effort", plan.effort.effort},
+          {"proposals", plan.effort.proposals},
+          {"taken", plan.effort.taken}}},
+        {"angles", angles_report(plan)},
+        {"turns", turns_report(plan)},
+        {"families", families_report(plan)},
+        {"order",
+         {{"junctions_at", report_number(plan.places.junction)},
+          {"hoops_at", report_number(plan.places.hoop)}}},
+        {"library",
+         {{"candidates", plan.effort.candidates},
+          {"outcomes", refusals},
+          {"rejected_courses", plan.effort.rejected_courses},
+          {"rejections", rejections}}}};
+    if (plan.coverage.regular_cv) {
+        report["coverage"]["regular_cv"] = report_number(*plan.coverage.regular_cv);
+    }
+    if (plan.coverage.thinnest_layers && plan.coverage.thickest_layers) {
+        report["coverage"]["thinnest_layers"] = report_number(*plan.coverage.thinnest_layers);
+        report["coverage"]["thickest_layers"] = report_number(*plan.coverage.thickest_layers);
+    }
+    if (plan.pattern() != nullptr) {
+        report["pattern"] = pattern_report(*plan.pattern());
+    }
+    if (!plan.pins.empty()) {
+        report["pins"] = pins_report(plan.pins);
+    }
+    if (plan.elbow() != nullptr) {
+        report["elbow"] = elbow_report(*plan.elbow());
+    }
+    if (!plan.failure.empty()) {
+        report["failure"] = plan.failure;
+    }
+    return report;
+}
+
+// Furthest of an axis from its planned position for circuits that are repeated, mm or deg.
+double drift_of(const PieceProgram& made, std::size_t axis) {
+    const std::vector<std::int64_t>& nano = made.layout.drift_nano;
+    return nano.empty() ? 0.0 : static_cast<double>(nano[axis]) / static_cast<double>(kNanoPerUnit);
+}
+
+json repeats_report(const PieceProgram& made) {
+    json drift = json::object();
+    for (std::size_t a = 0; a < made.blocks.axes.size(); ++a) {
+        drift[std::string(1, made.blocks.axes[a].letter)] = report_number(drift_of(made, a));
+    }
+    return {{"subprograms", made.layout.subprograms.size()},
+            {"calls", made.layout.calls()},
+            {"drift", drift}};
+}
+
+json axes_report(const PieceProgram& made) {
+    json axes = json::object();
+    const BlockList& list = made.blocks;
+    for (std::size_t a = 0; a < list.axes.size(); ++a) {
+        double low = list.value(0, a);
+        double high = low;
+        for (std::size_t b = 1; b < list.blocks.size(); ++b) {
+            low = std::min(low, list.value(b, a));
+            high = std::max(high, list.value(b, a));
+        }
+        const double step =
+            static_cast<double>(list.axes[a].resolution_nano) / static_cast<double>(kNanoPerUnit);
+        axes[std::string(1, list.axes[a].letter)] = {
+            {"unit", list.axes[a].type == AxisType::Rotary ? "deg" : "mm"},
+            {"min", report_number(low)},
+            {"max", report_number(high)},
+            {"resolution", step},
+            {"max_rounding_error", 0.5 * step + drift_of(made, a)}};
+    }
+    return axes;
+}
+
+json choice_report(const BlockChoice& choice) {
+    return {{"worst_sideways_mm", report_number(choice.worst_sideways_mm)},
+            {"worst_angle_deg", report_number(deg_from_rad(choice.worst_angle_rad))},
+            {"worst_pull_mm", report_number(choice.worst_pull_mm)},
+            {"worst_eye_mm", report_number(choice.worst_eye_mm)},
+            {"worst_twist_deg", report_number(deg_from_rad(choice.worst_twist_rad))},
+            {"steps_beyond", choice.beyond}};
+}
+
+json refused_report(const PieceProgram& made) {
+    json refused = json::array();
+    for (const auto& [piece, reason] : made.refused) {
+        refused.push_back({{"course", piece}, {"reason", name_of(reason)}});
+    }
+    return refused;
+}
+
+json program_report(const WoundLayer& layer, const FibreProgram& program, bool written) {
+    const PieceProgram& made = program.made;
+    json binding = json::array();
+    for (const BindingLimit& limit : made.binding) {
+        json longest = json::array();
+        for (const BindingStretch& stretch : limit.stretches) {
+            longest.push_back({{"first_block", stretch.first},
+                               {"last_block", stretch.last},
+                               {"time_s", report_number(stretch.time_s)}});
+        }
+        binding.push_back(
+            {{"limit", limit.name}, {"time_s", report_number(limit.time_s)}, {"longest", longest}});
+    }
+    return {{"file", written ? json(program.file) : json(nullptr)},
+            {"dialect", layer.setup.machine.controller.dialect},
+            {"path_points", made.path_points},
+            {"blocks", made.blocks.moves()},
+            {"choice", choice_report(made.choice)},
+            {"optimal_motion", made.optimal},
+            {"duration_s", report_number(made.duration_s)},
+            {"least_s", report_number(made.least_s)},
+            {"free_length_mm",
+             {{"min", report_number(made.eyes.shortest_mm)},
+              {"max", report_number(made.eyes.longest_mm)}}},
+            {"binding_limits", binding},
+            {"refused", refused_report(made)},
+            {"repeats", repeats_report(made)},
+            {"axes", axes_report(made)}};
+}
+
+json import_report(const ImportFit& fit) {
+    return {{"file", fit.file},
+            {"frame", fit.mandrel_frame ? "mandrel" : "file"},
+            {"points", fit.points},
+            {"repeated_points", fit.repeated},
+            {"joins", fit.joins},
+            {"worst_mm", report_number(fit.worst_mm)},
+            {"worst_line", fit.worst_line},
+            {"mean_mm", report_number(fit.mean_mm)},
+            {"limit_mm", report_number(fit.limit_mm)}};
+}
+
+// Where the motion of least time is asked for and could not be had.
+void print_first_motions(std::ostream& out, const WoundLayer& layer) {
+    const std::vector<FibreProgram>& programs = layer.programs;
+    if (!wants_least_time(layer.setup)) {
+        return;
+    }
+    for (std::size_t fibre = 0; fibre < programs.size(); ++fibre) {
+        if (!programs[fibre].made.optimal) {
+            const std::string which =
+                programs.size() > 1 ? " of fibre " + std::to_string(fibre + 1) : "";
+            out << "  motion" << which
+                << ": by the central angle; none of least time was found that keeps clear and lays "
+                   "the fibre as planned\n";
+        }
+    }
+}
+
+std::string asked_words(const LayerJob& job, double laid_rad) {
+    const std::optional<double> asked = other_angle_asked(job, laid_rad);
+    return asked ? " (" + fixed(*asked, 2) + " asked for)" : "";
+}
+
+void print_pattern(std::ostream& out, const LaidPattern& laid, const LayerJob& job) {
+    const Pattern& pattern = laid.pattern;
+    out << "pattern: " << counted(pattern.circuits, "circuit") << " at "
+        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg" << asked_words(job, laid.angle_rad)
+        << ", " << counted(pattern.starts, "start") << ' ' << word_of(pattern.order) << ", dwell "
+        << fixed(deg_from_rad(pattern.dwell_rad), 2) << " deg a circuit, bands "
+        << (pattern.overlap < 0.0 ? "leave gaps of " : "overlap by ")
+        << percent(std::abs(pattern.overlap)) << '\n';
+    const Interlacing& cross = laid.interlacing;
+    out << "  " << counted(cross.crossing_rows, "row") << " of "
+        << counted(pattern.circuits, "crossing") << ", "
+        << counted(cross.diamonds_around, "diamond") << " around\n";
+    if (laid.lattice) {
+        const LaidLattice& lattice = *laid.lattice;
+        out << "  lattice: " << counted(2 * pattern.circuits, "rib") << " of "
+            << fixed(lattice.rib_mm, 2) << " mm, " << fixed(lattice.rib_spacing_mm, 2)
+            << " mm apart at the widest place, " << lattice.series << " series "
+            << fixed(lattice.offset_mm, 2) << " mm apart, "
+            << counted(lattice.plies, "ply", "plies") << '\n';
+    }
+}
+
+void print_elbow(std::ostream& out, const LaidElbow& laid, const LayerJob& job) {
+    out << "elbow: " << counted(laid.lines, "line") << " of either hand (" << laid.needed_by_bend
+        << " for the bend) at " << fixed(deg_from_rad(laid.angle_rad), 2) << " deg outside"
+        << asked_words(job, laid.angle_rad) << ", " << fixed(deg_from_rad(laid.inner_angle_rad), 2)
+        << " deg inside, " << fixed(laid.thinnest_layers, 2) << " to "
+        << fixed(laid.thickest_layers, 2) << " layers on the bend\n";
+    for (const LaidElbowLeg& leg : laid.leg) {
+        out << "leg: " << fixed(leg.length_mm, 1) << " mm, closed for " << fixed(leg.closed_mm, 1)
+            << ", steered over " << fixed(leg.run_mm, 1) << " to "
+            << fixed(deg_from_rad(leg.angle_rad), 2) << " deg, slip ratio "
+            << fixed(leg.slip_ratio, 3) << '\n';
+    }
+}
+
+// Bare wall by reason, the largest first, and what looser rules would reach.
+void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
+    std::map<std::string, double> area_mm2;
+    for (const Uncovered& bare : layer.plan.uncovered) {
+        area_mm2[bare.rule] += bare.area_mm2;
+    }
+    std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
+    std::stable_sort(reasons.begin(), reasons.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    for (const auto& [reason, mm2] : reasons) {
+        out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
+    }
+    const Job& job = layer.setup.job;
+    const std::vector<double>& reach = layer.plan.reach_of_fibres;
+    const auto fibres = static_cast<std::size_t>(job.fibres);
+    if (reach.size() > fibres) {
+        out << "  with \"fibres\": " << fibres + 1 << " in the job courses would reach "
+            << percent(reach[fibres]) << " of the wall instead of " << percent(reach[fibres - 1])
+            << '\n';
+    }
+    const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
+        {WhatIf::Rule::Friction, {job.tow.friction, ""}},
+        {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
+        {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
+    for (const WhatIf& what_if : layer.plan.what_if) {
+        const auto [value, unit] = now.at(what_if.rule);
+        out << "  with a" << (what_if.rule == WhatIf::Rule::Extension ? "n " : " ")
+            << name_of(what_if.rule) << " of " << fixed(what_if.factor * value, 2) << unit
+            << " instead of " << fixed(value, 2) << unit << " courses would reach "
+            << percent(what_if.reachable) << " of the wall\n";
+    }
+}
+
+// What a layer is and what came of it.
+void add_layer_report(json& report, const WoundLayer& layer, bool written) {
+    report["plan"] = plan_report(layer.plan);
+    if (!layer.no_pattern.empty()) {
+        report["plan"]["no_pattern"] = layer.no_pattern;
+    }
+    if (layer.job.angle_deg) {
+        report["plan"]["asked_angle_deg"] = *layer.job.angle_deg;
+    }
+    if (layer.import) {
+        report["import"] = import_report(*layer.import);
+    }
+    for (std::size_t fibre = 0; fibre < layer.programs.size(); ++fibre) {
+        const FibreProgram& program = layer.programs[fibre];
+        report["program" + fibre_suffix(fibre)] = program_report(layer, program, written);
+        report["verification" + fibre_suffix(fibre)] =
+            verification_report(program.made.verification, program.made.blocks);
+    }
+}
+
+json eye_report(const Setup& setup) {
+    json report = {{"rule", name_of(setup.job.eye.rule)}, {"by_machine", setup.rule_of_machine}};
+    if (setup.job.eye.rule == EyeRule::Cylinder) {
+        report["radius_mm"] = setup.job.eye.radius_mm;
+    }
+    return report;
+}
+
+// What the run is about, and what of it nobody has said.
+void print_part(std::ostream& out, const Run& run) {
+    const Setup& setup = run.layers.front().setup;
+    out << setup.mandrel.file << ": " << size_words(setup.mandrel) << '\n';
+    if (setup.rule_of_machine) {
+        out << "eye: " << fixed(setup.job.eye.radius_mm, 3) << " mm from the spindle axis, where "
+            << setup.machine.name << " keeps it (eye rule \"cylinder\")\n";
+    }
+}
+
+void print_layer(std::ostream& out, const WoundLayer& layer) {
+    const Plan& plan = layer.plan;
+    if (!plan.failure.empty()) {
+        return;
+    }
+    std::size_t blocks = 0;
+    double least_s = 0.0;
+    for (const FibreProgram& program : layer.programs) {
+        blocks += program.made.blocks.moves();
+        least_s += program.made.least_s;
+    }
+    out << layer.setup.mandrel.file << " on " << layer.setup.machine.name << ": "
+        << counted(plan.courses, "course") << ", " << fixed(plan.fibre_length_mm / 1000.0, 1)
+        << " m of fibre, " << counted(blocks, "block") << ", "
+        << fixed(layer.duration_s() / 60.0, 1) << " min (" << fixed(least_s / 60.0, 1)
+        << " at the fibre's full speed)\n";
+    print_first_motions(out, layer);
+    if (!layer.no_pattern.empty()) {
+        out << "no pattern is laid: " << layer.no_pattern << '\n';
+    }
+    out << "covered " << percent(plan.coverage.fraction) << " of the wall"
+        << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
+        << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
+        << plan.coverage.max_layers << '\n';
+    if (plan.pattern() != nullptr) {
+        print_pattern(out, *plan.pattern(), layer.job);
+    }
+    if (plan.elbow() != nullptr) {
+        print_elbow(out, *plan.elbow(), layer.job);
+    }
+    if (layer.import) {
+        const ImportFit& fit = *layer.import;
+        out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
+            << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
+            << " mm in line " << fit.worst_line << '\n';
+    }
+}
+
+}  // namespace
+
+json report_of(const Run& run, const std::map<std::string, double>& timing_s) {
+    const WoundLayer& first = run.layers.front();
+    json report = {{"meshwind", kVersion},
+                   {"machine", first.setup.machine.name},
+                   {"mandrel", mandrel_report(first.setup.mandrel)},
+                   {"checks", checks_report(run.checks)},
+                   {"ok", run.passed()},
+                   {"eye", eye_report(first.setup)},
+                   {"remarks", run.remarks},
+                   {"timing_s", timing_s}};
+    if (run.layers.size() == 1) {
+        add_layer_report(report, first, run.usable);
+    } else {
+        add_laminate_report(report, run);
+        for (std::size_t i = 0; i < run.layers.size(); ++i) {
+            add_layer_report(report["layers"][i], run.layers[i], run.usable);
+        }
+    }
+    return report;
+}
+
+std::string report_text(const Run& run) {
+    return json_text(report_of(run, run.timing_s));
+}
+
+void print_summary(std::ostream& out, const Run& run, const std::filesystem::path& folder) {
+    print_part(out, run);
+    for (std::size_t i = 0; i < run.layers.size(); ++i) {
+        out << (run.layers.size() > 1 ? "layer " + std::to_string(i + 1) + ": " : "");
+        print_layer(out, run.layers[i]);
+        print_bare_wall(out, run.layers[i]);
+    }
+    if (run.layers.size() > 1) {
+        print_laminate(out, run);
+    }
+    print_checks(out, run.checks);
+    if (!run.usable) {
+        out << "no program written\n";
+    }
+    for (const WoundLayer& layer : run.layers) {
+        for (const FibreProgram& program : layer.programs) {
+            if (run.usable) {
+                out << "program: " << (folder / program.file).string() << '\n';
+            }
+        }
+    }
+    if (run.planned() && !page_template().empty()) {
+        out << "page:    " << (folder / "report.html").string() << '\n';
+    }
+    out << "report:  " << (folder / "report.json").string() << '\n';
+}
+
+}  // namespace meshwind

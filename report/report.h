@@ -1,0 +1,26 @@
+/// The report of a run: report.json, and the summary that a user reads on the terminal.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <ostream>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "pipeline/wind.h"
+
+namespace meshwind {
+
+/// report.json; keys as in docs/files.md.
+/// \param timing_s seconds by stage: the run's, with what its writing took
+[[nodiscard]] nlohmann::json report_of(const Run& run,
+                                       const std::map<std::string, double>& timing_s);
+
+/// Text of report.json, with the times of the run.
+[[nodiscard]] std::string report_text(const Run& run);
+
+/// A dozen lines: what was wound, how it is covered, the checks, where the files are.
+void print_summary(std::ostream& out, const Run& run, const std::filesystem::path& folder);
+
+}  // namespace meshwind

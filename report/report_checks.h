@@ -1,0 +1,32 @@
+/// The objects "checks" and "verification" of report.json and verify.json.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "postproc/motion/block.h"
+#include "postproc/verify/verify.h"
+
+namespace meshwind {
+
+/// By name: ok, the numbers of the check, and words where it failed.
+[[nodiscard]] nlohmann::json checks_report(const std::vector<Check>& checks);
+
+/// What was laid and in what time, and the first wrong block where there is one.
+[[nodiscard]] nlohmann::json verification_report(const Verification& verification,
+                                                 const BlockList& program);
+
+/// A line for each check, a second one with the words of a failed one.
+void print_checks(std::ostream& out, const std::vector<Check>& checks);
+
+/// Indented by one, with a line break at the end. Bytes of names that are no UTF-8 become U+FFFD,
+/// as JSON has no other place for them.
+[[nodiscard]] std::string json_text(const nlohmann::json& json);
+
+/// Numbers of a report: finer than any tolerance, free of rounding noise in the last digits.
+[[nodiscard]] double report_number(double value);
+
+}  // namespace meshwind

@@ -1,0 +1,187 @@
+#include "report/report_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "core/text/text_number.h"
+#include "core/units.h"
+#include "mesh/triangle_soup.h"
+#include "pipeline/run_names.h"
+#include "report/report_checks.h"
+
+namespace meshwind {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kMmPerM = 1000.0;
+constexpr double kMm3PerCm3 = 1000.0;
+
+// The layers of all plans per face of the first surface, whose triangles the others keep.
+std::vector<double> all_layers(const Run& run) {
+    std::vector<double> sum(run.layers.front().setup.mandrel.surface.face.size(), 0.0);
+    for (const WoundLayer& layer : run.layers) {
+        for (std::size_t f = 0; f < layer.plan.face_layers.size(); ++f) {
+            sum[f] += layer.plan.face_layers[f];
+        }
+    }
+    return sum;
+}
+
+json coverage_report(const Run& run) {
+    const Surface& surface = run.layers.front().setup.mandrel.surface;
+    const std::vector<double> layers = all_layers(run);
+    double area = 0.0;
+    double covered = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    double most = 0.0;
+    for (std::size_t f = 0; f < layers.size(); ++f) {
+        const double face = area_mm2(surface.position_mm, surface.face[f]);
+        area += face;
+        covered += face * std::min(1.0, layers[f]);
+        sum += face * layers[f];
+        squares += face * layers[f] * layers[f];
+        most = std::max(most, layers[f]);
+    }
+    const double mean = sum / area;
+    const double variance = std::max(0.0, squares / area - mean * mean);
+    return {{"fraction", report_number(covered / area)},
+            {"mean_layers", report_number(mean)},
+            {"max_layers", report_number(most)},
+            {"cv", report_number(mean > 0.0 ? std::sqrt(variance) / mean : 0.0)}};
+}
+
+json figures_report(const LayerFigures& figures) {
+    return {{"angle_deg", report_number(deg_from_rad(figures.angle_rad))},
+            {"thickness_mm",
+             {{"mean", report_number(figures.mean_thickness_mm)},
+              {"max", report_number(figures.most_thickness_mm)}}},
+            {"fibre_m", report_number(figures.fibre_m)},
+            {"mass_g", report_number(figures.mass_g)},
+            {"time_s", report_number(figures.time_s)}};
+}
+
+// What adds up. The angle of the sum is left at 0; its thickness is that of the sum per vertex.
+LayerFigures figures_of_all(const Run& run) {
+    LayerFigures all;
+    std::vector<double> thickness(run.layers.front().setup.mandrel.surface.position_mm.size());
+    for (const WoundLayer& layer : run.layers) {
+        const LayerFigures figures = figures_of(layer);
+        all.mean_thickness_mm += figures.mean_thickness_mm;
+        all.fibre_m += figures.fibre_m;
+        all.mass_g += figures.mass_g;
+        all.time_s += figures.time_s;
+        for (std::size_t v = 0; v < layer.build_up_mm.size(); ++v) {
+            thickness[v] += layer.build_up_mm[v];
+        }
+    }
+    all.most_thickness_mm = *std::max_element(thickness.begin(), thickness.end());
+    return all;
+}
+
+void print_row(std::ostream& out, const std::string& name, const std::string& angle,
+               const LayerFigures& figures) {
+    out << "  " << std::left << std::setw(22) << name << std::right << std::setw(10) << angle
+        << std::setw(12) << fixed(figures.mean_thickness_mm, 3) << std::setw(10)
+        << fixed(figures.most_thickness_mm, 3) << std::setw(11) << fixed(figures.fibre_m, 1)
+        << std::setw(10) << fixed(figures.mass_g, 1) << std::setw(9)
+        << fixed(figures.time_s / 60.0, 1) << '\n';
+}
+
+}  // namespace
+
+LayerFigures figures_of(const WoundLayer& layer) {
+    const Plan& plan = layer.plan;
+    const Surface& surface = layer.setup.mandrel.surface;
+    LayerFigures figures;
+    figures.angle_rad = plan.pattern() != nullptr ? plan.pattern()->angle_rad : plan.angle.mean_rad;
+    double area = 0.0;
+    for (std::size_t f = 0; f < surface.face.size() && !layer.build_up_mm.empty(); ++f) {
+        const double third = area_mm2(surface.position_mm, surface.face[f]) / 3.0;
+        for (const std::int32_t v : surface.face[f]) {
+            area += third;
+            figures.mean_thickness_mm += third * layer.build_up_mm[static_cast<std::size_t>(v)];
+        }
+    }
+    if (area > 0.0) {
+        figures.mean_thickness_mm /= area;
+        figures.most_thickness_mm =
+            *std::max_element(layer.build_up_mm.begin(), layer.build_up_mm.end());
+    }
+    const Job::TowJob& tow = layer.setup.job.tow;
+    figures.fibre_m = plan.fibre_length_mm / kMmPerM;
+    figures.mass_g =
+        plan.fibre_length_mm * tow.width_mm * tow.thickness_mm / kMm3PerCm3 * tow.density_g_cm3;
+    figures.time_s = layer.duration_s();
+    return figures;
+}
+
+void add_laminate_report(json& report, const Run& run) {
+    int courses = 0;
+    std::size_t transitions = 0;
+    int fibres = 0;
+    std::size_t blocks = 0;
+    json files = json::array();
+    json layers = json::array();
+    for (std::size_t i = 0; i < run.layers.size(); ++i) {
+        const WoundLayer& layer = run.layers[i];
+        courses += layer.plan.courses;
+        transitions += layer.plan.pieces.size() - static_cast<std::size_t>(layer.plan.courses);
+        fibres += layer.plan.fibres - (layer.plan.goes_on ? 1 : 0);
+        for (const FibreProgram& program : layer.programs) {
+            blocks += program.made.blocks.moves();
+            files.push_back(program.file);
+        }
+        json row = {{"layer", i + 1},
+                    {"kind", name_of(layer.job.kind)},
+                    {"mandrel", i == 0 ? layer.setup.mandrel.file : grown_mandrel_name(i)},
+                    {"goes_on", layer.plan.goes_on}};
+        if (!layer.plan.cut_because.empty()) {
+            row["cut_because"] = layer.plan.cut_because;
+        }
+        row.update(figures_report(figures_of(layer)));
+        layers.push_back(std::move(row));
+    }
+    const LayerFigures all = figures_of_all(run);
+    report["layers"] = layers;
+    report["laminate"] = figures_report(all);
+    report["laminate"].erase("angle_deg");
+    report["plan"] = {{"planner", "layers"},
+                      {"courses", courses},
+                      {"transitions", transitions},
+                      {"fibres", fibres},
+                      {"fibre_length_mm", report_number(all.fibre_m * kMmPerM)},
+                      {"coverage", coverage_report(run)},
+                      {"uncovered", json::array()}};
+    report["program"] = {{"file", run.usable ? files.front() : json(nullptr)},
+                         {"files", run.usable ? files : json::array()},
+                         {"dialect", run.layers.front().setup.machine.controller.dialect},
+                         {"blocks", blocks},
+                         {"duration_s", report_number(all.time_s)}};
+}
+
+void print_laminate(std::ostream& out, const Run& run) {
+    out << "  layer                      angle  thickness       max      fibre      mass     time\n"
+           "                               deg    mm mean        mm          m         g      "
+           "min\n";
+    for (std::size_t i = 0; i < run.layers.size(); ++i) {
+        const WoundLayer& layer = run.layers[i];
+        const LayerFigures figures = figures_of(layer);
+        print_row(out, std::to_string(i + 1) + " " + std::string(name_of(layer.job.kind)),
+                  fixed(deg_from_rad(figures.angle_rad), 2), figures);
+    }
+    print_row(out, "all", "", figures_of_all(run));
+    for (std::size_t i = 1; i < run.layers.size(); ++i) {
+        const std::string& why = run.layers[i].plan.cut_because;
+        if (!why.empty()) {
+            out << "  layer " << i + 1 << " begins with a new fibre: " << why << '\n';
+        }
+    }
+}
+
+}  // namespace meshwind

@@ -1,0 +1,33 @@
+/// Several layers in one report: what each adds, and what they are together.
+#pragma once
+
+#include <ostream>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "pipeline/wind.h"
+
+namespace meshwind {
+
+/// One row of the table of layers.
+struct LayerFigures {
+    double angle_rad = 0.0;          ///< of a pattern at the widest place, else the courses' mean
+    double mean_thickness_mm = 0.0;  ///< over the wall
+    double most_thickness_mm = 0.0;
+    double fibre_m = 0.0;
+    double mass_g = 0.0;  ///< of the tow as it is laid
+    double time_s = 0.0;
+};
+
+/// \pre the layer has a plan
+[[nodiscard]] LayerFigures figures_of(const WoundLayer& layer);
+
+/// Adds "plan", "program" and "laminate" of all layers together, and for each of "layers" its
+/// figures.
+void add_laminate_report(nlohmann::json& report, const Run& run);
+
+/// A line for each layer and one for all.
+void print_laminate(std::ostream& out, const Run& run);
+
+}  // namespace meshwind

@@ -1,0 +1,22 @@
+/// The output folder of the main job.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pipeline/wind.h"
+#include "report/folder/output_files.h"
+
+namespace meshwind {
+
+/// Writes a run, whole or not at all: path.csv, motion.csv, report.json, report.html, lay-up and
+/// fibre (layup_files.h), and the programs if the run is usable. Each further layer and fibre has
+/// program, path, motion and fibre of its own, each further layer its mandrel (run_names.h). What
+/// an earlier run left in the folder is removed. \return the text of report.json \throws IoError
+/// output.unwritable; the folder is then as it was before
+std::string write_run(const Run& run, OutputFolder& folder);
+
+/// \throws IoError output.locked while another run has the folder; output.unwritable
+std::string write_run(const Run& run, const std::filesystem::path& folder);
+
+}  // namespace meshwind

@@ -1,0 +1,294 @@
+"""The main job on a small tee: the files of the contract, the program, and the same bytes again."""
+import csv
+import json
+import os
+import random
+import re
+import subprocess
+import sys
+from decimal import Decimal
+
+import program
+
+JOB = """{"mandrel": {"extension": 120}, "tow": {"width": 10, "friction": 0.25},
+          "tolerance": {"clearance": 2}}"""
+PATH_HEADER = ("course,kind,point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,"
+               "bridge_mm,free_length_mm")
+MOTION_HEADER = "block,time_s,C,Z,Y,X,A,B,ex_mm,ey_mm,ez_mm,rx,ry,rz,course,point"
+PLAN_KEYS = {"planner", "courses", "fibre_length_mm", "coverage", "uncovered"}
+CHECK_KEYS = {"continuity": {"fibres", "limit"}, "coverage": {"limit", "fraction"},
+              "eye": {"blocked_points"}, "rounding": {"blocks"},
+              "tie_on": {"off_wall_mm", "off_plan_mm", "limit_mm"},
+              "approach": {"rapid_moves", "swept", "stops"}, "path_mode": {"changes"},
+              "roller": {"worst_deg", "limit_deg"},
+              "laydown": {"limit_mm", "max_deviation_mm", "limit_deg", "max_angle_deg",
+                          "end_gap_mm"},
+              "slip": {"limit", "worst"}, "bridging": {"limit_mm", "worst_mm"},
+              "collision": {"fibre_hits", "head_hits", "min_clearance_mm"},
+              "free_length": {"min_mm", "max_mm", "limit_min_mm", "limit_max_mm"},
+              "limits": {"violations", "velocity_ratio", "acceleration_ratio", "corner_mm",
+                         "corner_eye_mm", "limit_corner_mm"},
+              "payout": {"limit_mm", "worst_mm", "max_speed_mm_s", "limit_mm_s"}}
+# Check, what is measured, its limit: at most; these of free_length: at least and at most.
+LIMITS = [("laydown", "max_deviation_mm", "limit_mm"), ("laydown", "max_angle_deg", "limit_deg"),
+          ("slip", "worst", "limit"), ("bridging", "worst_mm", "limit_mm"),
+          ("roller", "worst_deg", "limit_deg"), ("payout", "worst_mm", "limit_mm"),
+          ("payout", "max_speed_mm_s", "limit_mm_s"), ("tie_on", "off_wall_mm", "limit_mm"),
+          ("tie_on", "off_plan_mm", "limit_mm"), ("continuity", "fibres", "limit"),
+          ("coverage", "limit", "fraction"),
+          ("free_length", "limit_min_mm", "min_mm"), ("free_length", "max_mm", "limit_max_mm")]
+VERIFIED = ["tie_on", "approach", "path_mode", "laydown", "slip", "bridging", "collision",
+            "free_length", "roller", "limits", "payout"]
+TIMES = {"import", "plan", "post", "verify", "write", "total"}
+
+
+def axis_words(line):
+    """Letter and number of each axis word of a G1 line; comments taken off."""
+    line = re.sub(r"\(.*?\)|;.*", "", line)
+    return [(letter, Decimal(number))
+            for letter, number in re.findall(r"([A-Z])\s*([-+]?[\d.]+)", line)]
+
+
+def pieces_of(out):
+    with open(out / "path.csv", newline="") as file:
+        return {(row["kind"], row["course"]) for row in csv.DictReader(file)}
+
+
+class MainJob(program.ProgramTest):
+    def wind(self, out):
+        mandrel = self.folder / "tee.stl"
+        if not mandrel.exists():
+            self.make("tee", "--edge", "8", "--run-length", "240", "--branch-length", "140")
+            self.write("job.json", JOB)
+        result = self.done(mandrel, "--job", "job.json", "-o", out, "--json")
+        for line in result.stderr.splitlines():
+            self.assertTrue(line.endswith(" ...") or line.startswith("meshwind: "), line)
+        return result
+
+    def check_report(self, report):
+        self.assertTrue(report["meshwind"])
+        for key in ("file", "triangles", "file_to_mandrel", "axis", "rims", "area_mm2", "regions",
+                    "repairs"):
+            self.assertIn(key, report["mandrel"])
+        plan = report["plan"]
+        self.assertLessEqual(PLAN_KEYS, set(plan))
+        self.assertLessEqual({"fraction", "mean_layers", "max_layers", "cv"},
+                             set(plan["coverage"]))
+        self.assertGreater(plan["coverage"]["fraction"], 0.5)
+        for bare in plan["uncovered"]:
+            self.assertLessEqual({"region", "area_mm2", "reason"}, set(bare))
+        for name, keys in CHECK_KEYS.items():
+            self.assertLessEqual(keys | {"ok"}, set(report["checks"][name]), name)
+        for name, least, most in LIMITS:
+            self.assertLessEqual(report["checks"][name][least], report["checks"][name][most], name)
+        laydown = report["checks"]["laydown"]
+        self.assertLessEqual(laydown["max_deviation_mm"], 0.2)
+        self.assertLessEqual(laydown["max_angle_deg"], 0.3)
+        self.assertLessEqual(3 * report["program"]["blocks"], report["program"]["path_points"])
+        self.assertIsNone(report["verification"]["first_wrong"])
+        part = report["program"]
+        self.assertLessEqual({"file", "dialect", "blocks", "duration_s", "axes"}, set(part))
+        self.assertEqual(part["repeats"], {"subprograms": 0, "calls": 0,
+                                           "drift": dict.fromkeys("CZYXAB", 0.0)})
+        for axis in "CZYXAB":
+            self.assertLessEqual({"min", "max", "max_rounding_error"}, set(part["axes"][axis]))
+        self.assertLessEqual(TIMES, set(report["timing_s"]))
+
+    def check_layup(self, out, report):
+        """A cover counts its layers at closer stations than the plies are taken from."""
+        triangles = json.loads((out / "layup.json").read_text())["triangles"]
+        self.assertEqual(len(triangles), report["mandrel"]["triangles"])
+        area = sum(t["area_mm2"] for t in triangles)
+        self.assertAlmostEqual(area / report["mandrel"]["area_mm2"], 1.0, 6)
+        plies = sum(t["area_mm2"] * ply[4] for t in triangles for ply in t["plies"])
+        layers = plies / area / 0.25
+        self.assertAlmostEqual(layers / report["plan"]["coverage"]["mean_layers"], 1.0, delta=0.03)
+        names = re.findall("^o (.*)$", (out / "fibre.obj").read_text(), re.MULTILINE)
+        self.assertEqual(len(names), report["plan"]["courses"] + report["plan"]["transitions"])
+        self.assertEqual(set(names), {f"{kind}_{course}" for kind, course in pieces_of(out)})
+
+    def check_program(self, out):
+        """From the first position on, the increments add up to motion.csv exactly."""
+        with open(out / "motion.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        letters = "CZYXAB"
+        position = {axis: Decimal(rows[0][axis]) for axis in letters}
+        row = 0
+        incremental = False
+        for line in (out / "program.ngc").read_text().splitlines():
+            bare = re.sub(r"\(.*?\)|;.*", "", line)
+            incremental = (incremental or "G91" in bare.split()) and "G90" not in bare.split()
+            if not incremental:
+                continue
+            words = [w for w in axis_words(line) if w[0] in letters]
+            if not words:
+                continue
+            row += 1
+            for letter, number in words:
+                position[letter] += number
+            for axis in letters:
+                self.assertEqual(position[axis], Decimal(rows[row][axis]), f"block {row} {axis}")
+        self.assertEqual(row, len(rows) - 1)
+        # LinuxCNC's own interpreter, where it is at hand (exit code 77: it is not).
+        tools = program.SOURCE / "tests/tools"
+        subprocess.run([tools / "run_rs274.sh", "--setup"], check=False)
+        verdict = subprocess.run([tools / "check_program.py", out / "program.ngc",
+                                  out / "motion.csv", program.SOURCE / "machines/six_axis.json"],
+                                 capture_output=True, text=True, check=False)
+        self.assertIn(verdict.returncode, (0, 77), verdict.stdout)
+
+    def verify(self, text, machine="six_axis.json"):
+        """Exit code and verify.json of a program text, against the plan in folder "one"."""
+        result = self.run_program("verify", self.write("broken.ngc", text), "--mandrel", "tee.stl",
+                                  "--machine", machine, "--job", "job.json", "--plan", "one",
+                                  "--json")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        return result.returncode, json.loads(result.stdout)
+
+    def check_verify(self, out):
+        """The program alone gives what the main job found, and the laid fibre as a table."""
+        result = self.done("verify", out / "program.ngc", "--mandrel", "tee.stl", "--machine",
+                           "six_axis.json", "--job", "job.json", "--plan", out, "-o", "verified")
+        self.assertRegex(result.stdout, r"lays \d+\.\d m of fibre on tee\.stl in \d+ blocks")
+        verified = json.loads((self.folder / "verified/verify.json").read_text())
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual(list(verified["checks"]), sorted(["program", "code", *VERIFIED]))
+        for name in VERIFIED:
+            for key, value in report["checks"][name].items():
+                # The plan comes from path.csv now, with four decimals: of two places as bad the other
+                # one may be told.
+                again = verified["checks"][name][key]
+                if key == "place":
+                    self.assertEqual(again.keys(), value.keys(), name)
+                else:
+                    self.assertAlmostEqual(again, value, delta=2e-3, msg=name)
+        with open(self.folder / "verified/laid.csv", newline="") as file:
+            laid = list(csv.DictReader(file))
+        self.assertEqual(int(laid[-1]["block"]), report["program"]["blocks"])
+        # One count and one time, wherever they stand.
+        head = (out / "program.ngc").read_text()
+        for count in (re.search(r"\(blocks: (\d+)\)", head)[1],
+                      re.search(r"in (\d+) blocks", result.stdout)[1],
+                      report["verification"]["blocks"], report["checks"]["rounding"]["blocks"],
+                      verified["verification"]["blocks"], verified["checks"]["program"]["blocks"]):
+            self.assertEqual(int(count), report["program"]["blocks"])
+        for part in (report["verification"], verified["verification"]):
+            self.assertEqual(part["duration_s"], report["program"]["duration_s"])
+        self.assertAlmostEqual(float(re.search(r"\(time: ([\d.]+) s\)", head)[1]),
+                               report["program"]["duration_s"], delta=0.0501)
+        self.assertAlmostEqual(float(laid[-1]["s_mm"]),
+                               verified["verification"]["fibre_length_mm"], 3)
+
+    def check_broken_programs(self, out):
+        """Whatever is changed in a program is found, at the block where it was changed."""
+        lines = (out / "program.ngc").read_text().splitlines()
+        start = next(i for i, line in enumerate(lines) if "G91" in line)
+        moves = [i for i in range(start, len(lines)) if axis_words(lines[i]) and "G1" in lines[i]]
+        self.assertEqual(len(moves),
+                         json.loads((out / "report.json").read_text())["program"]["blocks"])
+        chance = random.Random(4)
+
+        def check(name, broken, block):
+            with self.subTest(f"{name}, block {block}"):
+                code, report = self.verify("\n".join(broken) + "\n")
+                self.assertEqual(code, 1)
+                self.assertEqual(report["verification"]["first_wrong"]["block"], block)
+
+        # mutations_test.cpp has many more of them, in memory.
+        for _ in range(int(os.environ.get("MESHWIND_DRAWS", 1))):
+            move = chance.randrange(len(moves))
+            words = axis_words(lines[moves[move]])
+            letter, number = chance.choice([w for w in words if w[0] in "CZYXAB"])
+            changed = list(lines)
+            changed[moves[move]] = re.sub(rf"\b{letter}[-+.\d]+", f"{letter}{number + 1}",
+                                          lines[moves[move]])
+            check(f"1 mm more of {letter}", changed, move + 1)
+
+            first, second = sorted(chance.sample(range(len(moves)), 2))
+            changed = list(lines)
+            changed[moves[first]], changed[moves[second]] = (changed[moves[second]],
+                                                             changed[moves[first]])
+            check("two swapped", changed, first + 1)
+
+            move = chance.randrange(len(moves) - 1)
+            check("one deleted", lines[:moves[move]] + lines[moves[move] + 1:], move + 1)
+
+        mirrored = [re.sub(r"\bC-?([.\d]+)", lambda m: ("C" if "C-" in m[0] else "C-") + m[1], line)
+                    if i in moves else line for i, line in enumerate(lines)]
+        check("C mirrored", mirrored,
+              next(n for n, i in enumerate(moves, 1) if "C" in dict(axis_words(lines[i]))))
+
+        for chain, axis in ("mandrel_chain", 0), ("eye_chain", 2), ("eye_chain", 3):
+            machine = json.loads((program.SOURCE / "machines/six_axis.json").read_text())
+            turned = machine[chain][axis]
+            turned["direction"] = [-x for x in turned["direction"]]
+            with self.subTest(f"another machine: {turned['letter']} mirrored"):
+                code, report = self.verify("\n".join(lines) + "\n",
+                                           self.write("other.json", json.dumps(machine)))
+                self.assertEqual(code, 1)
+                self.assertEqual(report["verification"]["first_wrong"]["block"], 0)
+
+    def test_files_program_and_repeat(self):
+        first = self.wind(self.folder / "one")
+        out = self.folder / "one"
+        report = json.loads(first.stdout)
+        self.assertEqual(report, json.loads((out / "report.json").read_text()))
+        self.check_report(report)
+        self.assertEqual((out / "path.csv").read_text().split("\n", 1)[0], PATH_HEADER)
+        self.assertEqual((out / "motion.csv").read_text().split("\n", 1)[0], MOTION_HEADER)
+        self.assertIn("VTKFile", (out / "layup.vtu").read_text()[:200])
+        self.check_layup(out, report)
+        self.check_program(out)
+        self.check_verify(out)
+        self.check_broken_programs(out)
+        names = sorted(f.name for f in out.iterdir())
+        self.assertFalse([n for n in names if n.startswith(".") or "tmp" in n], names)
+
+        second = self.wind(self.folder / "two")
+        for name in names:
+            with self.subTest(name):
+                texts = [(self.folder / run / name).read_text() for run in ("one", "two")]
+                if name == "report.json":
+                    texts = [json.loads(text) for text in texts]
+                    for text in texts:
+                        text.pop("timing_s")
+                self.assertTrue(texts[0] == texts[1], f"{name} differs between two runs")
+
+    def test_several_fibres(self):
+        """Each has a program of its own that holds; with fewer fibres no old file stays."""
+        self.make("tee", "--edge", "8", "--run-length", "240", "--branch-length", "140")
+        machine = json.loads((program.SOURCE / "machines/six_axis.json").read_text())
+        machine["fibre"]["min_free_length"] = 160
+        self.write("machine.json", json.dumps(machine))
+        files = {"program.ngc", "path.csv", "motion.csv", "fibre.obj", "fibre.step"}
+        more = {"program-2.ngc", "path-2.csv", "motion-2.csv", "fibre-2.obj", "fibre-2.step"}
+        covered = []
+        for fibres in 2, 1:
+            job = json.loads(JOB) | {"fibres": fibres}
+            self.write("job.json", json.dumps(job))
+            result = self.done(self.folder / "tee.stl", "--machine", "machine.json", "--job",
+                               "job.json", "-o", "out", "--json")
+            report = json.loads(result.stdout)
+            self.assertEqual(report["plan"]["fibres"], fibres)
+            self.assertGreaterEqual(len(report["plan"]["reach_of_fibres"]), 2)
+            self.assertEqual("slip-2" in report["checks"], fibres == 2)
+            written = {f.name for f in (self.folder / "out").iterdir()}
+            self.assertLessEqual(files, written)
+            self.assertEqual(written & more, more if fibres == 2 else set())
+            covered.append(report["plan"]["coverage"]["fraction"])
+            laid = 0.0
+            for number in range(1, fibres + 1):
+                suffix = "" if number == 1 else f"-{number}"
+                self.assertEqual(report["program" + suffix]["file"], f"program{suffix}.ngc")
+                verified = json.loads(self.done(
+                    "verify", f"out/program{suffix}.ngc", "--mandrel", "tee.stl", "--machine",
+                    "machine.json", "--job", "job.json", "--plan", "out", "--json").stdout)
+                self.assertTrue(verified["ok"])
+                self.assertTrue(verified["checks"]["program"]["ok"])
+                laid += verified["verification"]["fibre_length_mm"]
+            self.assertAlmostEqual(laid / report["plan"]["fibre_length_mm"], 1.0, 3)
+        self.assertGreater(covered[0], covered[1])
+
+
+if __name__ == "__main__":
+    program.main(sys.modules[__name__])

@@ -1,0 +1,102 @@
+"""Turns on pins and about poles: what they wind, and what is refused."""
+import json
+import re
+import sys
+
+import program
+
+MACHINE = "six_axis.json"
+LAYER = {"kind": "helical", "angle": 20.0}
+
+
+class Turns(program.ProgramTest):
+    def wind(self, mandrel, layer, code, **mandrel_job):
+        job = {"mandrel": {"extension": 40.0, **mandrel_job}, "layers": [layer],
+               "redundancy": "central-angle"}
+        text = self.write("job.json", json.dumps(job))
+        result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out")
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def refused(self, mandrel, layer, code, **mandrel_job):
+        result = self.wind(mandrel, layer, 2, **mandrel_job)
+        report = json.loads(self.run_program(mandrel, "--machine", MACHINE, "--job", "job.json",
+                                             "-o", "out", "--json").stdout)
+        self.assertEqual(report["error"]["code"], code)
+        self.assertIn(report["error"]["message"], result.stderr)
+        return report["error"]["place"]
+
+    def report(self):
+        return json.loads((self.folder / "out" / "report.json").read_text())
+
+    def no_plan(self, figure=""):
+        """The check "plan" fails, for a reason that tells the figure; nothing is written to run."""
+        report = self.report()
+        self.assertFalse(report["checks"]["plan"]["ok"])
+        self.assertTrue(report["plan"]["failure"])
+        self.assertIn(figure, report["plan"]["failure"])
+        self.assertFalse((self.folder / "out" / "program.ngc").exists())
+
+    def pipe(self):
+        return self.make("cylinder", "--radius", "40", "--length", "120", "--edge", "4")
+
+
+class Pins(Turns):
+    def test_a_pipe_is_wound_at_20_degrees(self):
+        pipe = self.pipe()
+        self.wind(pipe, LAYER, 1)
+        needed = re.search(r"takes ([0-9.]+) mm of extension where there are 40.0",
+                           self.report()["plan"]["failure"])
+        # (R / slip)(1 / sin(20 deg) - 1) with 0.2 as the slip: 385 mm, and more with less.
+        self.assertGreater(float(needed[1]), 385.0)
+        self.wind(pipe, LAYER, 0, turn="pins")
+        report = self.report()
+        plan = report["plan"]
+        for name, check in report["checks"].items():
+            self.assertTrue(check["ok"], name)
+        self.assertLess(report["checks"]["closure"]["closure_deg"], 0.01)
+        self.assertGreater(plan["coverage"]["fraction"], 0.999)
+        self.assertEqual(len(plan["pins"]), 2)
+        for ring in plan["pins"]:
+            self.assertEqual(ring["count"], plan["pattern"]["circuits"])
+            self.assertLess(ring["offset_mm"], 20.0)
+        for turns in plan["turns"]:
+            self.assertLess(turns["extension_mm"], 40.0)
+
+    def test_what_cannot_be_is_said(self):
+        pipe = self.pipe()
+        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "100", "--dome-height",
+                           "35", "--opening-radius", "12", "--edge", "5")
+        for mandrel, layer, pins, figure in (
+                (vessel, {"kind": "helical", "angle": 50.0}, {}, ""),
+                (pipe, LAYER, {"count": 41}, "41"),
+                (pipe, LAYER, {"skip": 1}, "1"),
+                (pipe, LAYER, {"diameter": 6.0}, "6.00"),
+                (pipe, LAYER, {"offset": 35.0}, "40.0")):
+            with self.subTest(pins):
+                self.wind(mandrel, layer, 1, turn="pins", pins=pins)
+                self.no_plan(figure)
+
+    def test_what_is_not_offered_is_refused(self):
+        pipe = self.pipe()
+        place = self.refused(pipe, {"kind": "hoop"}, "job.not_offered", turn="pins")
+        self.assertTrue(place.endswith("job.json: /mandrel/turn"), place)
+        place = self.refused(pipe, LAYER, "job.pins_unused", turn="friction", pins={"skip": 3})
+        self.assertTrue(place.endswith("job.json: /mandrel/pins"), place)
+
+
+class Poles(Turns):
+    def test_only_domes_turn_the_fibre(self):
+        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "120", "--dome-height",
+                           "35", "--opening-radius", "12", "--edge", "5")
+        self.wind(vessel, {"kind": "polar"}, 0, turn="pole", extension=0.0)
+        for rim in self.report()["plan"]["turns"]:
+            self.assertEqual(rim["turns"], 0)
+        self.wind(self.pipe(), LAYER, 1, turn="pole")
+        self.no_plan()
+        self.wind(self.pipe(), {"kind": "cover"}, 1, turn="pole")
+        self.no_plan()
+
+
+if __name__ == "__main__":
+    program.main(sys.modules[__name__])

@@ -1,0 +1,54 @@
+#include "report/report.h"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "machines/machine_json.h"
+
+namespace meshwind {
+namespace {
+
+constexpr const char* kSixAxis = "six_axis.json";
+
+// A plan that was wound on a machine, by motions of least time or not, one per fibre.
+std::string summary(const std::string& machine, RedundancyRule redundancy,
+                    const std::vector<bool>& least_time) {
+    Run run;
+    WoundLayer& layer = run.layers.emplace_back();
+    layer.setup.machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + machine);
+    layer.setup.job.redundancy = redundancy;
+    layer.setup.mandrel.whole.points_mm = {{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}};
+    for (const bool optimal : least_time) {
+        layer.programs.emplace_back().made.optimal = optimal;
+    }
+    std::ostringstream out;
+    print_summary(out, run, "out");
+    return out.str();
+}
+
+bool tells(const std::string& summary, const std::string& words) {
+    return summary.find(words) != std::string::npos;
+}
+
+TEST(Summary, TellsThatTheMotionIsNotOfLeastTime) {
+    EXPECT_TRUE(tells(summary(kSixAxis, RedundancyRule::Optimal, {false}), "\n  motion: "));
+    EXPECT_FALSE(tells(summary(kSixAxis, RedundancyRule::Optimal, {true}), "motion"));
+}
+
+TEST(Summary, NamesTheFibreWhoseMotionIsNotOfLeastTime) {
+    const std::string text = summary(kSixAxis, RedundancyRule::Optimal, {true, false});
+    EXPECT_FALSE(tells(text, "fibre 1"));
+    EXPECT_TRUE(tells(text, "\n  motion of fibre 2: "));
+}
+
+TEST(Summary, SaysNothingOfAMotionThatWasNotAskedFor) {
+    EXPECT_FALSE(tells(summary(kSixAxis, RedundancyRule::CentralAngle, {false}), "motion"));
+    // The turn is forced.
+    EXPECT_FALSE(tells(summary("four_axis.json", RedundancyRule::Optimal, {false}), "motion"));
+}
+
+}  // namespace
+}  // namespace meshwind

@@ -1,0 +1,55 @@
+/// Making a choice of courses even: each is moved, turned and steered until all lie side by side.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "winding/cover/anneal_ground.h"
+#include "winding/cover/balance.h"
+#include "winding/cover/placed_course.h"
+#include "winding/cover/select.h"
+
+namespace meshwind {
+
+struct AnnealOptions {
+    SelectOptions select{};
+    int fibres = 1;            ///< that may lay the courses
+    double fibre_share = 1.2;  ///< what each beyond them costs, as a share of what a course covers
+    std::uint64_t seed = 1;
+    std::int64_t proposals = 100'000;
+    /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It
+    /// falls from `hot` to `cold`, by the same factor in equal numbers of proposals.
+    double hot = 0.1;
+    double cold = 0.002;
+    /// What a layer short of the target costs, against 1 for a layer too many or too few; it rises
+    /// as the chance falls: first all is made even, then the last holes are closed.
+    double bare_hot = 30.0;
+    double bare_cold = 120.0;
+    /// True where courses may lead; empty: anywhere.
+    std::function<bool(const NodePair&)> way{};
+    /// The last word on a course that is about to be taken, which it may make exact; false where
+    /// it cannot be wound. Must be pure and thread-safe. Empty: a sketch is enough.
+    std::function<bool(PlacedCourse& course)> verify{};
+    std::function<void(double share)> progress{};
+};
+
+/// What it took; for reports.
+struct AnnealEffort {
+    std::int64_t proposals = 0;
+    std::int64_t accepted = 0;
+};
+
+/// Simulated annealing over the courses themselves, not over a fixed library: courses are moved
+/// sideways, turned, steered otherwise, replaced, set one band beside another, added and dropped.
+/// The objective is the square of the layers' distance from one more than the target, summed over
+/// the samples, with `bare` for each layer short of the target, the fibre of the turns, and what
+/// keeps the courses from being joined to so few fibres. Bare places are mended by members of the
+/// library, too. \param courses changed in place; footprints are those of `rules` again at the end
+/// Proposals are drawn and judged in parallel, in groups; the same for any number of threads.
+AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
+                    std::span<const Member> library, std::span<const char> allowed,
+                    std::vector<PlacedCourse>& courses, const AnnealOptions& options);
+
+}  // namespace meshwind

@@ -1,0 +1,47 @@
+#include "winding/cover/anneal_ground.h"
+
+#include "core/parallel.h"
+#include "mesh/nearest.h"
+#include "winding/cover/fit.h"
+
+namespace meshwind {
+namespace {
+
+constexpr std::size_t kSampleChunk = 256;
+
+// The image of a wall that is this near to it makes courses that are near enough: they are judged
+// like all others.
+constexpr double kSymmetryBands = 0.1;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+AnnealGround::AnnealGround(const CourseRules& rules, const CoverageSamples& measured,
+                           double spacing_mm, std::span<const Member> library, std::uint64_t seed)
+    : samples(sample_surface(rules.mandrel.surface, spacing_mm, seed)),
+      footprints(rules.mandrel.surface, samples, rules.tow.width_mm),
+      strips(rules.mandrel.surface, samples, kStripBands * rules.tow.width_mm),
+      passing(samples.size()),
+      ways(ways_between_nodes(library)),
+      images(rules.mandrel, samples, kSymmetryBands * rules.tow.width_mm) {
+    const NearestPoints index(samples.position_mm);
+    std::vector<std::int32_t> beside(measured.size(), -1);
+    parallel_for(measured.size(), kSampleChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            beside[i] = index.nearest(measured.position_mm[i]);
+        }
+    });
+    for (std::size_t i = 0; i < library.size(); ++i) {
+        for (const std::int32_t sample : library[i].footprint) {
+            auto& here = passing[at(beside[at(sample)])];
+            if (here.empty() || here.back() != static_cast<std::int32_t>(i)) {
+                here.push_back(static_cast<std::int32_t>(i));
+            }
+        }
+    }
+}
+
+}  // namespace meshwind

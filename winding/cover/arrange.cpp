@@ -1,0 +1,133 @@
+#include "winding/cover/arrange.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+// Dwell that a lateness of 1 is worth, moved over the whole plan.
+constexpr double kWorth_rad = 2.0 * kPi;
+
+// Gains below this are rounding.
+constexpr double kLeastGain_rad = 1e-9;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+class Arranger {
+public:
+    Arranger(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+             std::span<const double> lateness, std::span<OrderedCourse> fibre)
+        : rims_(rims), members_(members), rule_(rule), fibre_(fibre), late_sum_{0.0} {
+        std::partial_sum(lateness.begin(), lateness.end(), std::back_inserter(late_sum_));
+        late_.assign(lateness.begin(), lateness.end());
+    }
+
+    void run() {
+        // Each exchange gains something, so there is an end; the bound is against rounding.
+        const std::size_t most = fibre_.size() * fibre_.size();
+        for (std::size_t i = 0; i < most && exchange_best(); ++i) {
+        }
+    }
+
+private:
+    [[nodiscard]] const Member& member(std::size_t i) const {
+        return members_[at(fibre_[i].course.member)];
+    }
+    [[nodiscard]] const RimCrossing& start(std::size_t i) const {
+        return start_of(member(i), fibre_[i].course.backward);
+    }
+    [[nodiscard]] const RimCrossing& end(std::size_t i) const {
+        return end_of(member(i), fibre_[i].course.backward);
+    }
+    // Where the fibre is before course i; behind the last one for i = n.
+    [[nodiscard]] std::size_t node(std::size_t i) const {
+        return i < fibre_.size() ? departure_node(start(i)) : arrival_node(end(i - 1));
+    }
+    [[nodiscard]] double dwell(std::size_t from, std::size_t to) const {
+        return dwell_rad(rims_[at(end(from).rim)], end(from), start(to), rule_);
+    }
+
+    // What it gains, as dwell, that the courses i .. j - 1 and j .. k - 1 change places.
+    [[nodiscard]] double gain(std::size_t i, std::size_t j, std::size_t k) const {
+        const auto first = static_cast<double>(j - i);
+        const auto second = static_cast<double>(k - j);
+        const double later = (late_sum_[j] - late_sum_[i]) * second;
+        const double earlier = (late_sum_[k] - late_sum_[j]) * first;
+        const auto all = static_cast<double>(fibre_.size());
+        double dwells = dwell(j - 1, j) - dwell(k - 1, i);
+        if (i > 0) {
+            dwells += dwell(i - 1, i) - dwell(i - 1, j);
+        }
+        if (k < fibre_.size()) {
+            dwells += dwell(k - 1, k) - dwell(j - 1, k);
+        }
+        return kWorth_rad * (later - earlier) / all + dwells;
+    }
+
+    bool exchange_best() {
+        const std::size_t n = fibre_.size();
+        double most = kLeastGain_rad;
+        std::array<std::size_t, 3> best{};
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t j = i + 1; j < n; ++j) {
+                for (std::size_t k = j + 1; node(i) == node(j) && k <= n; ++k) {
+                    if (node(k) != node(i)) {
+                        continue;
+                    }
+                    const double value = gain(i, j, k);
+                    if (value > most) {
+                        most = value;
+                        best = {i, j, k};
+                    }
+                }
+            }
+        }
+        const auto [i, j, k] = best;
+        if (k == 0) {
+            return false;
+        }
+        const auto turn = [](auto begin, std::size_t a, std::size_t b, std::size_t c) {
+            const auto step = [&](std::size_t x) { return begin + static_cast<std::ptrdiff_t>(x); };
+            std::rotate(step(a), step(b), step(c));
+        };
+        turn(fibre_.begin(), i, j, k);
+        turn(late_.begin(), i, j, k);
+        std::partial_sum(late_.begin(), late_.end(), late_sum_.begin() + 1);
+        return true;
+    }
+
+    std::span<const Rim> rims_;
+    std::span<const Member> members_;
+    const TurnRule& rule_;
+    std::span<OrderedCourse> fibre_;
+    std::vector<double> late_;
+    std::vector<double> late_sum_;  // before each course, and behind the last
+};
+
+}  // namespace
+
+void arrange(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+             std::span<const double> lateness, std::vector<OrderedCourse>& order) {
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+        end = begin + 1;
+        while (end < order.size() && !order[end - 1].cut_after) {
+            ++end;
+        }
+        const std::span<OrderedCourse> fibre = std::span(order).subspan(begin, end - begin);
+        Arranger(rims, members, rule, lateness.subspan(begin, end - begin), fibre).run();
+        for (OrderedCourse& course : fibre) {
+            course.cut_after = false;
+        }
+        fibre.back().cut_after = true;
+    }
+}
+
+}  // namespace meshwind

@@ -1,0 +1,20 @@
+/// Which courses of a fibre come early and which late.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/rim.h"
+#include "winding/plan/course.h"
+#include "winding/turn/turn.h"
+
+namespace meshwind {
+
+/// Brings courses over junctions forward and hoops back, so that hoops clamp what lies under them:
+/// stretches of a fibre that begin and end at one node change places, as long as what is gained is
+/// worth the dwell: a course that comes later by the whole plan for being hoop instead of junction
+/// is worth two turns. Fibres stay what they are. \param lateness per entry of the order
+void arrange(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+             std::span<const double> lateness, std::vector<OrderedCourse>& order);
+
+}  // namespace meshwind

@@ -1,0 +1,43 @@
+/// The Cover planner: courses for a surface without an equation.
+#pragma once
+
+#include <optional>
+
+#include "core/run_context.h"
+#include "winding/cover/prove.h"
+#include "winding/cover/select.h"
+#include "winding/plan/windability.h"
+
+namespace meshwind {
+
+/// The whole plan is shown to the machine so many times at most. Of 14 plans of five tees one
+/// needed a second attempt and none more; of those that need more than a few, each costs minutes.
+inline constexpr int kMostAttempts = 5;
+
+struct CoverOptions {
+    Tow tow;
+    TurnRule turn;  ///< friction and band are taken from `tow`
+    FreeFibreRule free_fibre;
+    SelectOptions select;
+    int fibres = 1;                     ///< that the plan may take, >= 1
+    std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
+    RunContext context{};               ///< `effort`: how long courses are annealed
+    int candidates = 16000;             ///< tried over the whole surface
+    int rounds = 3;                     ///< of further candidates aimed at what is not reached yet
+    int aimed_candidates = 4000;        ///< in each such round
+    int scarce_candidates = 8000;       ///< tried near courses that go where few can be wound
+};
+
+/// Samples the wall, builds a library of admissible courses, aims further candidates at what no
+/// course reaches, chooses, balances the rims, orders and joins by friction turns.
+/// \param obstacles everything that the free fibre must not hit: mandrel with its extensions
+/// \param machine follows every course, between half turns, before it enters the plan; winds every
+/// course that is to stay alone; then winds all. What it refuses there is replaced and the plan is
+/// made again, kMostAttempts times at most; then the plan with the fewest refused pieces stands.
+/// Null: a free length is all that is asked for.
+/// \return a plan; when nothing is admissible its `failure` says why and `pieces` is empty
+[[nodiscard]] TriedPlan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles,
+                                   const CoverOptions& options,
+                                   const Windability* machine = nullptr);
+
+}  // namespace meshwind

@@ -1,0 +1,34 @@
+/// Fitting a course to what its neighbours leave: by how much it has to move, turn and be steered.
+#pragma once
+
+#include <span>
+
+#include "winding/cover/placed_course.h"
+#include "winding/laminate/footprint.h"
+
+namespace meshwind {
+
+/// How far a fit may move any place of a course, in bands: half of what a strip shows on either
+/// side of the band.
+inline constexpr double kFitBands = 0.4;
+
+/// Width of the strip that a fit needs, in bands.
+inline constexpr double kStripBands = 1.0 + 2.0 * kFitBands;
+
+/// A move, and what the course saves after it, to first order.
+struct Fit {
+    CourseMove move;
+    double saved = 0.0;
+};
+
+/// The move that saves most, to first order: the displacement of every place is the sum of four
+/// **Jacobi fields**, one for each part of the move (geodesic/jacobi_field.h; steering adds kn as a
+/// source), and the band covers what then lies within half its width. No place moves by more than
+/// kFitBands, and steering stays within what moved() allows. \param strip of the course's path,
+/// kStripBands wide \param saving per entry of the strip: what covering it saves, negative where it
+/// costs \return the move from seed_station(); nothing where none saves more than the course does
+/// now
+[[nodiscard]] Fit fit_course(const CourseRules& rules, const PlacedCourse& course,
+                             const Strip& strip, std::span<const float> saving);
+
+}  // namespace meshwind

@@ -1,0 +1,104 @@
+#include "winding/cover/lay_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "winding/plan/assemble.h"
+#include "winding/turn/laid_turn.h"
+
+namespace meshwind {
+namespace {
+
+// Distance of the stations of a plan: what the machine is told of the curve between them is below
+// its own following error.
+constexpr double kStation_mm = 4.0;
+
+// And in halves of turns that are only looked into: the turns themselves are checked in the end.
+constexpr double kHalfTurnStation_mm = 10.0;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
+                   TurnsAtRim& turns) {
+    Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, kStation_mm);
+    ++turns.turns;
+    turns.dwell_rad += turn.dwell_rad;
+    turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);
+    return piece_of_turn(std::move(turn), from.rim);
+}
+
+}  // namespace
+
+Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
+    Piece piece;
+    piece.kind = PieceKind::Course;
+    if (backward) {
+        course.path = reversed(course.path);
+        course.string = taut_string(course.path);
+        std::reverse(course.slip.slip.begin(), course.slip.slip.end());
+    }
+    piece.path = std::move(course.path);
+    piece.string = std::move(course.string);
+    piece.slip = std::move(course.slip.slip);
+    piece.worst_slip = course.slip.worst;
+    piece.start_rim = start_of(member, backward).rim;
+    piece.end_rim = end_of(member, backward).rim;
+    thin_out(piece, kStation_mm);
+    return piece;
+}
+
+Piece piece_of(const CourseRules& rules, const Member& member, bool backward) {
+    FollowedCourse course;
+    course.path = trace_both_ways(rules, member.candidate);
+    course.string = taut_string(course.path);
+    course.slip = measure_slip(rules.mandrel.surface, course.path, course.string,
+                               {.friction = rules.tow.friction, .method = TraceMethod::Patches});
+    return piece_of(std::move(course), member, backward);
+}
+
+void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
+                    std::vector<Piece>& pieces) {
+    const auto half = [&](const RimCrossing& end) {
+        return half_turn(rules.mandrel.rims[at(end.rim)], end, rules.turn, kHalfTurnStation_mm);
+    };
+    const RimCrossing& start = start_of(member, backward);
+    const RimCrossing& end = end_of(member, backward);
+    Turn before = half(start);
+    before.path = reversed(before.path);
+    pieces.insert(pieces.begin(), piece_of_turn(std::move(before), start.rim));
+    pieces.push_back(piece_of_turn(half(end), end.rim));
+}
+
+void lay_out(const CourseRules& rules, std::span<const Member> members,
+             std::span<const OrderedCourse> order, Plan& plan) {
+    plan.pieces.clear();
+    plan.fibres = 0;
+    plan.fibre_length_mm = 0.0;
+    plan.worst_slip = 0.0;
+    plan.worst_bridge_mm = 0.0;
+    plan.worst_joint_mm = 0.0;
+    plan.turns.assign(rules.mandrel.rims.size(), {});
+    bool fresh = true;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const auto [member, backward] = order[i].course;
+        const Member& course = members[at(member)];
+        Piece piece = piece_of(rules, course, backward);
+        piece.starts_fibre = fresh;
+        plan.fibres += fresh ? 1 : 0;
+        add_piece(std::move(piece), plan);
+        fresh = order[i].cut_after;
+        if (!fresh) {
+            const RimCrossing& from = end_of(course, backward);
+            const LaidCourse& next = order[i + 1].course;
+            add_piece(turn_between(rules, from, start_of(members[at(next.member)], next.backward),
+                                   plan.turns[at(from.rim)]),
+                      plan);
+        }
+    }
+    plan.courses = static_cast<int>(order.size());
+}
+
+}  // namespace meshwind

@@ -1,0 +1,28 @@
+/// From courses in their order to the pieces of a plan.
+#pragma once
+
+#include <span>
+
+#include "winding/cover/library.h"
+#include "winding/cover/order.h"
+#include "winding/plan/plan.h"
+
+namespace meshwind {
+
+/// A finished course as it is wound.
+[[nodiscard]] Piece piece_of(FollowedCourse&& course, const Member& member, bool backward);
+
+/// The same of a proven member, followed again.
+[[nodiscard]] Piece piece_of(const CourseRules& rules, const Member& member, bool backward);
+
+/// Lays out courses and the turns between them: the plan's pieces, fibres, turns and worst figures.
+/// \param members proven ones \param order of some of them
+void lay_out(const CourseRules& rules, std::span<const Member> members,
+             std::span<const OrderedCourse> order, Plan& plan);
+
+/// Puts a course between the half of a turn that leads to it and the half that leads on.
+/// \param pieces the course of `member`
+void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
+                    std::vector<Piece>& pieces);
+
+}  // namespace meshwind

@@ -1,0 +1,95 @@
+/// The library of admissible courses: what can be wound at all, before anything is chosen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geodesic/measure.h"
+#include "geodesic/trace.h"
+#include "mesh/mandrel.h"
+#include "mesh/ray_query.h"
+#include "winding/laminate/footprint.h"
+#include "winding/plan/course.h"
+#include "winding/plan/free_fibre.h"
+#include "winding/plan/rejection.h"
+#include "winding/plan/tow.h"
+#include "winding/turn/turn.h"
+
+namespace meshwind {
+
+/// All that judging a candidate needs; references must outlive it.
+struct CourseRules {
+    const Mandrel& mandrel;
+    const RayQuery& obstacles;
+    const FootprintFinder& footprints;
+    Tow tow;
+    TurnRule turn;
+    FreeFibreRule free_fibre;
+    double max_half_length_mm =
+        1e4;  ///< a candidate that meets no rim within this circles for ever
+    std::optional<double> angle_rad{};  ///< wanted winding angle
+};
+
+/// The unit tangent along which a candidate leaves its seed.
+[[nodiscard]] Eigen::Vector3d direction_of(const Surface& surface, const Candidate& candidate);
+
+/// The angle of a candidate that leaves its seed along `tangent`, where the surface's normal is
+/// `normal`.
+[[nodiscard]] double direction_angle(const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent);
+
+/// A direction for a candidate through a place: with a wanted winding angle two in three draws lead
+/// there, one hand or the other, where the wall is like a pipe; else any direction.
+/// \param unit, choice drawn from [0, 1)
+[[nodiscard]] double draw_direction_rad(const CourseRules& rules, const SurfacePoint& place,
+                                        double unit, double choice);
+
+/// The whole path of a candidate, as far as it can be followed either way.
+[[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate,
+                                          TraceMethod method = TraceMethod::Patches);
+
+/// Follows a candidate on the curved patches and measures its slip. On Refusal::None `member` holds
+/// its ends and length, and `followed` the course; on others both are unchanged.
+[[nodiscard]] Refusal follow_course(const CourseRules& rules, const Candidate& candidate,
+                                    Member& member, FollowedCourse& followed);
+
+/// True when a free length can be found all along a course, in one direction of travel.
+[[nodiscard]] bool is_windable(const CourseRules& rules, const FollowedCourse& course,
+                               bool backward);
+
+/// Judges a candidate by all rules. On Refusal::None `member` is filled, on others it is unchanged.
+[[nodiscard]] Refusal judge(const CourseRules& rules, const Candidate& candidate,
+                            FootprintFinder::Scratch& scratch, Member& member);
+
+/// Judges a candidate by the walk alone: as draw_sketch(), but without a footprint.
+[[nodiscard]] Refusal draw_path(const CourseRules& rules, const Candidate& candidate,
+                                Sketch& sketch);
+
+/// Judges a candidate by the walk: ends, turns and bridges. On Refusal::None `sketch` is filled, on
+/// others it is of no use. Slip is not measured: the candidate is steered within the friction.
+[[nodiscard]] Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
+                                  FootprintFinder::Scratch& scratch, Sketch& sketch);
+
+/// True when a free length can be found about every `step_mm` of a path, and carried from each
+/// place to the next. \param path in the direction of travel \param string over it
+[[nodiscard]] bool is_windable(const CourseRules& rules, const SurfacePath& path,
+                               const TautString& string, double step_mm);
+
+/// Distance of the places at which a sketch is looked into.
+inline constexpr double kSketchStep_mm = 12.0;
+
+/// How candidates are judged: by the walk alone, or where that admits them by all rules as well.
+enum class Judging { Sketches, Courses };
+
+/// Candidates judged in parallel. Members in the order of the candidates, whatever the threads.
+struct LibraryPart {
+    std::vector<Member> members;
+    std::vector<Refusal> outcome;  ///< per candidate
+};
+[[nodiscard]] LibraryPart build_library(const CourseRules& rules,
+                                        std::span<const Candidate> candidates,
+                                        Judging judging = Judging::Sketches);
+
+}  // namespace meshwind

@@ -1,0 +1,50 @@
+#include "winding/cover/placed_course.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "core/margins.h"
+
+namespace meshwind {
+
+using Eigen::Vector3d;
+
+std::size_t seed_station(const PlacedCourse& course) {
+    // Not just the first in the seed's face: a course may pass that several times.
+    const SurfacePoint& seed = course.member.candidate.seed;
+    std::size_t best = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < course.path.size(); ++i) {
+        const SurfacePoint& at = course.path[i].at;
+        const double distance = at.face == seed.face ? (at.bary - seed.bary).squaredNorm()
+                                                     : std::numeric_limits<double>::max();
+        if (distance < nearest) {
+            nearest = distance;
+            best = i;
+        }
+    }
+    return best;
+}
+
+Candidate moved(const CourseRules& rules, const PlacedCourse& course, std::size_t station,
+                const CourseMove& move) {
+    const Surface& surface = rules.mandrel.surface;
+    const Candidate& from = course.member.candidate;
+    const PathPoint& start = course.path[station];
+    const Vector3d left = start.normal.cross(start.tangent);
+    const double side = move.left_mm < 0.0 ? -1.0 : 1.0;
+    const TraceResult way = trace(surface, start.at, side * left, {},
+                                  {.max_length_mm = std::max(std::abs(move.left_mm), 1e-3)});
+    const PathPoint& place = way.path.back();
+    const Vector3d normal = smooth_normal(surface, place.at);
+    const double most = margin::kCoverSteering * rules.tow.friction;
+    const double ahead = std::clamp(from.slip_ratio + move.steering, -most, most);
+    const double behind = std::clamp(from.slip_ratio + from.more_behind + move.behind, -most, most);
+    return {place.at, direction_angle(normal, side * place.tangent.cross(normal)) + move.turn_rad,
+            ahead, behind - ahead};
+}
+
+}  // namespace meshwind

@@ -1,0 +1,33 @@
+/// A course in its place on the wall, and how it is moved to another.
+#pragma once
+
+#include <cstddef>
+
+#include "core/margins.h"
+#include "winding/cover/library.h"
+#include "winding/plan/course.h"
+
+namespace meshwind {
+
+/// How a course is moved: to its left, turned, and steered otherwise ahead of its seed and behind.
+struct CourseMove {
+    double left_mm = 0.0;
+    double turn_rad = 0.0;
+    double steering = 0.0;
+    double behind = 0.0;
+};
+
+/// Steering of new courses as shares of the friction: geodesic, and three strengths to either side.
+inline constexpr std::array<double, 7> kSteering = {
+    0.0, 0.31, -0.31, 0.62, -0.62, margin::kCoverSteering, -margin::kCoverSteering};
+
+/// The station of a course's seed, where its two steerings meet.
+[[nodiscard]] std::size_t seed_station(const PlacedCourse& course);
+
+/// The candidate that a course becomes when it is moved from one of its stations; its steering
+/// stays within margin::kCoverSteering of the friction. \param station any where `more_behind` is
+/// 0, else seed_station()
+[[nodiscard]] Candidate moved(const CourseRules& rules, const PlacedCourse& course,
+                              std::size_t station, const CourseMove& move);
+
+}  // namespace meshwind

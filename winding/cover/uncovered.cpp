@@ -1,0 +1,106 @@
+#include "winding/cover/uncovered.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string>
+#include <tuple>
+
+namespace meshwind {
+namespace {
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+// What samples that are bare for the same reason have in common.
+struct Reason {
+    std::int32_t region = -1;
+    bool reached = false;  // by a member of the library
+    Rejection rejection = Rejection::None;
+    Refusal refusal = Refusal::None;
+
+    [[nodiscard]] bool operator<(const Reason& other) const {
+        return std::tie(region, reached, rejection, refusal) <
+               std::tie(other.region, other.reached, other.rejection, other.refusal);
+    }
+};
+
+// Per sample: what became of most members that pass it; None unless more were refused than not.
+std::vector<Rejection> commonest_rejections(std::size_t samples, std::span<const Member> members,
+                                            std::span<const Rejection> rejection) {
+    std::vector<std::array<std::int32_t, kRejections>> tally(samples);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        for (const std::int32_t sample : members[i].footprint) {
+            ++tally[at(sample)][static_cast<std::size_t>(rejection[i])];
+        }
+    }
+    std::vector<Rejection> commonest;
+    for (const auto& counts : tally) {
+        const auto most = std::max_element(counts.begin() + 1, counts.end()) - counts.begin();
+        const std::int32_t refused = std::accumulate(counts.begin() + 1, counts.end(), 0);
+        commonest.push_back(counts[0] >= refused ? Rejection::None : static_cast<Rejection>(most));
+    }
+    return commonest;
+}
+
+std::string rule_of(const Reason& reason) {
+    if (!reason.reached) {
+        return reason.refusal == Refusal::None ? "no candidate was tried here"
+                                               : name_of(reason.refusal);
+    }
+    return reason.rejection == Rejection::None
+               ? "a course for it would lay more fibre over covered wall than it gains"
+               : name_of(reason.rejection);
+}
+
+// Of how many courses a rejection is the reason.
+std::string so_with(const Reason& reason, int courses) {
+    return reason.rejection == Rejection::None
+               ? ""
+               : " (so with " + std::to_string(courses) + (courses == 1 ? " course" : " courses") +
+                     " that would cover it)";
+}
+
+}  // namespace
+
+std::vector<Uncovered> uncovered_wall(const Surface& surface, const CoverageSamples& samples,
+                                      const Library& library, std::span<const Rejection> rejection,
+                                      std::span<const std::int32_t> layers) {
+    const auto commonest = commonest_rejections(samples.size(), library.members, rejection);
+    const auto reason_of = [&](std::size_t sample) {
+        const std::int32_t region = surface.region[at(samples.at[sample].face)];
+        return library.reached[sample] != 0
+                   ? Reason{region, true, commonest[sample], Refusal::None}
+                   : Reason{region, false, Rejection::None, library.closest_miss[sample]};
+    };
+    std::map<Reason, double> area_mm2;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (layers[i] == 0) {
+            area_mm2[reason_of(i)] += samples.area_mm2;
+        }
+    }
+    std::map<Reason, int> courses;
+    for (std::size_t i = 0; i < library.members.size(); ++i) {
+        std::set<Reason> kept_bare;
+        for (const std::int32_t sample : library.members[i].footprint) {
+            if (layers[at(sample)] == 0 && commonest[at(sample)] == rejection[i]) {
+                kept_bare.insert(reason_of(at(sample)));
+            }
+        }
+        for (const Reason& reason : kept_bare) {
+            ++courses[reason];
+        }
+    }
+    std::vector<Uncovered> uncovered;
+    uncovered.reserve(area_mm2.size());
+    for (const auto& [reason, mm2] : area_mm2) {
+        const std::string rule = rule_of(reason);
+        uncovered.push_back({reason.region, mm2, rule + so_with(reason, courses[reason]), rule});
+    }
+    return uncovered;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,55 @@
+#include "winding/laminate/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshwind {
+namespace {
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+Coverage measure_coverage(std::span<const std::int32_t> layers) {
+    Coverage coverage;
+    double sum = 0.0;
+    double squares = 0.0;
+    double covered = 0.0;
+    for (const std::int32_t count : layers) {
+        sum += count;
+        squares += static_cast<double>(count) * count;
+        covered += count > 0 ? 1.0 : 0.0;
+        coverage.max_layers = std::max(coverage.max_layers, static_cast<int>(count));
+    }
+    const auto n = static_cast<double>(layers.size());
+    coverage.fraction = covered / n;
+    coverage.mean_layers = sum / n;
+    const double variance = squares / n - coverage.mean_layers * coverage.mean_layers;
+    coverage.cv = sum > 0.0 ? std::sqrt(std::max(0.0, variance)) / coverage.mean_layers : 0.0;
+    return coverage;
+}
+
+std::vector<double> layers_per_face(const Surface& surface, const CoverageSamples& samples,
+                                    std::span<const std::int32_t> layers) {
+    const SampledFaces faces = sampled_faces(surface, samples);
+    std::vector<double> on_face(surface.face.size(), 0.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        on_face[at(samples.at[i].face)] += layers[i];
+    }
+    std::vector<double> mean(surface.face.size(), 0.0);
+    for (std::size_t f = 0; f < mean.size(); ++f) {
+        double weight = 0.0;
+        for (const std::int32_t face : faces.speaks[f]) {
+            if (face != kNoFace) {
+                mean[f] += on_face[at(face)] / faces.samples[at(face)];
+                weight += 1.0;
+            }
+        }
+        mean[f] /= std::max(1.0, weight);
+    }
+    return mean;
+}
+
+}  // namespace meshwind

@@ -1,0 +1,51 @@
+/// What a plan that was not made from coverage samples covers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "mesh/surface.h"
+#include "winding/laminate/samples.h"
+#include "winding/plan/plan.h"
+#include "winding/plan/tow.h"
+
+namespace meshwind {
+
+/// Parts of a surface by position; an empty one is all of it.
+struct PlanZones {
+    using Zone = std::function<bool(const Eigen::Vector3d& position_mm)>;
+
+    /// What is to be covered. Wall elsewhere is left out of mean, maximum and scatter, and
+    /// Coverage::reachable is the share of this zone; without one it is left at 0.
+    Zone asked_for{};
+    /// Where the winding is regular: Coverage::regular_cv is measured there; none without one.
+    Zone regular{};
+    /// Layers that the pattern lays at a place of `regular`: where they vary by geometry, the
+    /// scatter is that of the layers over these. Empty: the same everywhere.
+    std::function<double(const Eigen::Vector3d& position_mm)> meant{};
+};
+
+/// The samples that a plan's coverage is measured on: four to a tow width each way.
+/// \param seed of the plan
+[[nodiscard]] CoverageSamples plan_samples(const Surface& surface, double tow_width_mm,
+                                           std::uint64_t seed);
+
+/// The path of course `i` with as much of the turns before and after it as its band still covers
+/// wall from.
+[[nodiscard]] SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i,
+                                           double tow_width_mm);
+
+/// Coverage by a fibre as it lies, with its turns. \param wall what the stations' faces are of, as
+/// in measure_plan() \return `reachable` is left at 0
+[[nodiscard]] Coverage coverage_of_fibre(const Surface& surface, const Surface& wall,
+                                         double tow_width_mm, std::uint64_t seed,
+                                         const SurfacePath& fibre);
+
+/// Fills in coverage, layers per face, winding angles and places of a plan's courses.
+/// \param surface what is to be covered \param wall what the stations' faces are of: the surface,
+/// or the surface with more faces after its own \param seed of the samples
+void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
+                  std::uint64_t seed, const PlanZones& zones, Plan& plan);
+
+}  // namespace meshwind

@@ -1,0 +1,70 @@
+/// Figures of a plan: coverage, winding angles, places in the order, what the planning took.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "winding/plan/rejection.h"
+
+namespace meshwind {
+
+/// How the wall is covered, measured on the coverage samples.
+struct Coverage {
+    double fraction = 0.0;   ///< share of the wall under at least one layer
+    double reachable = 0.0;  ///< share that an admissible course of the library passes
+    double mean_layers = 0.0;
+    int max_layers = 0;
+    double cv = 0.0;  ///< standard deviation of the layers over their mean
+    /// The same where a pattern is regular, of the layers averaged over a tow width.
+    std::optional<double> regular_cv{};
+    std::optional<double> thinnest_layers{};  ///< so averaged, and where it is regular
+    std::optional<double> thickest_layers{};
+};
+
+/// Bare wall with the rule that keeps it bare.
+struct Uncovered {
+    std::int32_t region = -1;
+    double area_mm2 = 0.0;
+    std::string reason;  ///< the rule, and of how many courses it is the reason
+    std::string rule;
+};
+
+/// A rule that keeps wall bare, loosened: what courses would reach then.
+struct WhatIf {
+    enum class Rule { Friction, Bridging, Extension } rule = Rule::Friction;
+    double factor = 1.0;     ///< on the rule's number
+    double reachable = 0.0;  ///< share of the wall
+};
+
+/// Winding angles of many courses over pipes, by length of fibre.
+struct WoundAngles {
+    double measured_mm = 0.0;  ///< over pipes; 0 where the wall has none
+    double mean_rad = 0.0;
+    std::optional<double> wish_rad{};  ///< what was wanted, if anything
+    double rms_off_rad = 0.0;          ///< from the wish
+    double off_share = 0.0;  ///< of the fibre over pipes: 10 degrees off or more counts all
+};
+
+/// Where in the order the fibre of each kind lies: 0 first, 1 last, 0.5 where the order does not
+/// matter. 0.5 where there is none.
+struct Places {
+    double junction = 0.5;
+    double hoop = 0.5;
+};
+
+/// What planning took; for reports.
+struct PlanEffort {
+    std::uint64_t seed = 0;
+    int effort = 0;  ///< asked for
+    std::int64_t candidates = 0;
+    std::array<std::int64_t, kRefusals> refusals{};
+    std::int64_t proposals = 0;    ///< weighed while the courses were annealed
+    std::int64_t taken = 0;        ///< of these
+    int courses_out_of_reach = 0;  ///< chosen, but no fibre joins them; left out
+    int rejected_courses = 0;      ///< refused by the measured slip or by the machine
+    std::array<std::int64_t, kRejections> rejections{};  ///< members of the library, by reason
+};
+
+}  // namespace meshwind

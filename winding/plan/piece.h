@@ -1,0 +1,49 @@
+/// A stretch of the fibre: a course, or what leads from one course to the next.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geodesic/surface_path.h"
+
+namespace meshwind {
+
+enum class PieceKind { Course, Transition };
+
+/// Where the straight free fibre begins that leads to the eye, when that is not where the fibre is
+/// laid: on the flank of a pin ahead (pin_turn.h).
+struct FreeStart {
+    Eigen::Vector3d from_mm = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+    bool held = false;  ///< a pin says where the fibre is laid, not the eye
+};
+
+/// A stretch of the fibre in winding order. Stations are in the direction of travel, mandrel frame.
+struct Piece {
+    PieceKind kind = PieceKind::Course;
+    SurfacePath path;
+    TautString string;  ///< where the fibre is over the path
+    std::vector<double>
+        slip;  ///< per station, |kg / kn|: measured on courses, exact on transitions
+    double worst_slip = 0.0;
+    std::vector<FreeStart> free_start{};  ///< per station of a turn on pins; else empty
+    std::int32_t start_rim = -1;
+    std::int32_t end_rim = -1;
+    bool starts_fibre = false;  ///< tied on before this piece
+};
+
+/// Keeps stations at least `step_mm` apart, both ends, both sides of a feature edge, and where the
+/// fibre leaves the wall or meets it again the stations on either side of that place.
+void thin_out(Piece& piece, double step_mm);
+
+/// Per piece the number of its course in winding order: its own, or of the one before the turn.
+[[nodiscard]] std::vector<std::size_t> courses_of(std::span<const Piece> pieces);
+
+/// The pieces of each fibre, in order.
+[[nodiscard]] std::vector<std::span<const Piece>> fibres_of(std::span<const Piece> pieces);
+
+}  // namespace meshwind

@@ -1,0 +1,189 @@
+#include "winding/revolution/aim_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/text_number.h"
+#include "core/units.h"
+#include "winding/revolution/steered_pass.h"
+
+namespace meshwind {
+namespace {
+
+// Parts that lean more towards the axis close the body, others lead along it.
+constexpr double kSteep_rad = rad_from_deg(45.0);
+
+// Crossings of a rim beyond are steered to be flatter: layers are 1 / cos(angle), 2.9 here.
+constexpr double kRim_rad = rad_from_deg(70.0);
+
+// Halvings of a slip, and of the angle that would do.
+constexpr int kHalvings = 50;
+
+// Friction that no fibre has: what more would take is not told.
+constexpr double kNoFriction = 1.0;
+
+// Relative: a slip is in proportion to this much of the room that is left.
+constexpr double kSameRadius_mm = 1e-9;
+
+// From the widest place to one end.
+class Half {
+public:
+    Half(const BodyOfRevolution& body, std::size_t end, const AimTask& task)
+        : meridian_(body.meridian),
+          upper_(end == 1),
+          rim_(body.end[end].kind == MeridianEnd::Kind::Rim),
+          widest_mm_(meridian_.widest_mm()),
+          end_mm_(upper_ ? meridian_.length_mm() : 0.0),
+          cap_mm_(cap_mm(body, end)),
+          task_(task),
+          touching_mm_(task.touching_mm[end]) {}
+
+    [[nodiscard]] std::string name() const { return upper_ ? "upper" : "lower"; }
+
+    // With a slip that leads towards the end where it is above 0.
+    [[nodiscard]] SteeredEnd follow(double slip, double angle_rad) const {
+        const double c_mm = meridian_.at(widest_mm_).radius_mm * std::sin(angle_rad);
+        return steer_from(meridian_, widest_mm_, c_mm, upper_ ? slip : -slip, end_mm_);
+    }
+
+    [[nodiscard]] bool reached(const SteeredEnd& at) const {
+        if (at.turned) {
+            return cap_mm_ != end_mm_ && (upper_ ? at.arc_mm >= cap_mm_ : at.arc_mm <= cap_mm_);
+        }
+        const double sine = at.turning_mm / meridian_.at(end_mm_).radius_mm;
+        return cap_mm_ != end_mm_ || sine <= std::sin(std::max(kRim_rad, task_.angle_rad)) ||
+               sine <= std::sin(task_.angle_rad) + kSameRadius_mm;
+    }
+
+    [[nodiscard]] bool reaches(double slip, double angle_rad) const {
+        return reached(follow(slip, angle_rad));
+    }
+
+    // The least slip for which something holds that more slip does not undo.
+    template <class Holds>
+    [[nodiscard]] static double least(double most, const Holds& holds) {
+        double low = 0.0;
+        double high = most;
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = 0.5 * (low + high);
+            (holds(middle) ? high : low) = middle;
+        }
+        return high;
+    }
+
+    [[nodiscard]] double slip() const {
+        if (reaches(0.0, task_.angle_rad)) {
+            return 0.0;
+        }
+        if (cap_mm_ == end_mm_) {
+            return least(task_.most_slip,
+                         [this](double slip) { return reaches(slip, task_.angle_rad); });
+        }
+        // It turns ever nearer to the axis.
+        const auto touches = [this](double slip) {
+            const SteeredEnd at = follow(slip, task_.angle_rad);
+            return !at.turned || at.turning_mm <= touching_mm_;
+        };
+        return touches(task_.most_slip) ? least(task_.most_slip, touches) : task_.most_slip;
+    }
+
+    [[nodiscard]] std::string failure() const {
+        const SteeredEnd at = follow(task_.most_slip, task_.angle_rad);
+        if (reached(at)) {
+            return {};
+        }
+        const std::string how = "a fibre at " + degrees(task_.angle_rad, 1) +
+                                ", steered with all of the friction of " +
+                                fixed(task_.most_slip, 3) + ", ";
+        const MeridianPlace place = meridian_.at(at.arc_mm);
+        const std::string where =
+            at.turned
+                ? "turns at radius " + fixed(place.radius_mm, 1) + " mm, z " +
+                      fixed(place.z_mm, 1) + " mm, before the " + name() + (rim_ ? " rim" : " end")
+                : "comes to the " + name() + " rim at " +
+                      degrees(std::asin(std::min(1.0, at.turning_mm / place.radius_mm))) +
+                      ", more than " + degrees(std::max(kRim_rad, task_.angle_rad), 1);
+        return how + where + "; " + what_would();
+    }
+
+private:
+    [[nodiscard]] std::string what_would() const {
+        std::string words;
+        if (reaches(kNoFriction, task_.angle_rad)) {
+            const double friction =
+                least(kNoFriction, [this](double slip) { return reaches(slip, task_.angle_rad); });
+            words = "a friction of " + fixed(friction, 3) + " would do";
+        }
+        if (reaches(task_.most_slip, 0.0)) {
+            double good = 0.0;
+            double bad = task_.angle_rad;
+            for (int i = 0; i < kHalvings; ++i) {
+                const double middle = 0.5 * (good + bad);
+                (reaches(task_.most_slip, middle) ? good : bad) = middle;
+            }
+            words += (words.empty() ? "an angle of " : ", or an angle of ") + degrees(good, 1) +
+                     (words.empty() ? " would do" : "");
+        }
+        return words.empty() ? "no angle and no friction would do" : words;
+    }
+
+    const Meridian& meridian_;
+    bool upper_;
+    bool rim_;
+    double widest_mm_;
+    double end_mm_;
+    double cap_mm_;
+    const AimTask& task_;
+    double touching_mm_;
+};
+
+}  // namespace
+
+double cap_mm(const BodyOfRevolution& body, std::size_t end) {
+    const bool upper = end == 1;
+    const double end_mm = upper ? body.meridian.length_mm() : 0.0;
+    const auto narrowing = [upper](double slope_rad) { return upper ? -slope_rad : slope_rad; };
+    const auto steep = [&](const MeridianPart& part) {
+        return part.kind == MeridianPartKind::Cone && narrowing(part.slope_rad) >= kSteep_rad;
+    };
+    const MeridianPlace last = body.meridian.at(end_mm);
+    const MeridianPart& outmost = upper ? body.parts.back() : body.parts.front();
+    const bool closed = body.end[end].kind == MeridianEnd::Kind::Pole;
+    const bool dome = outmost.kind == MeridianPartKind::Dome && last.curvature_per_mm > 0.0 &&
+                      narrowing(last.slope_rad) > 0.0;
+    if (!closed && !dome && !steep(outmost)) {
+        return end_mm;
+    }
+    double from_mm = upper ? outmost.from_mm : outmost.to_mm;
+    const auto add = [&](const MeridianPart& part) {
+        if (part.kind != MeridianPartKind::Dome && !steep(part)) {
+            return false;
+        }
+        from_mm = upper ? part.from_mm : part.to_mm;
+        return true;
+    };
+    if (upper) {
+        for (auto part = body.parts.rbegin() + 1; part != body.parts.rend() && add(*part); ++part) {
+        }
+    } else {
+        for (auto part = body.parts.begin() + 1; part != body.parts.end() && add(*part); ++part) {
+        }
+    }
+    return from_mm;
+}
+
+PassAim aim_at_ends(const BodyOfRevolution& body, const AimTask& task) {
+    PassAim aim;
+    const Half below(body, 0, task);
+    const Half above(body, 1, task);
+    for (const Half* half : {&below, &above}) {
+        aim.failure = half->failure();
+        if (!aim.failure.empty()) {
+            return aim;
+        }
+    }
+    aim.slip = {-below.slip(), above.slip()};
+    return aim;
+}
+
+}  // namespace meshwind

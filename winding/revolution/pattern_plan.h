@@ -1,0 +1,60 @@
+/// The pattern planner: regular windings of a body of revolution, closed exactly.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/run_context.h"
+#include "core/units.h"
+#include "mesh/mandrel.h"
+#include "mesh/revolution/revolution.h"
+#include "winding/plan/plan.h"
+#include "winding/plan/tow.h"
+#include "winding/revolution/meridian_path.h"
+#include "winding/revolution/pattern_begin.h"
+#include "winding/revolution/pattern_wish.h"
+#include "winding/turn/pin_turn.h"
+
+namespace meshwind {
+
+enum class PatternKind { Helical, Polar, Hoop };
+
+struct PatternOptions {
+    PatternKind kind = PatternKind::Helical;
+    double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
+    double layers = 1.0;  ///< covers; each lays a ply of either hand, of hoops one
+    Tow tow{};
+    TurnRule turn{};                       ///< friction and band are taken from `tow`
+    PatternWish wish{};                    ///< helical, polar
+    std::optional<PinWish> pins{};         ///< helical: turns over rims are on pins (pin_turn.h)
+    bool over_rims = true;                 ///< false: only turns on the wall itself, about poles
+    std::optional<LatticeWish> lattice{};  ///< helical: ribs instead of a closed wall
+    /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
+    /// place.
+    std::optional<std::array<double, 2>> hoop_z_mm{};
+    /// To go on with its fibre, by connecting passes (connecting_passes.h) or a turn; where that
+    /// cannot be, Plan::cut_because says why and the pattern begins anew.
+    std::optional<FibreEnd> before{};
+    RunContext context{};  ///< its seed is that of the samples that coverage is measured on
+};
+
+/// Circuits that lead from the lower turn to the upper one and back. Each is the one before, turned
+/// on by the same angle, so that after all of them the fibre is back where it began and the bands
+/// lie side by side.
+///  - Where the body narrows to r = c the path turns by itself (Clairaut); such ends have no dwell,
+///    and the winding angle gives way by the little that closes the pattern.
+///  - Where it runs over a rim it turns by friction on the extension (turn.h), and dwells there for
+///    as long as closing takes. On pins it runs behind as many as closing takes, and their distance
+///    from the rim makes up the rest.
+///  - Polar: the band touches the opening, or the pole, of either end; where these are of different
+///    sizes it is steered with a constant slip ratio from one to the other.
+///  - Lattices: after each series the fibre dwells a little longer, by the offset of its bands; all
+///    series are wound once for each ply.
+///  - Hoop: the cylinder at the widest place, wound side by side, a ply for each cover, up and down
+///    in turn (hoop_path.h).
+/// \return a plan; where nothing can be wound `failure` says why, with numbers
+[[nodiscard]] Plan plan_pattern(const Mandrel& mandrel, const BodyOfRevolution& body,
+                                const PatternOptions& options);
+
+}  // namespace meshwind

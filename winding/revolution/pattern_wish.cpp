@@ -1,0 +1,357 @@
+#include "winding/revolution/pattern_wish.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "core/text/text_number.h"
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+constexpr double kTurn_rad = 2.0 * kPi;
+
+// Overlap up to which patterns are looked for unless the job says: there is nearly always one.
+constexpr double kMostOverlap = 0.25;
+
+// Looked through for patterns near a wish, and told.
+constexpr int kLooked = 2000;
+constexpr std::size_t kTold = 5;
+
+// Share of a band that is no gap, and of a step that is no crossing: rounding.
+constexpr double kNothing = 1e-9;
+
+const char* word_of(BandOrder order) {
+    return order == BandOrder::Leading ? "leading" : "lagging";
+}
+
+// Figures of the bands as wide as they are, whatever distance they were asked to have.
+Pattern with_band(Pattern pattern, double band_rad, int layers) {
+    const double deep = static_cast<double>(pattern.circuits) * band_rad / kTurn_rad;
+    pattern.overlap = deep / layers - 1.0;
+    pattern.least_layers = static_cast<std::int64_t>(std::floor(deep + kNothing));
+    pattern.most_layers = static_cast<std::int64_t>(std::ceil(deep - kNothing));
+    const double share = std::max(0.0, deep - static_cast<double>(pattern.least_layers));
+    pattern.ripple = std::sqrt(share * (1.0 - share)) / deep;
+    return pattern;
+}
+
+class Search {
+public:
+    Search(const CircuitToClose& circuit, const PatternWish& wish)
+        : circuit_(circuit), wish_(wish) {}
+
+    [[nodiscard]] FoundPattern closed_wall() const {
+        FoundPattern found;
+        if (refuse_dwell(found)) {
+            return found;
+        }
+        const PatternRequest asked = request();
+        if (fulfils_overlap(wish_.circuits)) {
+            std::vector<Pattern> patterns = find_patterns(asked);
+            if (!patterns.empty()) {
+                found.pattern = as_laid(patterns.front());
+                return found;
+            }
+        }
+        found.failure = failure(asked);
+        return found;
+    }
+
+    [[nodiscard]] FoundPattern lattice(const LatticeWish& lattice) const {
+        FoundPattern found;
+        if (refuse_dwell(found)) {
+            return found;
+        }
+        const double step_mm = kTurn_rad / lattice.circuits * circuit_.mm_per_rad;
+        const double rib_mm = circuit_.band_mm + (std::max(1, lattice.series) - 1) * offset_mm();
+        if (rib_mm > step_mm * (1.0 + kNothing)) {
+            found.failure = "ribs of " + fixed(rib_mm, 2) + " mm, " +
+                            std::to_string(lattice.circuits) + " of either hand, are " +
+                            fixed(step_mm, 2) +
+                            " mm apart at the widest place and close the wall; ask for fewer "
+                            "circuits or series, or for \"helical\"";
+            return found;
+        }
+        PatternRequest asked = request();
+        asked.circuits = lattice.circuits;
+        std::vector<Pattern> patterns = find_patterns(asked);
+        if (patterns.empty()) {
+            found.failure = failure(asked);
+        } else {
+            found.pattern = as_laid(patterns.front());
+        }
+        return found;
+    }
+
+private:
+    [[nodiscard]] double offset_mm() const {
+        return wish_.band_offset_mm > 0.0 ? wish_.band_offset_mm : circuit_.band_mm;
+    }
+
+    bool refuse_dwell(FoundPattern& found) const {
+        if (wish_.least_dwell_rad > 0.0 && circuit_.dwelling_ends == 0) {
+            found.failure = "a dwell of " + degrees(wish_.least_dwell_rad) +
+                            " at each rim is asked for, and the fibre turns by itself at both "
+                            "ends; leave \"dwell_deg\" out";
+            return true;
+        }
+        return false;
+    }
+
+    [[nodiscard]] PatternRequest request() const {
+        PatternRequest asked;
+        asked.circuit_rad = circuit_.turn_rad;
+        asked.band_rad = offset_mm() / circuit_.mm_per_rad;
+        asked.layers = circuit_.layers;
+        asked.most_change_rad = circuit_.most_change_rad;
+        asked.least_dwell_rad = circuit_.dwelling_ends * wish_.least_dwell_rad;
+        if (circuit_.dwelling_ends > 0) {
+            asked.most_dwell_rad = wish_.most_dwell_rad
+                                       ? circuit_.dwelling_ends * *wish_.most_dwell_rad
+                                       : asked.least_dwell_rad + kTurn_rad;
+        }
+        asked.most_overlap = wish_.most_overlap.value_or(kMostOverlap);
+        asked.circuits = wish_.circuits;
+        asked.starts = wish_.starts;
+        asked.order = wish_.order;
+        asked.most_patterns = kLooked;
+        return asked;
+    }
+
+    // Over the distance that bands are to have.
+    [[nodiscard]] double overlap_of(std::int64_t circuits) const {
+        return static_cast<double>(circuits) * offset_mm() /
+                   (kTurn_rad * circuit_.mm_per_rad * circuit_.layers) -
+               1.0;
+    }
+
+    // Whether so many circuits, asked for, close the wall, and not with more overlap than allowed.
+    // 0: none are asked for.
+    [[nodiscard]] bool fulfils_overlap(std::int64_t circuits) const {
+        if (circuits == 0) {
+            return true;
+        }
+        const double overlap = overlap_of(circuits);
+        return overlap >= -kNothing && (!wish_.most_overlap || overlap <= *wish_.most_overlap);
+    }
+
+    [[nodiscard]] Pattern as_laid(const Pattern& pattern) const {
+        return with_band(pattern, circuit_.band_mm / circuit_.mm_per_rad, circuit_.layers);
+    }
+
+    // Patterns that lack some of the wishes: of each set of wishes that may be given up.
+    [[nodiscard]] std::vector<Pattern> near(const PatternRequest& asked) const {
+        std::vector<PatternRequest> looser;
+        const auto add = [&](auto loosen) {
+            PatternRequest request = asked;
+            loosen(request);
+            looser.push_back(request);
+        };
+        const auto any_dwell = [&](PatternRequest& r) {
+            r.least_dwell_rad = 0.0;
+            r.most_dwell_rad = circuit_.dwelling_ends > 0 ? kTurn_rad : 0.0;
+        };
+        const auto any_starts = [](PatternRequest& r) {
+            r.wanted_starts = static_cast<int>(r.starts);
+            r.starts = 0;
+        };
+        add([](PatternRequest& r) { r.order.reset(); });
+        add(any_starts);
+        add(any_dwell);
+        add([&](PatternRequest& r) {
+            any_starts(r);
+            r.order.reset();
+        });
+        add([&](PatternRequest& r) {
+            any_starts(r);
+            any_dwell(r);
+            r.order.reset();
+        });
+        if (is_lattice(asked)) {
+            for (const std::int64_t more : {-2, -1, 1, 2}) {
+                add([&](PatternRequest& r) {
+                    r.circuits = std::max<std::int64_t>(1, r.circuits + more);
+                });
+            }
+        } else {
+            add([](PatternRequest& r) { r.circuits = 0; });
+            add([&](PatternRequest& r) {
+                any_starts(r);
+                any_dwell(r);
+                r.order.reset();
+                r.circuits = 0;
+                r.most_overlap += kMostOverlap;
+            });
+        }
+        std::vector<Pattern> found;
+        std::set<std::pair<std::int64_t, std::int64_t>> known;
+        for (const PatternRequest& request : looser) {
+            for (const Pattern& pattern : find_patterns(request)) {
+                const bool closes = overlap_of(pattern.circuits) >= -kNothing;
+                if (closes != is_lattice(asked) &&
+                    known.insert({pattern.circuits, pattern.turns}).second) {
+                    found.push_back(pattern);
+                }
+            }
+        }
+        return found;
+    }
+
+    [[nodiscard]] bool is_lattice(const PatternRequest& asked) const {
+        return asked.circuits > 0 && wish_.circuits == 0;
+    }
+
+    // Fewest wishes lacked, then the nearest by circuits, starts, dwell.
+    [[nodiscard]] auto distance(const Pattern& p, const PatternRequest& asked) const {
+        const std::int64_t circuits =
+            asked.circuits > 0 ? std::abs(p.circuits - asked.circuits) : 0;
+        const std::int64_t starts = asked.starts > 0 ? std::abs(p.starts - asked.starts) : 0;
+        const bool order = asked.order && p.circuits > 2 && p.order != *asked.order;
+        const double added_rad = p.dwell_rad + std::abs(p.change_rad);
+        const bool dwell = p.dwell_rad > asked.most_dwell_rad + kSameTurn_rad ||
+                           p.dwell_rad < asked.least_dwell_rad - kSameTurn_rad;
+        const bool overlap = p.overlap > asked.most_overlap &&
+                             (asked.circuits == 0 || wish_.most_overlap.has_value());
+        const int lacking = static_cast<int>(circuits > 0) + static_cast<int>(starts > 0) +
+                            static_cast<int>(order) + static_cast<int>(dwell) +
+                            static_cast<int>(overlap);
+        return std::tuple(lacking, circuits, starts, std::abs(p.overlap), added_rad, p.turns);
+    }
+
+    [[nodiscard]] std::string failure(const PatternRequest& asked) const {
+        std::vector<Pattern> patterns = near(asked);
+        std::sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
+            return distance(a, asked) < distance(b, asked);
+        });
+        std::string words = "no pattern is as asked for: " + words_of(asked);
+        if (asked.circuits > 0 && overlap_of(asked.circuits) < 0.0 && wish_.circuits > 0) {
+            words += "; so few leave gaps between bands " + fixed(offset_mm(), 2) +
+                     " mm apart, which a larger \"band_offset_mm\" or a \"lattice\" allow";
+        }
+        if (patterns.empty()) {
+            return words + "; none is near, another angle or tow width would have some";
+        }
+        words += "; nearest:";
+        for (std::size_t i = 0; i < std::min(kTold, patterns.size()); ++i) {
+            const Pattern p = as_laid(patterns[i]);
+            words += (i == 0 ? " " : "; ") + std::to_string(p.circuits) + " circuits, " +
+                     std::to_string(p.starts) + " starts " + word_of(p.order) + ", overlap " +
+                     percent(p.overlap, 1) + ", dwell " + degrees(p.dwell_rad) + " a circuit";
+        }
+        return words;
+    }
+
+    [[nodiscard]] std::string words_of(const PatternRequest& asked) const {
+        std::string words = "circuits that turn the mandrel by " + degrees(circuit_.turn_rad);
+        if (asked.circuits > 0) {
+            words += ", " + std::to_string(asked.circuits) + " of them";
+        }
+        if (asked.starts > 0) {
+            words += ", " + std::to_string(asked.starts) + " starts";
+        }
+        if (asked.order) {
+            words += std::string(", ") + word_of(*asked.order);
+        }
+        if (asked.circuits == 0 || wish_.most_overlap) {
+            words += ", overlap up to " + percent(asked.most_overlap, 1);
+        }
+        if (circuit_.dwelling_ends > 0) {
+            words += ", dwell of " + degrees(asked.least_dwell_rad) + " to " +
+                     degrees(asked.most_dwell_rad) + " a circuit";
+        } else {
+            words += ", no rim to dwell at, given way to by " + degrees(asked.most_change_rad);
+        }
+        return words;
+    }
+
+    const CircuitToClose& circuit_;
+    const PatternWish& wish_;
+};
+
+// How often the way on top changes along a row, for two.
+std::int64_t diamonds_in_row(const std::vector<std::int64_t>& circuit_at, std::size_t apart) {
+    const std::size_t n = circuit_at.size();
+    const auto back_on_top = [&](std::size_t place) {
+        return circuit_at[(place + apart) % n] >= circuit_at[place];
+    };
+    std::int64_t changes = 0;
+    for (std::size_t place = 0; place < n; ++place) {
+        changes += back_on_top(place) != back_on_top((place + 1) % n) ? 1 : 0;
+    }
+    return changes / 2;
+}
+
+}  // namespace
+
+FoundPattern find_wished_pattern(const CircuitToClose& circuit, const PatternWish& wish) {
+    return Search(circuit, wish).closed_wall();
+}
+
+FoundPattern find_wished_lattice(const CircuitToClose& circuit, const LatticeWish& lattice,
+                                 const PatternWish& wish) {
+    PatternWish rest = wish;
+    rest.circuits = 0;
+    rest.most_overlap.reset();
+    return Search(circuit, rest).lattice(lattice);
+}
+
+LaidLattice laid_lattice(const Pattern& pattern, const CircuitToClose& circuit,
+                         const LatticeWish& lattice, const PatternWish& wish) {
+    LaidLattice laid;
+    laid.series = lattice.series;
+    laid.plies = lattice.plies;
+    laid.offset_mm = wish.band_offset_mm > 0.0 ? wish.band_offset_mm : circuit.band_mm;
+    laid.rib_spacing_mm = pattern.step_rad * circuit.mm_per_rad;
+    if (lattice.series == 0) {
+        const Series series = fill_lattice(pattern, laid.offset_mm / circuit.mm_per_rad);
+        laid.series = series.count;
+        laid.offset_mm = series.even_rad * circuit.mm_per_rad;
+        laid.filled = true;
+    }
+    laid.offset_rad = laid.offset_mm / circuit.mm_per_rad;
+    laid.rib_mm = circuit.band_mm + static_cast<double>(laid.series - 1) * laid.offset_mm;
+    return laid;
+}
+
+std::vector<double> circuit_starts_rad(const Pattern& pattern,
+                                       const std::optional<LaidLattice>& lattice) {
+    const std::int64_t series = lattice ? lattice->series : 1;
+    const std::int64_t all = series * (lattice ? lattice->plies : 1);
+    std::vector<double> starts;
+    for (std::int64_t wound = 0; wound < all; ++wound) {
+        const double moved_rad =
+            lattice ? static_cast<double>(wound % series) * lattice->offset_rad : 0.0;
+        for (std::int64_t i = 0; i < pattern.circuits; ++i) {
+            const std::int64_t place = i * pattern.turns % pattern.circuits;
+            starts.push_back(static_cast<double>(place) * pattern.step_rad + moved_rad);
+        }
+    }
+    return starts;
+}
+
+Interlacing interlacing_of(const Pattern& pattern, double pass_rad, double upper_turn_rad) {
+    const double n = static_cast<double>(pattern.circuits);
+    const auto before = static_cast<std::int64_t>(
+        std::ceil(-upper_turn_rad / kTurn_rad * n - kNothing));  // the first that is beyond the top
+    const auto after = static_cast<std::int64_t>(
+        std::floor(-(2.0 * pass_rad + upper_turn_rad) / kTurn_rad * n + kNothing));
+    Interlacing found;
+    found.crossing_rows = std::max<std::int64_t>(0, before - after - 1);
+    found.crossings = found.crossing_rows * pattern.circuits;
+    const std::vector<std::int64_t> circuit_at = circuits_around(pattern);
+    // Rows N apart are alike.
+    for (std::int64_t row = 0; row < std::min(found.crossing_rows, pattern.circuits); ++row) {
+        const std::int64_t apart = (after + 1 + row) % pattern.circuits;
+        const auto places = static_cast<std::size_t>(apart < 0 ? apart + pattern.circuits : apart);
+        found.diamonds_around =
+            std::max(found.diamonds_around, diamonds_in_row(circuit_at, places));
+    }
+    return found;
+}
+
+}  // namespace meshwind

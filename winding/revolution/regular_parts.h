@@ -1,0 +1,20 @@
+/// Where the winding of a body of revolution is regular, and how thick it is there.
+#pragma once
+
+#include <array>
+
+#include "mesh/revolution/revolution.h"
+#include "winding/laminate/measure_plan.h"
+#include "winding/revolution/meridian_path.h"
+
+namespace meshwind {
+
+/// Sets `regular` and `meant` of the zones. Regular are the cylinders and the cones that lean by
+/// less than 45 deg, but for two tow widths at either end of each and at the turns. The bands that
+/// cross a parallel of radius r at the angle a take 1 / (2 pi r cos(a)) of it each, so the layers
+/// go as 1 / (r cos(a)) of the pass: that is `meant`, in 1/mm. Hoops have the same everywhere.
+/// \param pass without stations: hoops \param wound_mm arc lengths between which there is fibre
+void regular_parts(const BodyOfRevolution& body, const MeridianPass& pass,
+                   const std::array<double, 2>& wound_mm, double tow_width_mm, PlanZones& zones);
+
+}  // namespace meshwind

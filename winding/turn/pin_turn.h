@@ -1,0 +1,85 @@
+/// Turns on pins: the fibre that leaves over a rim at its winding angle passes between two pins on
+/// the extension, bends about one, runs behind some along the hoop, bends about the last and comes
+/// back.
+///
+/// On the unrolled cylinder that is straight lines and arcs that touch: with R the extension's
+/// radius, alpha the angle to the axis, z the pins' distance from the rim, rho that of the fibre
+/// from a pin's axis, p from pin to pin and k pins run behind, from the rim to the rim again
+///
+///     around = k p + 2 z tan(alpha) + 2 rho / cos(alpha)
+///     length = k p + 2 (z + rho sin(alpha)) / cos(alpha) + (pi - 2 alpha) rho
+///
+/// Pins that stand as closely as bands do are all touched by a free fibre that sinks towards the
+/// wall behind them. So the last one takes hold of it ahead of the landing point: with psi from
+/// there to the pin the fibre is R (1 / cos(psi) - 1) over the wall at the pin, below its top, and
+/// higher than the top at the next. Only then the eye swings round, and while the landing point
+/// comes up to the pin it goes down to the wall again. See docs/winding.md, "Turns on pins".
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "winding/plan/assemble.h"
+#include "winding/plan/plan.h"
+#include "winding/turn/pin.h"
+#include "winding/turn/turn.h"
+
+namespace meshwind {
+
+/// What may be asked of the pins; 0 and none: chosen.
+struct PinWish {
+    int count = 0;  ///< >= 0: of a ring, a multiple of the circuits
+    double diameter_mm = 2.0;
+    std::optional<double> height_mm{};
+    int skip = 0;  ///< >= 0: pins that a turn runs behind
+    /// >= 0: least distance of the pins' axes from the rim; 0: a tow's width and a pin's diameter
+    double offset_mm = 0.0;
+};
+
+/// A turn on the unrolled extension.
+struct PinTurnShape {
+    double radius_mm = 0.0;    ///< of the extension
+    double angle_rad = 0.0;    ///< between fibre and axis at the rim, 0 < .. < pi / 2
+    double held_mm = 0.0;      ///< rho
+    double offset_mm = 0.0;    ///< z
+    double pitch_mm = 0.0;     ///< p
+    int skip = 0;              ///< k
+    double lead_mm = 0.0;      ///< of the landing point before the last pin as the eye swings
+    double diameter_mm = 0.0;  ///< of the pins
+};
+
+/// Distance around the extension between the two crossings of the rim.
+[[nodiscard]] double pin_turn_around_mm(const PinTurnShape& shape);
+
+/// Length of the fibre between them.
+[[nodiscard]] double pin_turn_length_mm(const PinTurnShape& shape);
+
+/// Whether pins can take hold of the fibre one by one, and how.
+struct PinFit {
+    double height_mm = 0.0;  ///< of the pins
+    double lead_mm = 0.0;
+    int least_skip = 0;    ///< so that the landing point has left the first pin when the last one
+                           ///< takes hold
+    double room_mm = 0.0;  ///< that is left beside and over the pins which the fibre shall not
+                           ///< touch, and below the top of that which holds it: the least
+    std::string failure;   ///< empty, or in words what the pins lack
+};
+
+/// Beyond this room a pin is sure to take hold, and no other.
+inline constexpr double kLeastPinRoom_mm = 0.2;
+
+/// The lead that leaves most room, and the height, where it is not given.
+/// \param shape radius, angle, held, pitch, diameter are read
+[[nodiscard]] PinFit fit_pins(const PinTurnShape& shape, double strand_mm,
+                              std::optional<double> height_mm);
+
+/// The turn as a piece of a plan, with where the free fibre begins (Piece::free_start). Its slip is
+/// that of a path without friction: zero, also where pins hold it.
+/// \param from how the course before leaves over the rim
+[[nodiscard]] LaidTurn turn_on_pins(const Rim& rim, const RimCrossing& from,
+                                    const PinTurnShape& shape, double band_mm);
+
+/// The ring with the pins that a turn from there bends about.
+[[nodiscard]] PinRing ring_for(const Rim& rim, const RimCrossing& from, const PinTurnShape& shape);
+
+}  // namespace meshwind
