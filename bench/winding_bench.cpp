@@ -39,7 +39,7 @@ struct Scene {
         std::vector<Candidate> all;
         for (std::size_t i = 0; i < count; ++i) {
             const auto sample = random_bits(1, i) % samples.size();
-            const double slip = rules.tow.friction * (0.9 - 1.8 * random_unit(2, i));
+            const double slip = rules.tow.friction.share(0.9 - 1.8 * random_unit(2, i));
             all.push_back({samples.at[sample], kPi * random_unit(3, i), slip});
         }
         return all;

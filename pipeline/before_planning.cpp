@@ -17,6 +17,7 @@
 #include "mesh/revolution/revolution.h"
 #include "mesh/segment/spindle_axis.h"
 #include "mesh/triangle_soup.h"
+#include "pipeline/job/job_friction.h"
 #include "pipeline/part_room.h"
 #include "pipeline/part_words.h"
 #include "pipeline/plan_layer.h"
@@ -107,6 +108,7 @@ public:
           machine_(task.machine),
           mandrel_(task.mandrel),
           job_(task.job),
+          friction_(most_friction_of(task.job)),
           eye_(eye_range(task.machine)),
           found_(find_revolution(task.mandrel)) {
         if (eye_ && job_.eye.rule == EyeRule::Cylinder) {
@@ -180,7 +182,7 @@ private:
     }
 
     [[nodiscard]] double needed_extension_mm(const Rim& rim) const {
-        return least_run_mm(rim.radius_mm, job_.tow.friction) + 0.5 * job_.tow.width_mm;
+        return least_run_mm(rim.radius_mm, friction_) + 0.5 * job_.tow.width_mm;
     }
 
     [[nodiscard]] bool by_friction() const { return job_.mandrel.turn == TurnKind::Friction; }
@@ -231,7 +233,7 @@ private:
             least_mm = std::min(least_mm, needed_extension_mm(rim));
         }
         const std::string by = "no rim can turn a fibre round: with a friction of " +
-                               fixed(job_.tow.friction, 3) + " ";
+                               fixed(friction_.holds(), 3) + " ";
         if (!std::isfinite(least_mm)) {
             refuse("plan.no_turn", place,
                    by + "no extension is long enough; more friction would do, or \"turn\" by "
@@ -256,7 +258,7 @@ private:
 
     // Height of the hoop of the least turn at a rim about the spindle.
     [[nodiscard]] double hoop_height_mm(const Rim& rim) const {
-        const double run_mm = by_friction() ? least_run_mm(rim.radius_mm, job_.tow.friction) : 0.0;
+        const double run_mm = by_friction() ? least_run_mm(rim.radius_mm, friction_) : 0.0;
         return rim.centre_mm.z() + std::copysign(run_mm, rim.axis.z());
     }
 
@@ -553,6 +555,7 @@ private:
     const Machine& machine_;
     const Mandrel& mandrel_;
     const Job& job_;
+    const Friction friction_;  // what no layer has more of
     std::optional<EyeRange> eye_;
     RevolutionFinding found_;
     bool planned_ = false;

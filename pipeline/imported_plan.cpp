@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/margins.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "geodesic/biarc.h"
@@ -83,7 +82,7 @@ private:
         piece.string = std::move(string);
         const SlipMeasure slip =
             measure_slip(wall_, path, piece.string,
-                         {.friction = setup_.job.tow.friction, .method = TraceMethod::Patches});
+                         {.friction = setup_.friction.holds(), .method = TraceMethod::Patches});
         for (std::size_t i = 0; i < path.size(); ++i) {
             path[i].kg_per_mm = slip.kg_per_mm[i];
         }
@@ -123,7 +122,7 @@ private:
         if (!link.found) {
             fail("no path over the mandrel leads from one to the other");
         }
-        const double holds = margin::kPlannedFriction * setup_.job.tow.friction;
+        const double holds = setup_.friction.planned().holds();
         const double ratio = std::max(std::abs(link.slip_ratio), std::abs(link.slip_ratio_2));
         if (ratio > holds) {
             fail("the way over the mandrel asks for a slip ratio of " + fixed(ratio, 3) +

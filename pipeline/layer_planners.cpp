@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/margins.h"
 #include "core/units.h"
 #include "mesh/tube/grown_tube.h"
 #include "winding/cover/cover.h"
@@ -220,8 +219,7 @@ const TubeFinding& LayerTask::tube() const {
 
 Tow LayerTask::tow() const {
     const Job::TowJob& tow = setup.job.tow;
-    return {tow.width_mm, tow.thickness_mm, margin::kPlannedFriction * tow.friction,
-            tow.bridging_tolerance_mm};
+    return {tow.width_mm, tow.thickness_mm, setup.friction.planned(), tow.bridging_tolerance_mm};
 }
 
 std::span<const LayerPlanner> layer_planners() {

@@ -525,7 +525,7 @@ private:
         for (const EyePoint& point : path_) {
             const Piece& piece = pieces_[static_cast<std::size_t>(point.piece)];
             const auto i = static_cast<std::size_t>(point.point);
-            const double spare = margin::kLaidFriction * setup_.job.tow.friction - piece.slip[i];
+            const double spare = setup_.friction.share(margin::kLaidFriction) - piece.slip[i];
             room.push_back(piece.string.gap_mm[i] > 0.0
                                ? std::numeric_limits<double>::infinity()
                                : std::max(spare * piece.path[i].kn_per_mm, kStraight_per_mm));

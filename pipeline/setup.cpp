@@ -12,6 +12,7 @@
 #include "geodesic/bridge.h"
 #include "machines/eye_inverse.h"
 #include "mesh/mandrel/extension.h"
+#include "pipeline/job/job_friction.h"
 #include "postproc/ringhead/krl.h"
 
 namespace meshwind {
@@ -195,6 +196,7 @@ Setup make_setup(Mandrel mandrel, const Machine& machine, const Job& job, const 
     Setup setup;
     setup.machine = machine;
     setup.job = job;
+    setup.friction = friction_of(job, 0);
     setup.rule_of_machine = take_rule_of_machine(setup.machine, setup.job.eye);
     setup.dialect = dialect_of(setup.machine, files.machine);
     setup.envelope = head_envelope(setup.machine);
@@ -206,10 +208,11 @@ Setup make_setup(Mandrel mandrel, const Machine& machine, const Job& job, const 
     return setup;
 }
 
-Setup setup_for(const Setup& setup, Mandrel mandrel) {
+Setup setup_for(const Setup& setup, Mandrel mandrel, std::size_t layer) {
     Setup next;
     next.machine = setup.machine;
     next.job = setup.job;
+    next.friction = friction_of(setup.job, layer);
     next.rule_of_machine = setup.rule_of_machine;
     next.dialect = make_dialect(next.machine.controller.dialect);
     next.envelope = setup.envelope;
@@ -240,7 +243,7 @@ Verification verify_program(const Setup& setup, const BlockList& program, const 
                             const std::function<void(double share)>& progress) {
     const Job& job = setup.job;
     const VerifyRules rules{.collision = setup.rule,
-                            .friction = job.tow.friction,
+                            .friction = setup.friction,
                             .bridging_tolerance_mm = job.tow.bridging_tolerance_mm,
                             .tow_width_mm = job.tow.width_mm,
                             .path_mode = setup.dialect->path_mode(setup.machine),

@@ -1,6 +1,7 @@
 /// What planning and verifying start from: machine, job and mandrel, and what follows from them.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "postproc/collision/collision.h"
 #include "postproc/nc/dialect.h"
 #include "postproc/verify/verify.h"
+#include "winding/plan/friction.h"
 #include "winding/turn/pin.h"
 
 namespace meshwind {
@@ -26,6 +28,7 @@ struct InputFiles {
 struct Setup {
     Machine machine;
     Job job;
+    Friction friction = 0.0;       ///< under the layer that is wound on this mandrel
     bool rule_of_machine = false;  ///< the job's eye rule is what the machine keeps to by itself
     Mandrel mandrel;
     std::unique_ptr<Dialect> dialect;
@@ -39,7 +42,7 @@ struct Setup {
 /// \param unit_mm overrides the job's units where > 0
 [[nodiscard]] MandrelOptions mandrel_options(const Job& job, double unit_mm = 0.0);
 
-/// \param machine as load_machine() has it
+/// For the first layer. \param machine as load_machine() has it
 /// \param look_ahead called before what takes longer than a second on large parts: rule, obstacles
 /// and wall are not there yet. May refuse.
 /// \throws InputError for input that cannot be used
@@ -52,7 +55,8 @@ struct Setup {
                                                   const std::filesystem::path& file);
 
 /// The same machine and job for another mandrel: what the layers before have made of the first.
-[[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel);
+/// \param layer that is wound on it, counted from 0
+[[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel, std::size_t layer);
 
 /// Puts the pins that a plan needs on the mandrel: what can be hit, and what holds the fibre.
 void put_pins(Setup& setup, std::span<const PinRing> rings);

@@ -218,7 +218,7 @@ private:
         const Setup& setup = layer.setup;
         WoundLayer next;
         try {
-            next.setup = setup_for(setup, thicken(setup.mandrel, layer.build_up_mm));
+            next.setup = setup_for(setup, thicken(setup.mandrel, layer.build_up_mm), number);
         } catch (const InputError& error) {
             run_.checks.push_back({"plan" + layer_suffix(number),
                                    false,

@@ -215,7 +215,7 @@ public:
                        {"tow",
                         {{"width_mm", tow.width_mm},
                          {"thickness_mm", tow.thickness_mm},
-                         {"friction", tow.friction}}},
+                         {"friction", first_.friction.holds()}}},
                        {"extension", extension_json()},
                        {"layers", layers}};
         header["arrays"] = arrays_.table();

@@ -413,7 +413,7 @@ void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
             << '\n';
     }
     const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
-        {WhatIf::Rule::Friction, {job.tow.friction, ""}},
+        {WhatIf::Rule::Friction, {layer.setup.friction.holds(), ""}},
         {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
         {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
     for (const WhatIf& what_if : layer.plan.what_if) {

@@ -237,9 +237,9 @@ private:
 
     void check_slip() {
         const LaidPath& laid = found_.laid;
-        const SlipOptions options{.window_mm = rules_.tow_width_mm,
-                                  .friction = rules_.friction,
-                                  .method = TraceMethod::Patches};
+        const double limit = rules_.friction.holds();
+        const SlipOptions options{
+            .window_mm = rules_.tow_width_mm, .friction = limit, .method = TraceMethod::Patches};
         found_.slip =
             measure_slip(task_.wall.surface(), laid.path, taut_string(laid.path), options).slip;
         const std::vector<double> to_bridge = distance_to_bridges();
@@ -251,16 +251,16 @@ private:
                 found_.slip[i] = 0.0;
             }
             worst = found_.slip[i] > found_.slip[worst] ? i : worst;
-            if (found_.slip[i] > rules_.friction) {
+            if (found_.slip[i] > limit) {
                 first = first.value_or(i);
                 note_coarse_behind(i, 2.0 * rules_.tow_width_mm, noted);
             }
         }
         Check check{"slip", true, {}, {}};
-        check.numbers = {{"limit", rules_.friction}, {"worst", found_.slip[worst]}};
+        check.numbers = {{"limit", limit}, {"worst", found_.slip[worst]}};
         put_at_station(check, first.value_or(worst));
         if (first) {
-            const FixedPair shown = fixed_apart(found_.slip[worst], rules_.friction, 4);
+            const FixedPair shown = fixed_apart(found_.slip[worst], limit, 4);
             fail(check, laid.at[*first].block,
                  "the laid fibre slips: ratio " + shown.value + " exceeds the friction " +
                      shown.limit + ", first in " + station_words(*first));

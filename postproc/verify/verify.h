@@ -16,6 +16,7 @@
 #include "postproc/motion/block.h"
 #include "postproc/verify/deviation.h"
 #include "postproc/verify/laydown.h"
+#include "winding/plan/friction.h"
 
 namespace meshwind {
 
@@ -39,7 +40,7 @@ struct Check {
 /// What the laid fibre and the motion must keep.
 struct VerifyRules {
     CollisionRule collision;  ///< with the free fibre's shortest and longest length
-    double friction = 0.2;
+    Friction friction = 0.2;
     double bridging_tolerance_mm = 0.5;
     double tow_width_mm = 6.0;
     /// How the machine's own lines make the controller go past corners, Dialect::path_mode.
@@ -88,7 +89,8 @@ struct Verification {
 /// and always:
 ///  - laydown: the simulation reaches the end; against the plan, where there is one, sideways
 ///    deviation and angle are within tolerance and the last landing point is the planned one;
-///  - slip: |kg / kn| of the laid path <= friction, over chords as long as the tow is wide, which
+///  - slip: |kg / kn| of the laid path <= what friction holds, over chords as long as the tow is
+///  wide, which
 ///    does not turn on less; the ends of bridges, where the fibre may turn, apart, and what pins
 ///    hold;
 ///  - bridging: height of the straight fibre over the wall;

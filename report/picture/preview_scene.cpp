@@ -316,7 +316,7 @@ private:
                 continue;
             }
             add_station(layer.setup.wall->surface(), station, piece.string.gap_mm[i],
-                        colour_ == PreviewColour::Course ? colour : colour_of(piece, i));
+                        colour_ == PreviewColour::Course ? colour : colour_of(layer, piece, i));
             if (begun) {
                 join_stations();
             }
@@ -325,9 +325,10 @@ private:
         }
     }
 
-    [[nodiscard]] Vector3f colour_of(const Piece& piece, std::size_t i) const {
+    [[nodiscard]] Vector3f colour_of(const WoundLayer& layer, const Piece& piece,
+                                     std::size_t i) const {
         if (colour_ == PreviewColour::Slip) {
-            return scale_colour(piece.slip[i] / std::max(1e-9, setup_.job.tow.friction));
+            return scale_colour(piece.slip[i] / std::max(1e-9, layer.setup.friction.holds()));
         }
         const double axial = std::min(1.0, std::abs(piece.path[i].tangent.z()));
         return scale_colour(std::acos(axial) / (0.5 * kPi));

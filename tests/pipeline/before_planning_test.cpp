@@ -245,7 +245,7 @@ TEST(BeforePlanning, FlatFibreOnALongCylinderNeedsFreeLength) {
     for (const auto& [longest_mm, told] : {std::pair{95.0, true}, {200.0, false}}) {
         setup.machine.fibre.max_free_length_mm = longest_mm;
         setup.job.eye.free_length_mm = longest_mm;
-        const meshwind::Setup trial = setup_for(setup, setup.mandrel);
+        const meshwind::Setup trial = setup_for(setup, setup.mandrel, 0);
         const Outcome found = outcome(trial.machine, trial.mandrel, trial.job);
         EXPECT_EQ(found.code, told ? "plan.free_length" : "");
         EXPECT_EQ(tells(found.words, fixed(least_mm, 1) + " mm"), told) << found.words;

@@ -236,7 +236,7 @@ TEST(Setup, ForAnotherMandrelMachineAndJobAreKept) {
     const meshwind::Setup first = make_setup(small_pipe(), shipped("two_axis"), job);
     const double wider_mm = test::kPipeRadius_mm + 5.0;
     const meshwind::Setup next =
-        setup_for(first, test::made_cylinder(wider_mm, test::kPipeLength_mm, 6.0));
+        setup_for(first, test::made_cylinder(wider_mm, test::kPipeLength_mm, 6.0), 1);
     EXPECT_EQ(job_text(next.job), job_text(first.job));
     EXPECT_EQ(next.rule_of_machine, first.rule_of_machine);
     EXPECT_EQ(next.machine.name, first.machine.name);

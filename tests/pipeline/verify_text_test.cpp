@@ -48,7 +48,7 @@ const Written& written() {
 }
 
 VerifyOutcome verified(const VerifyInputs& inputs) {
-    return verify_text(setup_for(written().setup, written().setup.mandrel), inputs);
+    return verify_text(setup_for(written().setup, written().setup.mandrel, 0), inputs);
 }
 
 std::optional<bool> passed(const VerifyOutcome& outcome, const std::string& name) {

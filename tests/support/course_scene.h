@@ -40,7 +40,7 @@ struct CourseScene {
         for (int i = 0; i < count; ++i) {
             const auto sample =
                 static_cast<std::size_t>(draw.below(static_cast<std::int32_t>(samples.size())));
-            const double slip = (draw.below(3) - 1) * steering * rules.tow.friction;
+            const double slip = rules.tow.friction.share((draw.below(3) - 1) * steering);
             all.push_back({samples.at[sample], draw.between(0.0, kPi), slip});
         }
         return all;

@@ -305,7 +305,7 @@ private:
         const double unit = draws.unit();
         return {samples_.at[place],
                 draw_direction_rad(rules_, samples_.at[place], unit, draws.unit()),
-                kSteering[draws.below(kSteering.size())] * rules_.tow.friction};
+                rules_.tow.friction.share(kSteering[draws.below(kSteering.size())])};
     }
 
     // From any of its stations. Where it is steered in two ways, from the one where they meet.
@@ -318,7 +318,7 @@ private:
 
     [[nodiscard]] Candidate nudged(const PlacedCourse& course, Draws& draws) const {
         const double scale = std::pow(kNudgeRange, -draws.unit());
-        const double steering = scale * kNudgeSteering * rules_.tow.friction;
+        const double steering = rules_.tow.friction.share(scale * kNudgeSteering);
         CourseMove move{scale * kNudgeBands * rules_.tow.width_mm * draws.normal(),
                         scale * kNudgeTurn_rad * draws.normal()};
         const double how = draws.unit();

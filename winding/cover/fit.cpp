@@ -169,7 +169,7 @@ Fit fit_course(const CourseRules& rules, const PlacedCourse& course, const Strip
         modes_of(displacements(rules.mandrel.surface, course.path, from, seed_station(course)));
     const Strips strips(strip, saving, modes.at_station, band_mm);
     // The nearest that is allowed: steered no harder than it may be.
-    const double most_steering = margin::kCoverSteering * rules.tow.friction;
+    const double most_steering = rules.tow.friction.share(margin::kCoverSteering);
     const auto allowed = [&](const Shares& by) -> Shares {
         Shares move = modes.parts * by;
         const Shares asked = move;

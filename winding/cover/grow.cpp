@@ -65,7 +65,7 @@ private:
         return {place,
                 draw_direction_rad(rules_, place, random_unit(stream(Stream::Angles), draw),
                                    random_unit(stream(Stream::Wishes), draw)),
-                kSteering[pick] * options_.tow.friction};
+                options_.tow.friction.share(kSteering[pick])};
     }
 
     void try_candidates(const std::vector<std::int32_t>& seeds) {
@@ -186,7 +186,7 @@ private:
                             member.candidate.slip_ratio};
         const auto steering = random_bits(stream(Stream::Steerings), draw) % (2 * kSteering.size());
         if (steering < kSteering.size()) {
-            candidate.slip_ratio = kSteering[steering] * options_.tow.friction;
+            candidate.slip_ratio = options_.tow.friction.share(kSteering[steering]);
         }
         return candidate;
     }
@@ -249,7 +249,7 @@ double reach_with(const CourseRules& rules, const CoverageSamples& samples,
         const std::size_t sample = missed[random_bits(seed, 3 * draw) % missed.size()];
         const double share = kSteering[random_bits(seed, 3 * draw + 1) % kSteering.size()];
         candidates.push_back({samples.at[sample], kPi * random_unit(seed, 3 * draw + 2),
-                              share * rules.tow.friction});
+                              rules.tow.friction.share(share)});
     }
     for (const Member& member : build_library(rules, candidates, judging).members) {
         for (const std::int32_t sample : member.footprint) {

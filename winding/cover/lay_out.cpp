@@ -54,8 +54,9 @@ Piece piece_of(const CourseRules& rules, const Member& member, bool backward) {
     FollowedCourse course;
     course.path = trace_both_ways(rules, member.candidate);
     course.string = taut_string(course.path);
-    course.slip = measure_slip(rules.mandrel.surface, course.path, course.string,
-                               {.friction = rules.tow.friction, .method = TraceMethod::Patches});
+    course.slip =
+        measure_slip(rules.mandrel.surface, course.path, course.string,
+                     {.friction = rules.tow.friction.holds(), .method = TraceMethod::Patches});
     return piece_of(std::move(course), member, backward);
 }
 

@@ -229,8 +229,8 @@ Refusal follow_course(const CourseRules& rules, const Candidate& candidate, Memb
     measure_length(rules, run.path, course);
     SlipMeasure slip =
         measure_slip(rules.mandrel.surface, run.path, run.string,
-                     {.friction = rules.tow.friction, .method = TraceMethod::Patches});
-    if (slip.worst > rules.tow.friction) {
+                     {.friction = rules.tow.friction.holds(), .method = TraceMethod::Patches});
+    if (slip.worst > rules.tow.friction.holds()) {
         return Refusal::Slips;
     }
     member = std::move(course);

@@ -40,7 +40,7 @@ Candidate moved(const CourseRules& rules, const PlacedCourse& course, std::size_
                                   {.max_length_mm = std::max(std::abs(move.left_mm), 1e-3)});
     const PathPoint& place = way.path.back();
     const Vector3d normal = smooth_normal(surface, place.at);
-    const double most = margin::kCoverSteering * rules.tow.friction;
+    const double most = rules.tow.friction.share(margin::kCoverSteering);
     const double ahead = std::clamp(from.slip_ratio + move.steering, -most, most);
     const double behind = std::clamp(from.slip_ratio + from.more_behind + move.behind, -most, most);
     return {place.at, direction_angle(normal, side * place.tangent.cross(normal)) + move.turn_rad,

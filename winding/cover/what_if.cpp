@@ -12,8 +12,8 @@ constexpr double kWorthAWord = 0.001;
 CourseRules loosened(CourseRules rules, WhatIf::Rule rule) {
     switch (rule) {
         case WhatIf::Rule::Friction:
-            rules.tow.friction *= kLooser;
-            rules.turn.friction *= kLooser;
+            rules.tow.friction = rules.tow.friction.share(kLooser);
+            rules.turn.friction = rules.turn.friction.share(kLooser);
             break;
         case WhatIf::Rule::Bridging:
             rules.tow.bridging_tolerance_mm *= kLooser;

@@ -84,7 +84,7 @@ private:
         ElbowOptions wanted;
         wanted.alpha0_rad = angle_rad;
         wanted.width_mm = options_.tow.width_mm;
-        wanted.slip = margin::kPatternSteering * options_.tow.friction;
+        wanted.slip = options_.tow.friction.share(margin::kPatternSteering);
         wanted.layers = std::max(1.0, options_.layers);
         wanted.station_mm = station_on_mm(shape_.tube_radius_mm, options_.tow.width_mm);
         return elbow_lines(shape_, wanted);
@@ -118,7 +118,7 @@ private:
         }
         return best < std::numeric_limits<double>::infinity() ||
                fail("at no angle from " + degrees(least) + " to " + fixed(kLastAngle_deg, 0) +
-                    " deg do a friction of " + fixed(rule_.friction, 3) + " and " +
+                    " deg do a friction of " + fixed(rule_.friction.holds(), 3) + " and " +
                     fixed(rule_.extension_mm, 1) +
                     " mm of extension close the legs and turn the fibre");
     }

@@ -7,12 +7,13 @@
 
 namespace meshwind {
 
-Piece course_along(const Surface& surface, SurfacePath path, double friction) {
+Piece course_along(const Surface& surface, SurfacePath path, Friction friction) {
     Piece piece;
     piece.kind = PieceKind::Course;
     piece.string = taut_string(path);
-    const SlipMeasure slip = measure_slip(surface, path, piece.string,
-                                          {.friction = friction, .method = TraceMethod::Patches});
+    const SlipMeasure slip =
+        measure_slip(surface, path, piece.string,
+                     {.friction = friction.holds(), .method = TraceMethod::Patches});
     for (std::size_t i = 0; i < path.size(); ++i) {
         path[i].kg_per_mm = slip.kg_per_mm[i];
     }

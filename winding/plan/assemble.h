@@ -6,6 +6,7 @@
 
 #include "geodesic/surface_path.h"
 #include "mesh/surface.h"
+#include "winding/plan/friction.h"
 #include "winding/plan/plan.h"
 #include "winding/plan/turns.h"
 
@@ -30,7 +31,7 @@ inline constexpr double kStationTows = 2.0 / 3.0;
 
 /// A course along a finished path: its taut string, and slip and kg measured on it.
 /// \param path on the patches or the ideal body, with normals, tangents, kn and arc lengths
-[[nodiscard]] Piece course_along(const Surface& surface, SurfacePath path, double friction);
+[[nodiscard]] Piece course_along(const Surface& surface, SurfacePath path, Friction friction);
 
 /// A turn over a rim, and what it asks of the rim's extension.
 struct LaidTurn {

@@ -101,7 +101,7 @@ private:
             add(passes);
             return "";
         }
-        return "no friction up to " + fixed(margin::kConnectingSteering * rule_.friction, 3) +
+        return "no friction up to " + fixed(rule_.friction.share(margin::kConnectingSteering), 3) +
                " leads it from the rim to where the layer begins";
     }
 
@@ -110,7 +110,7 @@ private:
         ConnectingRequest request;
         request.from_arc_mm = arc_mm;
         request.goal = goal;
-        request.friction = margin::kConnectingSteering * rule_.friction;
+        request.friction = rule_.friction.share(margin::kConnectingSteering);
         request.station_mm = pieces_.station_mm();
         request.can_turn = [this](std::size_t end, const MeridianStation& leaving) {
             const Rim* const rim = pieces_.rim_of(end);

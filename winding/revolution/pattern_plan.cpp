@@ -105,7 +105,7 @@ private:
     bool aim_at_angle() {
         const PassAim aim =
             aim_at_ends(body_, {.angle_rad = angle_rad_,
-                                .most_slip = margin::kPatternSteering * options_.tow.friction,
+                                .most_slip = options_.tow.friction.share(margin::kPatternSteering),
                                 .touching_mm = {touching_mm(0), touching_mm(1)}});
         slip_ = aim.slip;
         pass_ = pass(angle_rad_);
@@ -127,7 +127,7 @@ private:
         const SteeringFinding steering = between_openings(0.0);
         if (!steering.found) {
             return fail("the openings are too different: with the friction of " +
-                        fixed(margin::kPatternSteering * options_.tow.friction, 3) +
+                        fixed(options_.tow.friction.share(margin::kPatternSteering), 3) +
                         " a band that touches the lower one turns at radius " +
                         fixed(steering.reached_mm, 1) + " mm at the upper end, where " +
                         fixed(touching_mm(1), 1) + " mm would touch it");
@@ -141,7 +141,7 @@ private:
         return steer_between(meridian_,
                              {.lower_mm = touching_mm(0) + off_mm,
                               .upper_mm = touching_mm(1) + off_mm,
-                              .most_slip = margin::kPatternSteering * options_.tow.friction,
+                              .most_slip = options_.tow.friction.share(margin::kPatternSteering),
                               .station_mm = pieces_.station_mm(),
                               .longest_mm = kLongest_mm});
     }
@@ -521,9 +521,9 @@ private:
             options_.hoop_z_mm
                 ? cylinder_between(meridian_, (*options_.hoop_z_mm)[0], (*options_.hoop_z_mm)[1])
                 : cylinder_at(meridian_, widest_mm_);
-        const double steering = margin::kHoopSteering * options_.tow.friction;
+        const double steering = options_.tow.friction.share(margin::kHoopSteering);
         const CylinderPart part = level_part(meridian_, asked_for, options_.tow.width_mm,
-                                             options_.tow.friction - steering);
+                                             options_.tow.friction.holds() - steering);
         if (part.to_mm == part.from_mm) {
             fail("hoops hold on a cylinder, and at its widest place, z " +
                  fixed(meridian_.at(widest_mm_).z_mm, 1) + " mm, the body is none");

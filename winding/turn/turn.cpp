@@ -34,7 +34,7 @@ double hoop_height_mm(const Rim& rim, const RimCrossing& a, const RimCrossing& b
                       const TurnRule& rule) {
     const auto easy = [&](const RimCrossing& end) {
         return landing_mm(rim, end) +
-               turn_run_mm(rim.radius_mm, end.angle_rad, margin::kEasyTurn * rule.friction);
+               turn_run_mm(rim.radius_mm, end.angle_rad, rule.friction.share(margin::kEasyTurn));
     };
     return std::min(std::max(easy(a), easy(b)), usable_run_mm(rule));
 }
@@ -216,8 +216,8 @@ double turn_run_mm(double radius_mm, double angle_rad, double slip) {
     return radius_mm / slip * (1.0 / std::sin(angle_rad) - 1.0);
 }
 
-double least_run_mm(double radius_mm, double friction) {
-    return turn_run_mm(radius_mm, kMaxTurnAngle_rad, margin::kFullTurn * friction);
+double least_run_mm(double radius_mm, Friction friction) {
+    return turn_run_mm(radius_mm, kMaxTurnAngle_rad, friction.share(margin::kFullTurn));
 }
 
 double turn_angle_rad(double angle_rad, double slip) {
@@ -227,7 +227,7 @@ double turn_angle_rad(double angle_rad, double slip) {
 bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule) {
     return crossing.angle_rad > 0.0 && crossing.angle_rad <= kMaxTurnAngle_rad &&
            landing_mm(rim, crossing) + turn_run_mm(rim.radius_mm, crossing.angle_rad,
-                                                   margin::kFullTurn * rule.friction) <=
+                                                   rule.friction.share(margin::kFullTurn)) <=
                usable_run_mm(rule);
 }
 
@@ -240,9 +240,10 @@ std::string why_no_turn(const std::string& rim_words, const Rim& rim, const RimC
     }
     const double needed_mm =
         landing_mm(rim, crossing) +
-        turn_run_mm(rim.radius_mm, crossing.angle_rad, margin::kFullTurn * rule.friction) +
+        turn_run_mm(rim.radius_mm, crossing.angle_rad, rule.friction.share(margin::kFullTurn)) +
         0.5 * rule.band_mm;
-    const std::string by = begin + "and to turn it by a friction of " + fixed(rule.friction, 3);
+    const std::string by =
+        begin + "and to turn it by a friction of " + fixed(rule.friction.holds(), 3);
     const std::string mend = ", or \"turn\" by \"pins\" or about a \"pole\" would do";
     if (!(needed_mm <= kLongestExtension_mm)) {
         return by + " no extension is long enough; a larger angle, more friction" + mend;

@@ -9,6 +9,7 @@
 #include "geodesic/measure.h"
 #include "geodesic/surface_path.h"
 #include "mesh/mandrel.h"
+#include "winding/plan/friction.h"
 #include "winding/plan/turns.h"
 
 namespace meshwind {
@@ -18,7 +19,7 @@ namespace meshwind {
 inline constexpr double kLeastDwell_rad = 1e-9;
 
 struct TurnRule {
-    double friction = 0.2;        ///< |slip ratio| that holds
+    Friction friction = 0.2;      ///< under the fibre on the extension
     double extension_mm = 100.0;  ///< axial length of the extension, > 0
     double band_mm = 6.0;         ///< the band must stay on the extension with its full width
 };
@@ -50,7 +51,7 @@ struct TurnRule {
 
 /// The least run that any turn takes on a rim: that of the steepest fibre that turns with all of
 /// the friction. Infinite without friction.
-[[nodiscard]] double least_run_mm(double radius_mm, double friction);
+[[nodiscard]] double least_run_mm(double radius_mm, Friction friction);
 
 /// Angle around the axis that it winds meanwhile: (1 / slip) ln cot(beta / 2).
 /// Source: andrianov_2022_machine_path, eq. (4). \pre 0 < angle_rad < pi, slip > 0

@@ -135,10 +135,10 @@ TEST(Anneal, LeavesCoursesThatKeepTheRules) {
                   Refusal::None);
         EXPECT_EQ(sketch.course.footprint, course.member.footprint);
         EXPECT_EQ(sketch.course.length_mm, course.member.length_mm);
-        EXPECT_LE(std::abs(course.member.candidate.slip_ratio), scene.rules.tow.friction);
+        EXPECT_LE(std::abs(course.member.candidate.slip_ratio), scene.rules.tow.friction.holds());
         EXPECT_LE(
             std::abs(course.member.candidate.slip_ratio + course.member.candidate.more_behind),
-            scene.rules.tow.friction);
+            scene.rules.tow.friction.holds());
         const SurfacePath way = course.backward ? reversed(course.path) : course.path;
         EXPECT_TRUE(is_windable(scene.rules, way, taut_string(way), kSketchStep_mm));
     }

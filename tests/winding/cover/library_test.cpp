@@ -17,7 +17,7 @@ namespace {
 constexpr double kSteered = 0.8;
 
 struct Scene : test::CourseScene {
-    explicit Scene(Mandrel loaded) : CourseScene(std::move(loaded), Tow{}.friction) {
+    explicit Scene(Mandrel loaded) : CourseScene(std::move(loaded), Tow{}.friction.holds()) {
         rules.free_fibre.min_mm = 40.0;
     }
 };
@@ -101,11 +101,11 @@ void expect_members_keep_the_rules(const Scene& scene, int candidates, std::size
         expect_steered_within(member.candidate, path);
         const TautString string = taut_string(path);
         EXPECT_LE(string.worst_gap_mm, scene.rules.tow.bridging_tolerance_mm);
-        EXPECT_LE(
-            measure_slip(scene.mandrel.surface, path, string,
-                         {.friction = scene.rules.tow.friction, .method = TraceMethod::Patches})
-                .worst,
-            scene.rules.tow.friction);
+        EXPECT_LE(measure_slip(scene.mandrel.surface, path, string,
+                               {.friction = scene.rules.tow.friction.holds(),
+                                .method = TraceMethod::Patches})
+                      .worst,
+                  scene.rules.tow.friction.holds());
         EXPECT_EQ(scene.footprints.footprint(path, scratch), member.footprint);
         EXPECT_TRUE(member.windable_forward || member.windable_backward);
         if (member.windable_forward) {

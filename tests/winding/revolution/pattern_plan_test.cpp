@@ -105,7 +105,7 @@ TEST(PatternPlan, HelicesOnACylinderCloseByDwell) {
         EXPECT_NEAR(p.plan.coverage.mean_layers,
                     2.0 * static_cast<double>(p.plan.pattern()->pattern.circuits) / bands, 0.05);
         for (const Piece& piece : p.plan.pieces) {
-            EXPECT_LE(piece.worst_slip, kTow.friction) << angle_deg;
+            EXPECT_LE(piece.worst_slip, kTow.friction.holds()) << angle_deg;
             if (piece.kind == PieceKind::Course) {
                 for (const PathPoint& at : piece.path) {
                     EXPECT_NEAR(std::abs(at.tangent.z()), std::cos(rad_from_deg(angle_deg)), 1e-3);
@@ -279,7 +279,7 @@ TEST(PatternPlan, SaysWhyNothingCanBeWound) {
                                   {.angle_rad = rad_from_deg(20.0), .tow = kTow});
     // R / slip (1 / sin(20 deg) - 1) with the slip of turns, 0.98 of the friction, and half a tow.
     const double needed_mm =
-        turn_run_mm(40.0, rad_from_deg(20.0), 0.98 * kTow.friction) + 0.5 * kTow.width_mm;
+        turn_run_mm(40.0, rad_from_deg(20.0), kTow.friction.share(0.98)) + 0.5 * kTow.width_mm;
     EXPECT_TRUE(test::tells(steep.plan.failure, fixed(needed_mm, 1) + " mm")) << steep.plan.failure;
     EXPECT_TRUE(test::tells(steep.plan.failure, "150.0")) << steep.plan.failure;
     EXPECT_TRUE(steep.plan.pieces.empty());

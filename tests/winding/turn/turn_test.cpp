@@ -216,11 +216,12 @@ TEST(MakeTurn, SlipMeasuredFromThePositionsIsTheSlipStated) {
             const double before = turn.path[i - 1].kg_per_mm / turn.path[i - 1].kn_per_mm;
             const double after = turn.path[i + 1].kg_per_mm / turn.path[i + 1].kn_per_mm;
             if (std::abs(before - stated / kn) < 1e-9 && std::abs(after - stated / kn) < 1e-9) {
-                ASSERT_NEAR(measured_kg(rim, turn.path, i), stated, 1e-3 * kRule.friction * kn);
+                ASSERT_NEAR(measured_kg(rim, turn.path, i), stated,
+                            kRule.friction.share(1e-3) * kn);
             }
         }
         EXPECT_NEAR(worst, turn.slip, 1e-9);
-        EXPECT_LE(turn.slip, kRule.friction);
+        EXPECT_LE(turn.slip, kRule.friction.holds());
     }
 }
 
