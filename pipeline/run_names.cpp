@@ -1,5 +1,6 @@
 #include "pipeline/run_names.h"
 
+#include <charconv>
 #include <regex>
 
 namespace meshwind {
@@ -19,6 +20,16 @@ std::string suffix_of(const fs::path& program) {
     const std::string stem = program.stem().string();
     std::smatch found;
     return std::regex_search(stem, found, kSuffix) ? found.str() : "";
+}
+
+std::size_t layer_of(const fs::path& program) {
+    static const std::string kBefore = "-layer-";
+    const std::string suffix = suffix_of(program);
+    std::size_t number = 0;
+    if (suffix.rfind(kBefore, 0) == 0) {
+        std::from_chars(suffix.data() + kBefore.size(), suffix.data() + suffix.size(), number);
+    }
+    return number > 0 ? number - 1 : 0;
 }
 
 std::string grown_mandrel_name(std::size_t layer) {

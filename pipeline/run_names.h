@@ -18,6 +18,9 @@ namespace meshwind {
 /// Layer and fibre in the name of a program; empty where there is none.
 [[nodiscard]] std::string suffix_of(const std::filesystem::path& program);
 
+/// The layer in the name of a program, counted from 0; 0 where there is none.
+[[nodiscard]] std::size_t layer_of(const std::filesystem::path& program);
+
 /// The mandrel with the layers before this one on it. \param layer counted from 0, >= 1
 [[nodiscard]] std::string grown_mandrel_name(std::size_t layer);
 

@@ -6,6 +6,8 @@
 
 #include "core/error.h"
 #include "pipeline/code_digest.h"
+#include "pipeline/job/job_friction.h"
+#include "pipeline/run_names.h"
 #include "winding/laminate/measure_plan.h"
 
 namespace meshwind {
@@ -71,6 +73,7 @@ VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs, const RunCont
     outcome.program = std::filesystem::path(inputs.program.name).filename().string();
     const std::string& text = inputs.program.text;
     const std::string& name = inputs.program.name;
+    outcome.setup.friction = friction_of(outcome.setup.job, layer_of(name));
     outcome.blocks = outcome.setup.dialect->read(text, name, outcome.setup.machine);
     if (inputs.tie_on_mm) {
         outcome.blocks.tie_on_mm = inputs.tie_on_mm;

@@ -65,7 +65,7 @@ struct TextChecks {
 
 /// Winds the program again (postproc/verify/verify.h). With a plan the first check is "program":
 /// block by block its positions and times are those of motion.csv, and the eye is where the plan's
-/// machine had it.
+/// machine had it. What friction holds is that of the layer in the program's name (run_names.h).
 /// \throws InputError for input that cannot be used
 [[nodiscard]] VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs,
                                         const RunContext& context = {});

@@ -78,6 +78,7 @@ struct Job {
         double width_mm = 6.0;       ///< > 0
         double thickness_mm = 0.25;  ///< > 0
         double friction = 0.2;       ///< >= 0; dry carbon on a moulded surface, on the safe side
+        std::optional<double> friction_on_fibre{};  ///< >= 0; of layers above the first
         double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
         double density_g_cm3 = 1.55;         ///< > 0; of the laid tow: carbon in epoxy, 60 % fibres
     };

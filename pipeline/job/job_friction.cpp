@@ -4,8 +4,9 @@
 
 namespace meshwind {
 
-Friction friction_of(const Job& job, std::size_t /*layer*/) {
-    return job.tow.friction;
+Friction friction_of(const Job& job, std::size_t layer) {
+    const bool on_fibre = layer > 0;
+    return on_fibre ? job.tow.friction_on_fibre.value_or(job.tow.friction) : job.tow.friction;
 }
 
 Friction most_friction_of(const Job& job) {

@@ -118,6 +118,10 @@ const KeyTable<Job::TowJob>& tow_keys() {
         number("width", &Owner::width_mm, kBandRange, "mm, of the band as it lies"),
         number("thickness", &Owner::thickness_mm, kThicknessRange, "mm, of the band as it lies"),
         number("friction", &Owner::friction, kFrictionRange, "largest slip ratio that holds"),
+        number(
+            "friction_on_fibre", &Owner::friction_on_fibre, kFrictionRange,
+            "the same of all layers but the first, which lie on fibre, with their turns; without "
+            "it as friction"),
         number("bridging_tolerance", &Owner::bridging_tolerance_mm, kGapRange,
                "mm, largest gap under the fibre"),
         number("density", &Owner::density_g_cm3, kDensityRange,

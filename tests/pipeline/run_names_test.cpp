@@ -18,7 +18,15 @@ TEST(RunNames, AProgramsNameTellsLayerAndFibre) {
         for (std::size_t fibre = 0; fibre < 12; ++fibre) {
             const std::string suffix = layer_suffix(layer) + fibre_suffix(fibre);
             EXPECT_EQ(suffix_of("some-where/program" + suffix + ".ngc"), suffix);
+            EXPECT_EQ(layer_of("some-where/program" + suffix + ".ngc"), layer);
         }
+    }
+}
+
+TEST(RunNames, WhatIsNoLayerIsTheFirst) {
+    for (const char* name : {"program.ngc", "layer-3.ngc", "a-layer-3/program.ngc", "a-layer-0.ngc",
+                             "a-layer-99999999999999999999.ngc"}) {
+        EXPECT_EQ(layer_of(name), 0U) << name;
     }
 }
 
