@@ -108,6 +108,7 @@ public:
           machine_(task.machine),
           mandrel_(task.mandrel),
           job_(task.job),
+          turn_(traits_of(task.job.mandrel.turn)),
           friction_(most_friction_of(task.job)),
           eye_(eye_range(task.machine)),
           found_(find_revolution(task.mandrel)) {
@@ -136,7 +137,7 @@ public:
     // Rims that the eye does not get around: what is left to turn at is the plan's to find out.
     void remark_on_rims(std::vector<std::string>& remarks) const {
         for (const Rim& rim : mandrel_.rims) {
-            if (!planned_ || !eye_ || !by_friction() || !about_spindle(rim) || reaches(rim)) {
+            if (!planned_ || !eye_ || !turn_.takes_run || !about_spindle(rim) || reaches(rim)) {
                 continue;
             }
             const double z_mm = hoop_height_mm(rim);
@@ -185,8 +186,6 @@ private:
         return least_run_mm(rim.radius_mm, friction_) + 0.5 * job_.tow.width_mm;
     }
 
-    [[nodiscard]] bool by_friction() const { return job_.mandrel.turn == TurnKind::Friction; }
-
     // An end at which patterns turn before they come to it.
     [[nodiscard]] bool has_cap(std::size_t end) const {
         const BodyOfRevolution& body = *found_.body;
@@ -201,7 +200,7 @@ private:
     [[nodiscard]] bool caps_at_both_ends() const { return found_.body && has_cap(0) && has_cap(1); }
 
     void check_turns() const {
-        if (!by_friction()) {
+        if (!turn_.takes_run) {
             return;
         }
         const bool turns_itself = caps_at_both_ends();
@@ -258,7 +257,7 @@ private:
 
     // Height of the hoop of the least turn at a rim about the spindle.
     [[nodiscard]] double hoop_height_mm(const Rim& rim) const {
-        const double run_mm = by_friction() ? least_run_mm(rim.radius_mm, friction_) : 0.0;
+        const double run_mm = turn_.takes_run ? least_run_mm(rim.radius_mm, friction_) : 0.0;
         return rim.centre_mm.z() + std::copysign(run_mm, rim.axis.z());
     }
 
@@ -282,10 +281,10 @@ private:
     }
 
     [[nodiscard]] bool reaches(const Rim& rim) const {
-        if (by_friction() && !has_room(rim)) {
+        if (turn_.takes_run && !has_room(rim)) {
             return true;  // that is told by the turns
         }
-        if (by_friction() && about_spindle(rim)) {
+        if (turn_.takes_run && about_spindle(rim)) {
             return in_height(hoop_height_mm(rim)) && eye_gets_around(rim.radius_mm);
         }
         const Vector3d x = rim_reference(rim);
@@ -555,6 +554,7 @@ private:
     const Machine& machine_;
     const Mandrel& mandrel_;
     const Job& job_;
+    const TurnKindTraits& turn_;
     const Friction friction_;  // what no layer has more of
     std::optional<EyeRange> eye_;
     RevolutionFinding found_;

@@ -84,13 +84,13 @@ std::string why_no_body(const LayerTask& task) {
 }
 
 Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) {
-    const Job::MandrelJob& mandrel = task.setup.job.mandrel;
+    const Job& job = task.setup.job;
     PatternOptions pattern;
     pattern.kind = kind;
     pattern.angle_rad = angle_rad;
     pattern.layers = task.layer.target_layers;
     pattern.tow = task.tow();
-    pattern.turn.extension_mm = mandrel.extension_mm;
+    pattern.turn.extension_mm = job.mandrel.extension_mm;
     if (kind == PatternKind::Hoop && task.options.bare != nullptr) {
         pattern.hoop_z_mm = cylinder_of(*task.options.bare);
     }
@@ -99,10 +99,9 @@ Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) 
     }
     pattern.context = task.options.context;
     pattern.lattice = task.layer.lattice;
-    pattern.over_rims = mandrel.turn != TurnKind::Pole;
-    if (mandrel.turn == TurnKind::Pins) {
-        pattern.pins = mandrel.pins;
-    }
+    pattern.turns = [&job](const Tow& tow, double extension_mm) {
+        return traits_of(job.mandrel.turn).turns(job, tow, extension_mm);
+    };
     if (task.layer.pattern) {
         pattern.wish = wish_of(*task.layer.pattern);
     }

@@ -1,6 +1,7 @@
 #include "pipeline/plan_layer.h"
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/text/text_number.h"
@@ -86,14 +87,11 @@ PlannedLayer plan_best(const LayerTask& task) {
     return why.empty() ? planned(rows.back().plan(task)) : cover_instead(task, rows.back(), why);
 }
 
-// Without an extension to turn on, patterns of bodies of revolution are all there is.
-PlannedLayer plan_about_poles(const LayerTask& task) {
+// Where patterns of bodies of revolution are all that the kind of turn is for.
+PlannedLayer plan_in_patterns(const LayerTask& task, std::string_view why) {
     const LayerPlanner& pattern = layer_planners().front();
     if (!pattern.makes(task.layer.kind)) {
-        return failed(
-            Planner::None,
-            "fibre turns about a pole in patterns on the domes of a body of revolution only; use "
-            "\"turn\": \"friction\"");
+        return failed(Planner::None, std::string(why));
     }
     const std::string why_not = pattern.why_not(task);
     return why_not.empty() ? planned(pattern.plan(task)) : failed(pattern.planner, why_not);
@@ -105,8 +103,9 @@ PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer, const Windabi
                         const LayerPlanOptions& options) {
     options.context.report_progress("plan", 0.0);
     const LayerTask task{setup, layer, machine, options};
-    if (setup.job.mandrel.turn == TurnKind::Pole) {
-        return plan_about_poles(task);
+    const std::string_view why_patterns = traits_of(setup.job.mandrel.turn).why_patterns;
+    if (!why_patterns.empty()) {
+        return plan_in_patterns(task, why_patterns);
     }
     return layer.kind == LayerKind::Auto ? plan_best(task) : plan_asked_for(task);
 }

@@ -58,12 +58,11 @@ bool VerifyOutcome::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
 }
 
-void refuse_pins(const Job& job, const std::filesystem::path& job_file) {
-    if (job.mandrel.turn == TurnKind::Pins) {
+void require_turns_without_plan(const Job& job, const std::filesystem::path& job_file) {
+    const std::string_view why_not = traits_of(job.mandrel.turn).why_not_again;
+    if (!why_not.empty()) {
         throw InputError("job.not_offered", job_file.string() + ": /mandrel/turn",
-                         "the pins are chosen with the plan, so a program that turns on them is "
-                         "not wound again without it; `meshwind` has done so when it made the "
-                         "program, see its report.json");
+                         std::string(why_not));
     }
 }
 

@@ -70,8 +70,8 @@ struct TextChecks {
 [[nodiscard]] VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs,
                                         const RunContext& context = {});
 
-/// Pins are chosen with the plan: what turns on them cannot be wound again without it.
-/// \throws InputError job.not_offered
-void refuse_pins(const Job& job, const std::filesystem::path& job_file);
+/// Refuses turns for which something is on the mandrel that is chosen with the plan, such as pins:
+/// without it they cannot be wound again. \throws InputError job.not_offered
+void require_turns_without_plan(const Job& job, const std::filesystem::path& job_file);
 
 }  // namespace meshwind

@@ -73,28 +73,19 @@ void refuse_layers_not_offered(const Job& job, const fs::path& file) {
     }
 }
 
-// Turns on pins belong to a pattern, which says how many there are and where.
-void refuse_pins_not_offered(const Job& job, const fs::path& file, bool read_layers) {
-    const std::string mend = "give one layer of kind \"helical\" or \"lattice\" with its angle";
-    if (!read_layers) {
-        not_offered(file, "/mandrel/turn", "turning on pins with landing points that are given",
-                    "use \"friction\"");
-    }
-    if (job.layers.size() > 1) {
-        not_offered(file, "/mandrel/turn", "turning on pins with several layers", mend);
-    }
-    const LayerKind kind = job.layers.front().kind;
-    if (kind != LayerKind::Helical && kind != LayerKind::Lattice) {
-        not_offered(file, "/mandrel/turn", "turning on pins with layers of other kinds", mend);
+void refuse_turns_not_offered(const Job& job, const fs::path& file, bool read_layers) {
+    const TurnKindTraits& turn = traits_of(job.mandrel.turn);
+    const std::string why_not =
+        turn.why_not != nullptr ? turn.why_not(job, !read_layers) : std::string();
+    if (!why_not.empty()) {
+        throw InputError("job.not_offered", file.string() + ": /mandrel/turn", why_not);
     }
 }
 
 // What the job may ask for but this version does not do is refused at once, in words. Where landing
 // points are given the layers are not read.
 void refuse_what_is_not_offered(const Job& job, const fs::path& file, bool read_layers) {
-    if (job.mandrel.turn == TurnKind::Pins) {
-        refuse_pins_not_offered(job, file, read_layers);
-    }
+    refuse_turns_not_offered(job, file, read_layers);
     if (read_layers) {
         refuse_layers_not_offered(job, file);
     }

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "pipeline/job/turn_kinds.h"
 #include "postproc/eye/eye_rules.h"
 #include "winding/revolution/pattern_wish.h"
 #include "winding/turn/pin_turn.h"
@@ -20,9 +21,6 @@ namespace meshwind {
 /// Length of a unit of the mandrel's file. Auto: what the file states, else mm, else metres for a
 /// part under 10 units.
 enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
-
-/// How the fibre turns round beyond a rim.
-enum class TurnKind { Friction, Pins, Pole };
 
 enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice };
 
@@ -72,7 +70,7 @@ struct Job {
         std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
         double extension_mm = 100.0;             ///< >= 0; room for turns beyond each rim
         TurnKind turn = TurnKind::Friction;
-        PinWish pins{};  ///< read with TurnKind::Pins only
+        PinWish pins{};  ///< read where the kind of turn does (turn_kinds.h)
     };
     struct TowJob {
         double width_mm = 6.0;       ///< > 0

@@ -87,6 +87,23 @@ const KeyTable<PinWish>& pin_keys() {
     return kTable;
 }
 
+Key<Job::MandrelJob> turn_key() {
+    static const std::string kMeaning = [] {
+        std::string text = "how the fibre turns there";
+        for (const TurnKindTraits& turn : turn_kinds()) {
+            if (!turn.meaning.empty()) {
+                text += "; " + std::string(turn.word) + ": " + std::string(turn.meaning);
+            }
+        }
+        return text;
+    }();
+    Words words;
+    for (const TurnKindTraits& turn : turn_kinds()) {
+        words.push_back(turn.word);
+    }
+    return word("turn", &Job::MandrelJob::turn, words, kMeaning);
+}
+
 const KeyTable<Job::MandrelJob>& mandrel_keys() {
     using Owner = Job::MandrelJob;
     static const KeyTable<Owner> kTable = {{
@@ -97,10 +114,8 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
         regions_key(),
         number("extension", &Owner::extension_mm, kExtensionRange,
                "mm of room beyond each rim where the fibre turns"),
-        word("turn", &Owner::turn, {"friction", "pins", "pole"},
-             "how the fibre turns there; pole: not at all, only on domes, where a pattern turns by "
-             "itself about the pole"),
-        only_if<Owner>([](const Owner& mandrel) { return mandrel.turn == TurnKind::Pins; },
+        turn_key(),
+        only_if<Owner>([](const Owner& mandrel) { return traits_of(mandrel.turn).reads_pins; },
                        "job.pins_unused",
                        "only \"turn\": \"pins\" reads it; write that, or remove it",
                        object("pins", &Owner::pins, pin_keys(),

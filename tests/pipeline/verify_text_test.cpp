@@ -174,9 +174,10 @@ TEST(VerifyText, TextsThatCannotBeReadAreRefusedWithTheirLine) {
 
 TEST(VerifyText, PinsAreRefusedForTheyAreChosenWithThePlan) {
     Job job;
-    EXPECT_EQ(test::refusal_of([&] { refuse_pins(job, "job.json"); }), test::Refused{});
+    EXPECT_EQ(test::refusal_of([&] { require_turns_without_plan(job, "job.json"); }),
+              test::Refused{});
     job.mandrel.turn = TurnKind::Pins;
-    EXPECT_EQ(test::refusal_of([&] { refuse_pins(job, "job.json"); }),
+    EXPECT_EQ(test::refusal_of([&] { require_turns_without_plan(job, "job.json"); }),
               (test::Refused{"job.not_offered", "job.json: /mandrel/turn"}));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +16,6 @@
 #include "winding/revolution/aim_pass.h"
 #include "winding/revolution/hollow_rim.h"
 #include "winding/revolution/hoop_path.h"
-#include "winding/revolution/pin_pattern.h"
 #include "winding/revolution/regular_parts.h"
 #include "winding/revolution/revolution_pieces.h"
 #include "winding/revolution/steered_pass.h"
@@ -45,11 +45,6 @@ constexpr double kRunOutTows = 1.0;
 // turn of a circuit, and the slip stays as it is for what is left.
 constexpr double kNearlyClosed_rad = 1e-6;
 
-double positive_angle(double angle_rad) {
-    const double rest = std::fmod(angle_rad, 2.0 * kPi);
-    return rest < 0.0 ? rest + 2.0 * kPi : rest;
-}
-
 class PatternPlanner {
 public:
     PatternPlanner(const Mandrel& mandrel, const BodyOfRevolution& body,
@@ -59,7 +54,8 @@ public:
           meridian_(body.meridian),
           options_(options),
           rule_{options.tow.friction, options.turn.extension_mm, options.tow.width_mm},
-          pieces_(mandrel, body, rule_) {
+          pieces_(mandrel, body, rule_),
+          turns_(options.turns(options.tow, options.turn.extension_mm)) {
         plan_.planner = Planner::Pattern;
         widest_mm_ = meridian_.widest_mm();
         widest_radius_mm_ = meridian_.at(widest_mm_).radius_mm;
@@ -74,7 +70,7 @@ public:
         if (options_.kind == PatternKind::Polar ? !aim_at_openings() : !aim_at_angle()) {
             return std::move(plan_);
         }
-        if (!lift_over_rims() || !ends_hold() || !choose_pattern() || !place_pins()) {
+        if (!lift_over_rims() || !ends_hold() || !choose_pattern() || !place_turns()) {
             return std::move(plan_);
         }
         begin_at({goal(0), goal(1)}, {laid_.stations.front(), way_back(laid_).front()});
@@ -152,11 +148,12 @@ private:
         pass_ = steered.pass;
     }
 
-    // The pass with ends that go straight over hollow rims; on pins they are left on the wall.
+    // The pass with ends that go straight over hollow rims, unless its turns leave them on the
+    // wall.
     bool lift_over_rims() {
         LaidPass lifted;
         lifted.pass = pass_;
-        if (!options_.pins) {
+        if (turns_->lifts_over_hollow_rims()) {
             lifted = lifted_over_rims(meridian_, pass_,
                                       {.angle_rad = angle_rad_,
                                        .most_gap_mm = options_.tow.bridging_tolerance_mm,
@@ -183,83 +180,26 @@ private:
                 return fail("a fibre at " + degrees(angle_rad_) + " runs over the " + name +
                             " pole; a larger angle turns before it");
             }
-            const RimCrossing crossing = crossing_of(end);
-            if (!options_.over_rims) {
-                return fail("a fibre at " + degrees(angle_rad_) + " crosses the " + name +
-                            " rim at " + degrees(crossing.angle_rad) +
-                            " to the axis and turns about no pole there; give a larger angle, or "
-                            "\"turn\": \"friction\"");
-            }
-            if (!options_.pins && !can_turn(*rim, crossing, rule_)) {
-                return fail(why_no_turn("the " + name + " rim", *rim, crossing, rule_));
+            const std::string why = turns_->add({end, *rim, crossing_of(end), angle_rad_});
+            if (!why.empty()) {
+                return fail(why);
             }
         }
-        if (options_.pins && !count_on_pins()) {
-            return fail("pins stand on the extension of a rim that the fibre runs over, and at " +
-                        degrees(angle_rad_) +
-                        " it turns by itself at both ends; use \"friction\", or give the body a "
-                        "straight end");
-        }
-        return true;
-    }
-
-    // Turns over rims are on pins. False where there are none.
-    bool count_on_pins() {
-        pins_.emplace(*options_.pins, options_.tow.width_mm, options_.tow.thickness_mm,
-                      rule_.extension_mm);
-        for (std::size_t end = 0; end < 2; ++end) {
-            if (dwells(end)) {
-                pins_->add(end, pieces_.rim_of(end)->radius_mm, crossing_of(end).angle_rad);
-            }
-        }
-        return dwells(0) || dwells(1);
-    }
-
-    // For the pattern that was chosen.
-    bool place_pins() {
-        if (!pins_) {
-            return true;
-        }
-        if (lattice_ && lattice_->series > 1) {
-            return fail(
-                "the bands of a rib are set side by side by dwelling at a rim, and on pins the "
-                "fibre dwells by whole pins; ask for one series");
-        }
-        const std::string why = pins_->place(pattern_);
+        const std::string why =
+            dwells(0) || dwells(1) ? std::string() : turns_->why_no_ends(angle_rad_);
         return why.empty() || fail(why);
     }
 
-    // A turn over a rim; on pins with the ring that the first one needs.
-    LaidTurn turn_between(std::size_t end, const RimCrossing& crossing, const RimCrossing& to) {
-        if (!pins_) {
-            return pieces_.turn(end, crossing, to);
-        }
-        const Rim& rim = *pieces_.rim_of(end);
-        PinTurnShape shape = pins_->shape(end);
-        shape.angle_rad = crossing.angle_rad;
-        if (std::none_of(plan_.pins.begin(), plan_.pins.end(),
-                         [&](const PinRing& ring) { return ring.rim == rim.id; })) {
-            plan_.pins.push_back(ring_for(rim, crossing, shape));
-            plan_.pins.back().height_mm = pins_->height_mm(end);
-        }
-        return turn_on_pins(rim, crossing, shape, options_.tow.width_mm);
+    // For the pattern that was chosen.
+    bool place_turns() {
+        const std::string why = turns_->place(pattern_, lattice_ ? lattice_->series : 1);
+        return why.empty() || fail(why);
     }
 
     // How the pass crosses the rim of an end on its way out, or begins there (seen backwards).
     [[nodiscard]] RimCrossing crossing_of(std::size_t end) const {
         return pieces_.crossing_of(end, end == 0 ? laid_.stations.front() : laid_.stations.back(),
                                    0.0);
-    }
-
-    // About +Z, of a turn over a rim without dwell.
-    [[nodiscard]] double steered_rad(std::size_t end) const {
-        if (options_.pins) {
-            return pins_->shortest_rad(end);
-        }
-        const RimCrossing crossing = crossing_of(end);
-        RimCrossing back = crossing;
-        back.sense = -crossing.sense;
-        return positive_angle(-dwell_rad(*pieces_.rim_of(end), crossing, back, rule_));
     }
 
     [[nodiscard]] bool dwells(std::size_t end) const {
@@ -270,7 +210,7 @@ private:
     [[nodiscard]] double circuit_rad() const {
         double turn = 2.0 * laid_.turn_rad();
         for (std::size_t end = 0; end < 2; ++end) {
-            turn += dwells(end) ? steered_rad(end) : 0.0;
+            turn += dwells(end) ? turns_->shortest_rad(end) : 0.0;
         }
         return turn;
     }
@@ -300,7 +240,7 @@ private:
                 return options_.lattice ? find_wished_lattice(circuit, *options_.lattice, wish)
                                         : find_wished_pattern(circuit, wish);
             };
-            found = pins_ ? pins_->find(options_.wish, find) : find(options_.wish);
+            found = turns_->find(options_.wish, find);
         } catch (const InputError& error) {
             return fail(std::string("no pattern can be looked for: ") + error.what());
         }
@@ -447,7 +387,7 @@ private:
             const std::size_t end = i % 2 == 0 ? 1 - start : start;
             add(std::move(passes[i]));
             if (dwells(end) && i + 1 < passes.size()) {
-                add(turn_between(end, pieces_.crossing_of(end, ways[1 - end].back(), turned[i]),
+                add(turns_->turn(end, pieces_.crossing_of(end, ways[1 - end].back(), turned[i]),
                                  pieces_.crossing_of(end, ways[end].front(), turned[i + 1])));
             }
         }
@@ -457,6 +397,7 @@ private:
                                 pieces_.crossing_of(start, ways[1 - start].back(), turned.back()),
                                 kRunOutTows * options_.tow.width_mm));
         }
+        plan_.pins = turns_->pins();
         plan_.pieces.front().starts_fibre = true;
         plan_.courses = static_cast<int>(passes.size());
         plan_.fibres = 1;
@@ -498,8 +439,8 @@ private:
         std::array<double, 2> turn{};
         for (std::size_t end = 0; end < 2; ++end) {
             if (dwells(end)) {
-                const double least = pins_ ? 0.0 : kLeastDwell_rad;
-                turn[end] = steered_rad(end) + std::max(least, share * pattern_.dwell_rad);
+                turn[end] = turns_->shortest_rad(end) +
+                            std::max(turns_->least_dwell_rad(), share * pattern_.dwell_rad);
             }
         }
         return turn;
@@ -573,13 +514,13 @@ private:
     const PatternOptions& options_;
     TurnRule rule_;
     RevolutionPieces pieces_;
+    std::unique_ptr<RimTurns> turns_;
     double widest_mm_ = 0.0;
     double widest_radius_mm_ = 0.0;
     double angle_rad_ = 0.0;  // at the widest place
     HalfSlips slip_;          // of the passes
     MeridianPass pass_;       // on the wall
     MeridianPass laid_;       // as fibre lies between two turns: straight over hollow rims
-    std::optional<PinnedEnds> pins_;
     Pattern pattern_;
     PatternBegin begin_;  // where the first circuit or ply begins
     std::optional<LaidLattice> lattice_;

@@ -14,7 +14,8 @@
 #include "winding/revolution/meridian_path.h"
 #include "winding/revolution/pattern_begin.h"
 #include "winding/revolution/pattern_wish.h"
-#include "winding/turn/pin_turn.h"
+#include "winding/revolution/rim_turns.h"
+#include "winding/turn/turn.h"
 
 namespace meshwind {
 
@@ -27,8 +28,7 @@ struct PatternOptions {
     Tow tow{};
     TurnRule turn{};                       ///< friction and band are taken from `tow`
     PatternWish wish{};                    ///< helical, polar
-    std::optional<PinWish> pins{};         ///< helical: turns over rims are on pins (pin_turn.h)
-    bool over_rims = true;                 ///< false: only turns on the wall itself, about poles
+    RimTurnsMaker turns = friction_turns;  ///< helical, polar: how it turns over rims
     std::optional<LatticeWish> lattice{};  ///< helical: ribs instead of a closed wall
     /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
     /// place.
@@ -44,9 +44,9 @@ struct PatternOptions {
 /// lie side by side.
 ///  - Where the body narrows to r = c the path turns by itself (Clairaut); such ends have no dwell,
 ///    and the winding angle gives way by the little that closes the pattern.
-///  - Where it runs over a rim it turns by friction on the extension (turn.h), and dwells there for
-///    as long as closing takes. On pins it runs behind as many as closing takes, and their distance
-///    from the rim makes up the rest.
+///  - Where it runs over a rim it turns as rim_turns.h has it: by friction on the extension, where
+///    it dwells for as long as closing takes, or on pins, where it runs behind as many as closing
+///    takes, and their distance from the rim makes up the rest.
 ///  - Polar: the band touches the opening, or the pole, of either end; where these are of different
 ///    sizes it is steered with a constant slip ratio from one to the other.
 ///  - Lattices: after each series the fibre dwells a little longer, by the offset of its bands; all

@@ -18,21 +18,27 @@ constexpr double kRounding = 1e-7;
 
 }  // namespace
 
-PinnedEnds::PinnedEnds(const PinWish& wish, double tow_width_mm, double tow_thickness_mm,
-                       double extension_mm)
+PinnedEnds::PinnedEnds(const PinWish& wish, const Tow& tow, double extension_mm)
     : wish_(wish),
-      tow_width_mm_(tow_width_mm),
-      strand_mm_(strand_radius_mm(tow_width_mm, tow_thickness_mm)),
+      tow_width_mm_(tow.width_mm),
+      strand_mm_(strand_radius_mm(tow.width_mm, tow.thickness_mm)),
       extension_mm_(extension_mm) {}
 
-void PinnedEnds::add(std::size_t end, double radius_mm, double angle_rad) {
+std::string PinnedEnds::add(const RimEnd& end) {
     PinTurnShape shape;
-    shape.radius_mm = radius_mm;
-    shape.angle_rad = angle_rad;
+    shape.radius_mm = end.rim.radius_mm;
+    shape.angle_rad = end.crossing.angle_rad;
     shape.diameter_mm = wish_.diameter_mm;
     shape.held_mm = 0.5 * wish_.diameter_mm + strand_mm_;
     shape.offset_mm = wish_.offset_mm > 0.0 ? wish_.offset_mm : tow_width_mm_ + wish_.diameter_mm;
-    end_[end] = End{shape, {}, shape};
+    end_[end.end].emplace(End{end.rim, shape, {}, shape});
+    return {};
+}
+
+std::string PinnedEnds::why_no_ends(double angle_rad) const {
+    return "pins stand on the extension of a rim that the fibre runs over, and at " +
+           degrees(angle_rad) +
+           " it turns by itself at both ends; use \"friction\", or give the body a straight end";
 }
 
 double PinnedEnds::shortest_rad(std::size_t end) const {
@@ -94,7 +100,11 @@ FoundPattern PinnedEnds::find(const PatternWish& wish, const Find& find) {
     return found;
 }
 
-std::string PinnedEnds::place(const Pattern& pattern) {
+std::string PinnedEnds::place(const Pattern& pattern, std::int64_t series) {
+    if (series > 1) {
+        return "the bands of a rib are set side by side by dwelling at a rim, and on pins the "
+               "fibre dwells by whole pins; ask for one series";
+    }
     const double pitch_rad = 2.0 * kPi / static_cast<double>(count_);
     const double pins = share() * pattern.dwell_rad / pitch_rad;
     const double whole = std::floor(pins + kRounding);
@@ -114,6 +124,22 @@ std::string PinnedEnds::place(const Pattern& pattern) {
         }
     }
     return {};
+}
+
+LaidTurn PinnedEnds::turn(std::size_t end, const RimCrossing& from, const RimCrossing& /*to*/) {
+    const Rim& rim = end_[end]->rim;
+    PinTurnShape shape = end_[end]->placed;
+    shape.angle_rad = from.angle_rad;
+    if (std::none_of(rings_.begin(), rings_.end(),
+                     [&](const PinRing& ring) { return ring.rim == rim.id; })) {
+        rings_.push_back(ring_for(rim, from, shape));
+        rings_.back().height_mm = end_[end]->fit.height_mm;
+    }
+    return turn_on_pins(rim, from, shape, tow_width_mm_);
+}
+
+std::unique_ptr<RimTurns> pin_turns(const PinWish& wish, const Tow& tow, double extension_mm) {
+    return std::make_unique<PinnedEnds>(wish, tow, extension_mm);
 }
 
 }  // namespace meshwind

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "winding/revolution/pattern_wish.h"
+#include "winding/revolution/rim_turns.h"
 #include "winding/turn/pin_turn.h"
 
 namespace meshwind {
@@ -17,34 +19,35 @@ namespace meshwind {
 /// so a ring has as many pins as the pattern circuits, or a multiple. What a turn is to be longer
 /// than the shortest is made up by whole pins to run behind and, for what is left, by standing them
 /// further from the rim: by z more, the turn is 2 z tan(alpha) longer.
-class PinnedEnds {
+class PinnedEnds final : public RimTurns {
 public:
-    /// \param tow_width_mm, tow_thickness_mm of which its strand follows
-    PinnedEnds(const PinWish& wish, double tow_width_mm, double tow_thickness_mm,
-               double extension_mm);
+    /// \param tow of whose width and thickness its strand follows
+    PinnedEnds(const PinWish& wish, const Tow& tow, double extension_mm);
 
-    /// \param radius_mm of the extension \param angle_rad between fibre and axis at the rim
-    void add(std::size_t end, double radius_mm, double angle_rad);
+    [[nodiscard]] bool lifts_over_hollow_rims() const override { return false; }
 
-    /// About the axis, of a turn at the least distance from the rim that runs behind no pins.
-    [[nodiscard]] double shortest_rad(std::size_t end) const;
+    /// Always empty.
+    [[nodiscard]] std::string add(const RimEnd& end) override;
+    [[nodiscard]] std::string why_no_ends(double angle_rad) const override;
 
-    using Find = std::function<FoundPattern(const PatternWish&)>;
+    /// Of a turn at the least distance from the rim that runs behind no pins.
+    [[nodiscard]] double shortest_rad(std::size_t end) const override;
+    [[nodiscard]] double least_dwell_rad() const override { return 0.0; }
+
     /// The pattern whose turns run behind enough pins for these to take hold one by one.
-    /// \param find with the wish that it is given, whose least and most dwell are at each end
-    [[nodiscard]] FoundPattern find(const PatternWish& wish, const Find& find);
+    [[nodiscard]] FoundPattern find(const PatternWish& wish, const Find& find) override;
 
-    /// Sets pins and distances for the pattern that was found.
-    /// \return empty, or in words why they cannot be
-    [[nodiscard]] std::string place(const Pattern& pattern);
+    /// Sets pins and distances.
+    [[nodiscard]] std::string place(const Pattern& pattern, std::int64_t series) override;
 
-    /// After place(). \pre the end was added
-    [[nodiscard]] const PinTurnShape& shape(std::size_t end) const { return end_[end]->placed; }
-    /// Of the pins.
-    [[nodiscard]] double height_mm(std::size_t end) const { return end_[end]->fit.height_mm; }
+    /// \pre placed. The first one at a rim says where the ring stands.
+    [[nodiscard]] LaidTurn turn(std::size_t end, const RimCrossing& from,
+                                const RimCrossing& to) override;
+    [[nodiscard]] std::vector<PinRing> pins() const override { return rings_; }
 
 private:
     struct End {
+        const Rim& rim;
         PinTurnShape shortest;
         PinFit fit;
         PinTurnShape placed;
@@ -59,6 +62,11 @@ private:
     std::array<std::optional<End>, 2> end_;
     std::int64_t count_ = 0;
     int least_skip_ = 0;
+    std::vector<PinRing> rings_;
 };
+
+/// For a planner.
+[[nodiscard]] std::unique_ptr<RimTurns> pin_turns(const PinWish& wish, const Tow& tow,
+                                                  double extension_mm);
 
 }  // namespace meshwind

@@ -1,0 +1,41 @@
+/// Kinds of turns beyond a rim, each as one row: all that is asked of a kind elsewhere.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "winding/plan/tow.h"
+#include "winding/revolution/rim_turns.h"
+
+namespace meshwind {
+
+struct Job;
+
+/// How the fibre turns round beyond a rim.
+enum class TurnKind { Friction, Pins, Pole };
+
+/// What else is known of a kind. Words are for the user; empty: there is nothing to say.
+struct TurnKindTraits {
+    TurnKind kind = TurnKind::Friction;
+    std::string_view word;            ///< in job files
+    std::string_view meaning{};       ///< for the reference, where the word does not say it
+    bool takes_run = false;           ///< along the extension, by friction (least_run_mm)
+    bool reads_pins = false;          ///< the job's `pins` are for it
+    std::string_view why_patterns{};  ///< why nothing but patterns of bodies of revolution is wound
+    std::string_view why_not_again{};  ///< why no program is wound again without its plan
+    /// Why a job is not wound with it. Null: every job is. \param points_given landing points made
+    /// elsewhere are wound, and the job's layers not read
+    std::string (*why_not)(const Job& job, bool points_given) = nullptr;
+    /// What patterns turn over rims by (RimTurnsMaker); never null.
+    std::unique_ptr<RimTurns> (*turns)(const Job& job, const Tow& tow,
+                                       double extension_mm) = nullptr;
+};
+
+/// One row per kind, in the order of the enumerators.
+[[nodiscard]] std::span<const TurnKindTraits> turn_kinds();
+
+[[nodiscard]] const TurnKindTraits& traits_of(TurnKind kind);
+
+}  // namespace meshwind
