@@ -1,6 +1,7 @@
 #include "pipeline/code_digest.h"
 
 #include "core/text/digest.h"
+#include "postproc/verify/check_kinds.h"
 
 namespace meshwind {
 
@@ -24,7 +25,7 @@ std::optional<Check> code_check(const Dialect& dialect, std::string_view text,
     }
     const std::string& written = program.head->code_digest;
     const std::string is = code_digest(dialect, text, file);
-    Check check{"code", is == written, {}, {}};
+    Check check(check_kind::kCode, is == written);
     if (!check.ok) {
         check.words = "the blocks are not those that were written: their digest is " + is +
                       ", the program's head says " + written;

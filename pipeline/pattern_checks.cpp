@@ -8,6 +8,7 @@
 
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "postproc/verify/check_kinds.h"
 #include "postproc/verify/closure.h"
 
 namespace meshwind {
@@ -17,7 +18,7 @@ namespace {
 constexpr double kNoGap = 1e-6;
 
 Check check_of(const LaidClosure& closure, std::size_t circuits) {
-    Check check{"closure", closure.holds(), {}, {}};
+    Check check(check_kind::kClosure, closure.holds());
     check.numbers = {{"limit_closure_deg", deg_from_rad(closure.limit_rad())},
                      {"closure_deg", deg_from_rad(closure.closure_rad)},
                      {"resolution_deg", deg_from_rad(closure.resolution_rad)},
@@ -60,7 +61,7 @@ bool is_open(const Plan& plan) {
 
 Check open_coverage_check(const Plan& plan) {
     const LaidPattern& laid = *plan.pattern();
-    Check check{"coverage", true, {}, {}};
+    Check check(check_kind::kCoverage);
     check.numbers = {{"fraction", plan.coverage.fraction},
                      {"ribs", 2.0 * static_cast<double>(laid.pattern.circuits)},
                      {"crossings", static_cast<double>(laid.interlacing.crossings)}};

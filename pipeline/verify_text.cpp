@@ -8,6 +8,7 @@
 #include "pipeline/code_digest.h"
 #include "pipeline/job/job_friction.h"
 #include "pipeline/run_names.h"
+#include "postproc/verify/check_kinds.h"
 #include "winding/laminate/measure_plan.h"
 
 namespace meshwind {
@@ -28,7 +29,7 @@ VerifyPlan plan_of(const VerifyInputs& inputs, const Machine& machine) {
 Check program_check(const Machine& machine, const BlockList& program,
                     const std::vector<PlannedMotion>& motion, std::optional<std::size_t>& wrong) {
     const MotionDifference difference = first_difference(machine, program, motion);
-    Check check{"program", difference.words.empty(), {}, {}};
+    Check check(check_kind::kProgram, difference.words.empty());
     check.numbers["blocks"] = static_cast<double>(program.moves());
     if (!check.ok) {
         // A block that is missing at the end is named by the last one there is.

@@ -15,6 +15,7 @@
 #include "pipeline/before_planning.h"
 #include "pipeline/check_controller.h"
 #include "pipeline/run_names.h"
+#include "postproc/verify/check_kinds.h"
 #include "winding/laminate/build_up.h"
 
 namespace meshwind {
@@ -211,10 +212,9 @@ private:
         try {
             next.setup = setup_for(setup, thicken(setup.mandrel, layer.build_up_mm), number);
         } catch (const InputError& error) {
-            run_.checks.push_back({"plan" + layer_suffix(number),
-                                   false,
-                                   layer_words(number) + ": " + error.what(),
-                                   {}});
+            Check& check = run_.checks.emplace_back(check_kind::kPlan, false,
+                                                    layer_words(number) + ": " + error.what());
+            check.name += layer_suffix(number);
             return false;
         }
         header_.mandrel = grown_mandrel_name(number);

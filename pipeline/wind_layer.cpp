@@ -8,6 +8,7 @@
 #include "pipeline/pattern_checks.h"
 #include "pipeline/plan_layer.h"
 #include "pipeline/run_names.h"
+#include "postproc/verify/check_kinds.h"
 #include "postproc/verify/laydown.h"
 
 namespace meshwind {
@@ -28,7 +29,7 @@ public:
         const LayerMachine machine(setup_, options);
         std::unique_ptr<TrialWinding> trial = plan(machine);
         if (!layer_.plan.failure.empty()) {
-            layer_.checks.push_back({"plan", false, layer_.plan.failure, {}});
+            layer_.checks.emplace_back(check_kind::kPlan, false, layer_.plan.failure);
             return;
         }
         if (auto* programs = dynamic_cast<LayerPrograms*>(trial.get())) {
@@ -136,7 +137,7 @@ private:
     }
 
     void check_fibres() {
-        Check check{"continuity", layer_.plan.fibres <= setup_.job.fibres, {}, {}};
+        Check check(check_kind::kContinuity, layer_.plan.fibres <= setup_.job.fibres);
         check.numbers = {{"fibres", static_cast<double>(layer_.plan.fibres)},
                          {"limit", static_cast<double>(setup_.job.fibres)},
                          {"worst_joint_mm", layer_.plan.worst_joint_mm}};
@@ -152,7 +153,7 @@ private:
     // Points too far off are refused before; how far they were tells of their mandrel.
     void check_import() {
         const ImportFit& fit = *layer_.import;
-        Check check{"import", true, {}, {}};
+        Check check(check_kind::kImport);
         check.numbers = {{"worst_mm", fit.worst_mm},
                          {"mean_mm", fit.mean_mm},
                          {"limit_mm", fit.limit_mm},
@@ -198,7 +199,7 @@ private:
         }
         const Coverage& coverage = layer_.plan.coverage;
         const double limit = kCoveredShare * coverage.reachable;
-        Check check{"coverage", coverage.fraction >= limit, {}, {}};
+        Check check(check_kind::kCoverage, coverage.fraction >= limit);
         check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
         check.place = barest_place();
         if (!check.ok) {
@@ -218,7 +219,7 @@ private:
 
     [[nodiscard]] Check eye_check(const PieceProgram& made) const {
         const std::vector<std::size_t>& blocked = made.eyes.blocked;
-        Check check{"eye", blocked.empty(), {}, {}};
+        Check check(check_kind::kEye, blocked.empty());
         check.numbers = {{"blocked_points", static_cast<double>(blocked.size())}};
         if (!check.ok) {
             check.words = made.eyes.words + " at " + place_of(made.eyes.path[blocked.front()]);
@@ -228,7 +229,7 @@ private:
     }
 
     [[nodiscard]] static Check rounding_check(const PieceProgram& made) {
-        Check check{"rounding", made.read.nano == made.blocks.nano, {}, {}};
+        Check check(check_kind::kRounding, made.read.nano == made.blocks.nano);
         check.numbers["blocks"] = static_cast<double>(made.read.moves());
         if (!check.ok) {
             check.words = "the program read back does not give the positions that were planned";

@@ -17,6 +17,7 @@
 #include "machines/kinematics.h"
 #include "mesh/mandrel/extension.h"
 #include "report/folder/run_files.h"
+#include "report/report_checks.h"
 #include "winding/laminate/wound_angle.h"
 
 namespace meshwind {
@@ -211,6 +212,7 @@ public:
         report.erase("timing_s");  // the same run writes the same page
         json header = {{"format", "meshwind-page-1"},
                        {"report", std::move(report)},
+                       {"check_kinds", check_kinds_report(run_.checks)},
                        {"machine", machine_json()},
                        {"tow",
                         {{"width_mm", tow.width_mm},

@@ -15,8 +15,9 @@ namespace meshwind {
 ///
 ///     u32           length of the header, which is padded so that the arrays begin at a multiple
 ///                   of 8 bytes
-///     header        "report", "machine", "tow", "extension", "layers" with their "fibres" and
-///                   these with their "pieces", "arrays": name -> type, width, count, offset
+///     header        "report", "check_kinds" (report_checks.h), "machine", "tow", "extension",
+///                   "layers" with their "fibres" and these with their "pieces",
+///                   "arrays": name -> type, width, count, offset
 ///     arrays        little endian, each at a multiple of 8 bytes from the first
 ///
 /// Positions are in the mandrel's frame, mm; angles deg. \param report report.json, whose

@@ -1,51 +1,14 @@
 #include "report/report_checks.h"
 
 #include <cmath>
-#include <map>
 #include <string>
+#include <utility>
 
 #include "core/text/text_number.h"
 
 namespace meshwind {
 
 using nlohmann::json;
-
-namespace {
-
-// What a check is about, for somebody who winds. A number at its end tells the fibre.
-std::string meaning_of(const std::string& check) {
-    static const std::map<std::string, std::string> kMeanings = {
-        {"continuity", "fibres that are tied on, and how well their pieces meet"},
-        {"plan", "courses that can be wound"},
-        {"coverage", "wall under at least one layer"},
-        {"thickness", "even layers where the winding is regular"},
-        {"closure", "the pattern's last circuit ends where its first began"},
-        {"import", "how far the landing points were from the mandrel"},
-        {"tie_on", "the fibre is tied on where it is laid from"},
-        {"approach", "rapid moves to the start within the axes and clear of the mandrel"},
-        {"path_mode", "the controller passes corners as the machine file asks"},
-        {"roller", "the fibre leaves the roller at a right angle"},
-        {"code", "the program as it was written"},
-        {"eye", "a free length that the rule allows everywhere"},
-        {"rounding", "the program read back is the motion that was planned"},
-        {"laydown", "the fibre comes to lie where it was planned"},
-        {"slip", "friction holds it there"},
-        {"bridging", "gap under the fibre over hollows"},
-        {"collision", "fibre and head clear of the mandrel"},
-        {"free_length", "fibre between mandrel and eye"},
-        {"limits", "axes within travel, speed and acceleration"},
-        {"payout", "speed of the fibre through the eye, and length taken back"},
-        {"program", "the program is the planned one"},
-        {"ring", "the frame clear of the rings"},
-        {"reach", "every pose within the robot's reach"},
-        {"wrist", "no axis that jumps"},
-        {"clearance", "the frame clear of what stands on the base"},
-        {"interpolation", "the axis in the middle of the head between the points"}};
-    const auto found = kMeanings.find(check.substr(0, check.find('-')));
-    return found == kMeanings.end() ? "" : ": " + found->second;
-}
-
-}  // namespace
 
 double report_number(double value) {
     constexpr double kDigits = 1e9;
@@ -91,6 +54,31 @@ json checks_report(const std::vector<Check>& checks) {
     return report;
 }
 
+json check_kinds_report(const std::vector<Check>& checks) {
+    json report = json::object();
+    for (const Check& check : checks) {
+        const CheckKind& kind = *check.kind;
+        json measures = json::array();
+        for (const CheckMeasure& measure : kind.measures) {
+            if (measure.key.empty()) {
+                break;
+            }
+            json entry = {{"key", measure.key}, {"label", measure.label}};
+            if (!measure.limit_key.empty()) {
+                entry["limit"] = measure.limit_key;
+            } else if (measure.fixed_limit) {
+                entry["limit"] = *measure.fixed_limit;
+            }
+            if (measure.least) {
+                entry["least"] = true;
+            }
+            measures.push_back(std::move(entry));
+        }
+        report[std::string(kind.name)] = {{"title", kind.title}, {"measures", measures}};
+    }
+    return report;
+}
+
 json verification_report(const Verification& verification, const BlockList& program) {
     json report = {{"blocks", program.moves()},
                    {"fibre_length_mm", report_number(verification.fibre_length_mm)},
@@ -109,8 +97,8 @@ json verification_report(const Verification& verification, const BlockList& prog
 
 void print_checks(std::ostream& out, const std::vector<Check>& checks) {
     for (const Check& check : checks) {
-        out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name
-            << meaning_of(check.name) << (check.numbers.empty() ? "" : ";");
+        out << "  " << (check.ok ? "ok    " : "FAILED") << "  " << check.name << ": "
+            << check.kind->meaning << (check.numbers.empty() ? "" : ";");
         for (const auto& [name, value] : check.numbers) {
             std::string text;
             if (std::isfinite(value)) {

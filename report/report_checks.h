@@ -8,12 +8,17 @@
 #include <nlohmann/json.hpp>
 
 #include "postproc/motion/block.h"
+#include "postproc/verify/check.h"
 #include "postproc/verify/verify.h"
 
 namespace meshwind {
 
 /// By name: ok, the numbers of the check, and words where it failed.
 [[nodiscard]] nlohmann::json checks_report(const std::vector<Check>& checks);
+
+/// Their kinds by name, for the page: title, and measures with key, label, limit (the key of a
+/// number, or a number; none: no limit) and least (the limit is a lower one).
+[[nodiscard]] nlohmann::json check_kinds_report(const std::vector<Check>& checks);
 
 /// What was laid and in what time, and the first wrong block where there is one.
 [[nodiscard]] nlohmann::json verification_report(const Verification& verification,

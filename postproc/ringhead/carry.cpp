@@ -11,6 +11,7 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "postproc/verify/check_kinds.h"
 
 namespace meshwind {
 namespace {
@@ -255,9 +256,9 @@ private:
     [[nodiscard]] std::string at(double s_mm) const { return " at " + fixed(s_mm, 1) + " mm"; }
     [[nodiscard]] std::string at_sample(std::size_t i) const { return at(result_.samples[i].s_mm); }
 
-    void add(const std::string& name, bool ok, const std::string& words,
+    void add(const CheckKind& kind, bool ok, const std::string& words,
              std::map<std::string, double> numbers) {
-        result_.checks.push_back({name, ok, ok ? "" : words, std::move(numbers)});
+        result_.checks.emplace_back(kind, ok, ok ? "" : words, std::move(numbers));
     }
 
     void check_ring() {
@@ -269,7 +270,7 @@ private:
                               " mm while its axis" + at(fit.s_mm) + " is in the head"
                         : "the frame turns back inside the head while its axis" + at(fit.s_mm) +
                               " is in the middle; the bend is too tight for this head";
-        add("ring", fit.through && fit.reach_mm < limit_mm, words,
+        add(check_kind::kRing, fit.through && fit.reach_mm < limit_mm, words,
             {{"reach_mm", fit.reach_mm},
              {"limit_mm", limit_mm},
              {"offset_mm", fit.offset_mm},
@@ -278,7 +279,7 @@ private:
 
     void check_reach() {
         const CarriedJoints& joints = result_.joints;
-        add("reach", joints.reached(),
+        add(check_kind::kReach, joints.reached(),
             "the robot stays " + fixed(joints.residual_mm, 3) + " mm and " +
                 fixed(deg_from_rad(joints.residual_rad), 3) + " deg short" +
                 at_sample(joints.residual_at) + " of the axis; mount the frame in another way",
@@ -315,7 +316,7 @@ private:
                         " of the axis; pass more slowly";
             }
         }
-        add("limits", words.empty(), words,
+        add(check_kind::kLimits, words.empty(), words,
             {{"travel_violations", static_cast<double>(result_.joints.path.violations.size())},
              {"velocity_ratio", loads.velocity.ratio},
              {"acceleration_ratio", loads.acceleration.ratio}});
@@ -323,7 +324,7 @@ private:
 
     void check_wrist() {
         const CarriedJoints& joints = result_.joints;
-        add("wrist", joints.flips == 0,
+        add(check_kind::kWrist, joints.flips == 0,
             "an axis jumps by more than a quarter turn" + at_sample(joints.first_flip) +
                 " of the axis; mount the frame in another way",
             {{"flips", static_cast<double>(joints.flips)}, {"least_singular", joints.singular}});
@@ -336,7 +337,7 @@ private:
         if (!found) {
             return;
         }
-        add("clearance", found->least_mm >= request.clearance_mm,
+        add(check_kind::kClearance, found->least_mm >= request.clearance_mm,
             "the frame comes within " + fixed(found->least_mm, 2) + " mm of body " +
                 std::to_string(found->body + 1) + " of the machine file" +
                 at_sample(found->sample) + " of the axis; mount the frame in another way",
@@ -364,7 +365,7 @@ private:
             worst.tilt_rad = std::max(worst.tilt_rad, error.tilt_rad);
             worst.turn_rad = std::max(worst.turn_rad, error.turn_rad);
         }
-        add("interpolation", worst_share <= 1.0,
+        add(check_kind::kInterpolation, worst_share <= 1.0,
             "between two points the axis leaves the centre by up to " +
                 fixed(worst.distance_mm, 4) + " mm and turns by up to " +
                 fixed(deg_from_rad(worst.turn_rad), 4) + " deg, worst" + at(worst_s_mm) +
@@ -386,7 +387,7 @@ private:
         }
         const bool ok = result_.program == planned_ && worst.distance_mm <= kRounded_mm &&
                         deg_from_rad(worst.turn_rad) <= kRounded_deg;
-        add("rounding", ok,
+        add(check_kind::kRounding, ok,
             "the program that is read back is up to " + fixed(worst.distance_mm, 6) + " mm and " +
                 fixed(deg_from_rad(worst.turn_rad), 6) + " deg off at its points",
             {{"worst_mm", worst.distance_mm}, {"worst_deg", deg_from_rad(worst.turn_rad)}});

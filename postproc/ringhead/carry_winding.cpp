@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "postproc/verify/check_kinds.h"
 
 namespace meshwind {
 namespace {
@@ -147,9 +148,9 @@ private:
         result_.quality = ring_quality(tube_, result_.fibres, task);
     }
 
-    void add(const std::string& name, bool ok, const std::string& words,
+    void add(const CheckKind& kind, bool ok, const std::string& words,
              std::map<std::string, double> numbers) {
-        result_.checks.push_back({name, ok, ok ? "" : words, std::move(numbers)});
+        result_.checks.emplace_back(kind, ok, ok ? "" : words, std::move(numbers));
     }
 
     void check_laydown() {
@@ -167,7 +168,7 @@ private:
                       fixed(laid.bend_s_mm, 1) + " mm of the axis, " + fixed(bend_limit_deg, 2) +
                       " are allowed in or near a bend; bring the ring's fibres to land nearer to " +
                       "the head's centre";
-        add("laydown", arm_deg <= limit_deg && bend_deg <= bend_limit_deg, words,
+        add(check_kind::kLaydown, arm_deg <= limit_deg && bend_deg <= bend_limit_deg, words,
             {{"arm_deg", arm_deg},
              {"arm_limit_deg", limit_deg},
              {"bend_deg", bend_deg},
@@ -176,7 +177,7 @@ private:
 
     void check_bridging() {
         const RingQuality& laid = result_.quality;
-        add("bridging", result_.bridges == 0 && laid.least_kn_per_mm > 0.0,
+        add(check_kind::kBridging, result_.bridges == 0 && laid.least_kn_per_mm > 0.0,
             "the tube is hollow along the fibre at " + fixed(laid.least_kn_s_mm, 1) +
                 " mm of the axis: " + std::to_string(result_.bridges) +
                 " bridges; wind steeper than " +
@@ -188,7 +189,7 @@ private:
     void check_slip() {
         const RingQuality& laid = result_.quality;
         if (options_.friction) {
-            add("slip", laid.slip <= *options_.friction,
+            add(check_kind::kSlip, laid.slip <= *options_.friction,
                 "fibre needs a friction of " + fixed(laid.slip, 3) + " at " +
                     fixed(laid.slip_s_mm, 1) + " mm of the axis, " + fixed(*options_.friction, 3) +
                     " is given; wind at a steeper angle or make the bend wider",
@@ -199,7 +200,7 @@ private:
     void check_cover() {
         const RingCover& cover = result_.cover;
         const RingPattern& pattern = result_.pattern;
-        add("coverage", cover.covered >= kAllCovered,
+        add(check_kind::kCoverage, cover.covered >= kAllCovered,
             "both rings' tows cover " + fixed(100.0 * cover.covered, 2) +
                 " % of the wound zone: they are " + fixed(pattern.tow_width_mm, 2) +
                 " mm wide and up to " + fixed(cover.widest_mm, 2) +
@@ -208,7 +209,7 @@ private:
              {"mean_layers", cover.mean_layers},
              {"widest_mm", cover.widest_mm}});
         if (cover.regular_mm > 0.0) {
-            add("thickness", cover.regular_cv <= kRegularCv,
+            add(check_kind::kThickness, cover.regular_cv <= kRegularCv,
                 "the layers scatter by " + fixed(cover.regular_cv, 4) + " on the regular arms, " +
                     fixed(kRegularCv, 2) + " are allowed",
                 {{"regular_cv", cover.regular_cv}, {"limit", kRegularCv}});

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "geodesic/measure.h"
 #include "postproc/motion/axis_loads.h"
+#include "postproc/verify/check_kinds.h"
 #include "postproc/verify/roller_check.h"
 #include "postproc/verify/verify_head.h"
 
@@ -162,7 +163,7 @@ private:
 
     void check_roller() {
         const RollerFinding roller = find_roller(task_.machine, found_.laid);
-        Check check{"roller", true, {}, {}};
+        Check check(check_kind::kRoller);
         check.numbers = {{"worst_deg", deg_from_rad(roller.worst_rad)},
                          {"limit_deg", deg_from_rad(kRollerOff_rad)}};
         put_at_sample(check, roller.wrong_sample.value_or(roller.worst_sample));
@@ -181,7 +182,7 @@ private:
 
     void check_laydown() {
         const LaidPath& laid = found_.laid;
-        Check check{"laydown", true, {}, {}};
+        Check check(check_kind::kLaydown);
         if (!task_.plan.empty()) {
             found_.deviation = compare(laid, task_.plan, rules_.laydown);
             const Deviation& off = *found_.deviation;
@@ -256,7 +257,7 @@ private:
                 note_coarse_behind(i, 2.0 * rules_.tow_width_mm, noted);
             }
         }
-        Check check{"slip", true, {}, {}};
+        Check check(check_kind::kSlip);
         check.numbers = {{"limit", limit}, {"worst", found_.slip[worst]}};
         put_at_station(check, first.value_or(worst));
         if (first) {
@@ -279,7 +280,7 @@ private:
                 note_coarse(laid.at[i].block);
             }
         }
-        Check check{"bridging", true, {}, {}};
+        Check check(check_kind::kBridging);
         const double worst_mm = laid.at[worst].gap_mm;
         check.numbers = {{"limit_mm", rules_.bridging_tolerance_mm}, {"worst_mm", worst_mm}};
         put_at_station(check, first.value_or(worst));
@@ -297,7 +298,7 @@ private:
         const CollisionReport report =
             check_collisions(task_.machine, task_.envelope, task_.obstacles, laid.samples,
                              laid.joints, rules_.collision);
-        Check check{"collision", true, {}, {}};
+        Check check(check_kind::kCollision);
         check.numbers = {{"fibre_hits", static_cast<double>(report.fibre_hits.size())},
                          {"head_hits", static_cast<double>(report.head_hits.size())},
                          {"min_clearance_mm", report.min_clearance_mm}};
@@ -330,7 +331,7 @@ private:
     void check_free_length() {
         const LaidPath& laid = found_.laid;
         const auto [least_mm, most_mm] = free_length_limits_mm();
-        Check check{"free_length", true, {}, {}};
+        Check check(check_kind::kFreeLength);
         found_.shortest_free_mm = std::numeric_limits<double>::infinity();
         std::size_t shortest = 0;
         std::optional<std::size_t> first;
@@ -388,7 +389,7 @@ private:
 
     void check_limits() {
         const BlockList& list = task_.program;
-        Check check{"limits", true, {}, {}};
+        Check check(check_kind::kLimits);
         JointPath joints = joint_path(list);
         std::vector<double> step_s;
         for (const Block& block : list.blocks) {
@@ -441,7 +442,7 @@ private:
     void check_payout() {
         const LaidPath& laid = found_.laid;
         const FibreLimits& fibre = task_.machine.fibre;
-        Check check{"payout", true, {}, {}};
+        Check check(check_kind::kPayout);
         double fastest = 0.0;
         double back = 0.0;
         double paid_most = -std::numeric_limits<double>::infinity();

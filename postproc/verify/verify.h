@@ -3,39 +3,20 @@
 
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "machines/machine.h"
 #include "mesh/ray_query.h"
 #include "postproc/collision/collision.h"
 #include "postproc/motion/block.h"
+#include "postproc/verify/check.h"
 #include "postproc/verify/deviation.h"
 #include "postproc/verify/laydown.h"
 #include "winding/plan/friction.h"
 
 namespace meshwind {
-
-/// Where a check found what it tells: what fails, or else its worst.
-struct CheckPlace {
-    Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  ///< on the mandrel, its frame
-    std::optional<std::size_t> block{};                     ///< of the program
-    std::size_t fibre = 0;                                  ///< which program, from 0
-    std::size_t layer = 0;                                  ///< from 0
-};
-
-/// One check of a report. The words are empty where it passed.
-struct Check {
-    std::string name;  ///< key in report.json
-    bool ok = true;
-    std::string words;  ///< where it failed: one line with the place, the number and the limit
-    std::map<std::string, double> numbers;  ///< further keys of the check, e.g. "worst", "limit"
-    std::optional<CheckPlace> place{};
-};
 
 /// What the laid fibre and the motion must keep.
 struct VerifyRules {

@@ -8,6 +8,7 @@
 
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "postproc/verify/check_kinds.h"
 
 namespace meshwind {
 namespace {
@@ -38,11 +39,10 @@ public:
                 "the program does not stop (M0) between its last rapid move and its first feed "
                 "move; the fibre could not be tied on";
         }
-        Check check{"approach", words_.empty(), words_, {}};
-        check.numbers = {{"rapid_moves", static_cast<double>(head_.approach.size())},
-                         {"swept", static_cast<double>(swept_)},
-                         {"stops", head_.stop_line > 0 ? 1.0 : 0.0}};
-        return check;
+        return Check(check_kind::kApproach, words_.empty(), words_,
+                     {{"rapid_moves", static_cast<double>(head_.approach.size())},
+                      {"swept", static_cast<double>(swept_)},
+                      {"stops", head_.stop_line > 0 ? 1.0 : 0.0}});
     }
 
 private:
@@ -148,7 +148,7 @@ Check approach_check(const VerifyTask& task) {
 
 Check tie_on_check(const VerifyTask& task, const Eigen::Vector3d& landing_mm) {
     const Eigen::Vector3d& tie_on_mm = *task.program.tie_on_mm;
-    Check check{"tie_on", true, {}, {}};
+    Check check(check_kind::kTieOn);
     const auto look = [&](const char* key, double off_mm, const char* what) {
         check.numbers[key] = off_mm;
         if (check.ok && off_mm > kTieOnOff_mm) {
@@ -170,7 +170,7 @@ Check tie_on_check(const VerifyTask& task, const Eigen::Vector3d& landing_mm) {
 }
 
 PathModeFinding path_mode_check(const VerifyTask& task) {
-    PathModeFinding found{{"path_mode", true, {}, {}}, 0};
+    PathModeFinding found{Check(check_kind::kPathMode), 0};
     const std::string& wanted = task.rules.path_mode.words;
     const auto say = [](const std::string& words) {
         return words.empty() ? std::string("without words on corners") : "in " + words;

@@ -1,82 +1,6 @@
 /** The checks of the report: values beside limits, words where one failed, a way to the place. */
 import { escapeHtml, keyInWords, percent, sentence, valueInWords } from './format';
-import type { Check, Place, Report } from './types';
-
-interface Measure {
-    key: string;
-    limit?: string | number; // key of the check, or a number that is always the limit
-    least?: boolean; // the value must not be below
-    label?: string;
-}
-
-interface Kind {
-    title: string;
-    measures: Measure[];
-}
-
-/** What is known of the checks by name; others are shown with all their numbers. */
-const kKinds: Record<string, Kind> = {
-    slip: { title: 'Slip', measures: [{ key: 'worst', limit: 'limit', label: '' }] },
-    bridging: { title: 'Bridging', measures: [{ key: 'worst_mm', limit: 'limit_mm', label: 'gap' }] },
-    coverage: {
-        title: 'Coverage',
-        measures: [{ key: 'fraction', limit: 'limit', least: true, label: 'of the wall' }],
-    },
-    collision: {
-        title: 'Collision',
-        measures: [
-            { key: 'min_clearance_mm', label: 'clearance' },
-            { key: 'head_hits', limit: 0, label: 'Head touches' },
-            { key: 'fibre_hits', limit: 0, label: 'Fibre touches' },
-        ],
-    },
-    continuity: {
-        title: 'Continuity',
-        measures: [
-            { key: 'fibres', limit: 'limit', label: 'fibres' },
-            { key: 'worst_joint_mm', label: 'Widest joint' },
-        ],
-    },
-    eye: { title: 'Eye', measures: [{ key: 'blocked_points', limit: 0, label: 'blocked points' }] },
-    free_length: {
-        title: 'Free length',
-        measures: [
-            { key: 'min_mm', limit: 'limit_min_mm', least: true, label: 'shortest' },
-            { key: 'max_mm', limit: 'limit_max_mm', label: 'Longest' },
-        ],
-    },
-    laydown: {
-        title: 'Laydown',
-        measures: [
-            { key: 'max_deviation_mm', limit: 'limit_mm', label: 'off the plan' },
-            { key: 'max_angle_deg', limit: 'limit_deg', label: 'Off its direction' },
-            { key: 'end_gap_mm', label: 'Gap at the end' },
-        ],
-    },
-    limits: {
-        title: 'Axis limits',
-        measures: [
-            { key: 'velocity_ratio', limit: 1, label: 'speed' },
-            { key: 'acceleration_ratio', limit: 1, label: 'Acceleration' },
-            { key: 'corner_mm', limit: 'limit_corner_mm', label: 'Corner cut' },
-        ],
-    },
-    payout: {
-        title: 'Pay-out',
-        measures: [
-            { key: 'worst_mm', limit: 'limit_mm', label: 'taken back' },
-            { key: 'max_speed_mm_s', limit: 'limit_mm_s', label: 'Fibre speed' },
-        ],
-    },
-    rounding: { title: 'Rounding', measures: [{ key: 'blocks', label: 'blocks' }] },
-    closure: {
-        title: 'Closure',
-        measures: [
-            { key: 'closure_deg', limit: 'limit_closure_deg', label: 'off by' },
-            { key: 'drift_deg', label: 'Drift in the program' },
-        ],
-    },
-};
+import type { Check, CheckKind, Measure, Place, Report } from './types';
 
 const kTarget =
     '<svg viewBox="0 0 16 16" width="14" height="14" fill="none" stroke="currentColor" stroke-width="1.4" aria-hidden="true">' +
@@ -103,8 +27,9 @@ export function namedChecks(report: Report): NamedCheck[] {
     });
 }
 
-function measuresOf({ base, check }: NamedCheck): Measure[] {
-    const known = kKinds[base]?.measures.filter((m) => typeof numberOf(check, m.key) === 'number');
+/** Those of its kind, or all its numbers where it has none of them or its kind is not known. */
+function measuresOf(check: Check, kind: CheckKind | undefined): Measure[] {
+    const known = kind?.measures.filter((m) => typeof numberOf(check, m.key) === 'number');
     if (known?.length) return known;
     const keys = Object.keys(check).filter((k) => typeof numberOf(check, k) === 'number');
     return keys
@@ -154,6 +79,7 @@ export class Checks {
     constructor(
         private readonly host: HTMLElement,
         report: Report,
+        private readonly kinds: Record<string, CheckKind>,
         private readonly layers: number,
     ) {
         this.all = namedChecks(report);
@@ -190,7 +116,8 @@ export class Checks {
 
     private checkHtml(item: NamedCheck): string {
         const { check } = item;
-        const title = kKinds[item.base]?.title ?? sentence(item.base.replace(/[_-]/g, ' '));
+        const kind = this.kinds[item.base] as CheckKind | undefined;
+        const title = kind?.title ?? sentence(item.base.replace(/[_-]/g, ' '));
         const suffix = [
             item.layer !== null && !check.ok ? `layer ${item.layer}` : '',
             item.fibre !== null ? `fibre ${item.fibre}` : '',
@@ -203,7 +130,7 @@ export class Checks {
             ? '<i class="mark ok" role="img" aria-label="passed">\u2713</i>'
             : '<i class="mark bad" role="img" aria-label="failed">\u2715</i>';
         const head = `${mark}<b>${name}</b>`;
-        const measures = measuresOf(item);
+        const measures = measuresOf(check, kind);
         const rows = measures.map((m, i) => measureHtml(check, m, i === 0 ? head : '', i === 0 ? place : ''));
         if (!measures.length)
             rows.push(

@@ -59,13 +59,13 @@ function fillHead(page: Page, duration: number, checks: Checks): void {
 
 async function open(): Promise<void> {
     const page = await readPage();
-    const { report, machine, tow } = page.header;
+    const { report, check_kinds: kinds, machine, tow } = page.header;
     const kinematics = new Kinematics(machine);
     const timeline = new Timeline(page, kinematics.axes);
     const layered = page.layers.length > 1;
 
     const tabs = new Tabs(element('tabs'), element('panels'));
-    const checks = new Checks(tabs.add('checks', 'Checks'), report, page.layers.length);
+    const checks = new Checks(tabs.add('checks', 'Checks'), report, kinds, page.layers.length);
     const rows = courseRows(timeline);
     const courses = new Courses(tabs.add('courses', 'Courses'), rows, tow.friction, layered);
     const layersPanel = report.layers?.length ? tabs.add('layers', 'Layers') : null;

@@ -16,6 +16,19 @@ export interface Check {
     [number: string]: unknown;
 }
 
+export interface Measure {
+    key: string; // of the check
+    label?: string;
+    limit?: string | number; // key of the check, or a number that is always the limit
+    least?: boolean; // the value must not be below
+}
+
+/** What the checks of one name have in common. */
+export interface CheckKind {
+    title: string;
+    measures: Measure[];
+}
+
 export interface Uncovered {
     area_mm2: number;
     reason: string;
@@ -144,6 +157,7 @@ export interface ArrayPlace {
 export interface Header {
     format: string;
     report: Report;
+    check_kinds: Record<string, CheckKind>; // by name without layer and fibre
     machine: Machine;
     tow: { width_mm: number; thickness_mm: number; friction: number };
     extension: { points: string; faces: string } | null;
