@@ -413,8 +413,9 @@ std::string main_job_words(const MachineClass& what) {
 
 // A machine file names its schema; everything else is read as a job.
 int run_validate(const ValidateArguments& arguments, const Common& common) {
-    if (arguments.schema) {
-        std::cout << job_schema_text();
+    if (!arguments.schema.empty()) {
+        std::cout << (arguments.schema == kMachineSchema ? machine_schema_text()
+                                                         : job_schema_text());
         return kDone;
     }
     const std::string& name = arguments.file;

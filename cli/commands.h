@@ -55,9 +55,13 @@ struct VerifyArguments {
     JobArguments job;
 };
 
+// The schemas that `validate --schema` prints.
+inline constexpr const char* kJobSchema = "job";
+inline constexpr const char* kMachineSchema = "machine";
+
 struct ValidateArguments {
     std::string file;
-    bool schema = false;  ///< print the schema of jobs instead
+    std::string schema;  ///< which one to print instead; empty: none
 };
 
 struct InspectArguments {

@@ -104,6 +104,7 @@ constexpr const char* kValidateHelp =
     "\n"
     "Examples:\n"
     "  meshwind validate six_axis.json\n"
+    "  meshwind validate --schema machine > machine.schema.json\n"
     "  meshwind validate my_job.json && meshwind part.stl --job my_job.json";
 
 constexpr const char* kDesignHelp =

@@ -474,8 +474,12 @@ int run(const std::vector<std::string>& arguments) {
     ValidateArguments validate_options;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
     validate->add_option("file", validate_options.file, "JSON file")->type_name("FILE");
-    validate->add_flag("--schema", validate_options.schema,
-                       "print the JSON Schema of job files instead");
+    validate
+        ->add_option("--schema", validate_options.schema,
+                     "print the JSON Schema of job or machine files instead")
+        ->expected(0, 1)
+        ->default_str(kJobSchema)
+        ->check(one_of({kJobSchema, kMachineSchema}));
     CarryArguments carry_text;
     CLI::App* carry = app.add_subcommand(
         "carry", "a program for a robot that carries a frame through a fixed ring head");

@@ -131,6 +131,7 @@ declare -gA _meshwind_takes=(
     [trace --frame]='mandrel file'
     [trace -o]='table'
     [trace --out]='table'
+    [validate --schema]='job machine'
     [carry --bend-turn]='-'
     [carry --machine]='machine'
     [carry --tool]='-'

@@ -5,8 +5,8 @@
     docs/make_reference.py --check [--program ...]                         only compares: exit 1 and names of stale files
 
 docs/reference/commands.md, docs/meshwind.1 and cli/meshwind.bash come from `meshwind --help` and the --help of each
-command, data/schema/job.schema.json and docs/reference/job.md from `meshwind validate --schema`, docs/reference/machine.md from
-data/schema. Nothing in these files is written by hand.
+command, the schemas in data/schema and docs/reference/job.md and machine.md from `meshwind validate --schema`. Nothing in these
+files is written by hand.
 """
 import argparse
 import json
@@ -26,17 +26,19 @@ from reference_schema import schema_page  # noqa: E402
 def made_files(program):
     """Texts by file name."""
     commands, version = read_commands(program)
-    job_schema = subprocess.run([str(program), "validate", "--schema"], check=True, capture_output=True, text=True).stdout
+    job_schema, machine_schema = (
+        subprocess.run([str(program), "validate", "--schema", kind], check=True, capture_output=True, text=True).stdout
+        for kind in ("job", "machine"))
     return {
         "data/schema/job.schema.json": job_schema,
+        "data/schema/machine.schema.json": machine_schema,
         "docs/reference/commands.md": commands_page(commands),
         "docs/reference/job.md": schema_page(
             json.loads(job_schema), "job.schema.json", "Job file",
             "`meshwind validate JOB.json` checks a file. What the keys do is told in "
             "[files](../files.md#job), [winding](../winding.md) and [post](../post.md)."),
         "docs/reference/machine.md": schema_page(
-            json.loads((ROOT / "data/schema/machine.schema.json").read_text(encoding="utf-8")),
-            "machine.schema.json", "Machine file",
+            json.loads(machine_schema), "machine.schema.json", "Machine file",
             "`meshwind validate MACHINE.json` checks a file. `machines/six_axis.json` is an example with notes; "
             "[a machine of your own](../how-to/own_machine.md) goes through one step by step."),
         "docs/meshwind.1": manual_page(commands, version),

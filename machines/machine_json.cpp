@@ -4,8 +4,10 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <utility>
 
+#include "core/text/key_table.h"
 #include "core/text/strict_json.h"
 #include "core/units.h"
 
@@ -23,24 +25,50 @@ constexpr double kMmPerM = 1000.0;
 constexpr double kSecondsPerMinute = 60.0;
 // Wider than this a machine hall, not a machine: a slip of units.
 constexpr double kLargestNumber = 1e6;
+constexpr std::int64_t kLargestProgramNumber = 99'999'999;  // eight digits, the longest O word
 
 constexpr JsonRange kPositive{.min = 0.0, .max = kLargestNumber, .above_min = true};
 constexpr JsonRange kLength{.min = 0.0, .max = kLargestNumber};
+constexpr JsonRange kPlace{.min = -kLargestNumber, .max = kLargestNumber};
 
-Eigen::Vector3d unit_vector(const JsonValue& value) {
-    const Eigen::Vector3d vector = value.vector3();
-    if (!(std::abs(vector.norm() - 1.0) < kUnitTolerance)) {
-        value.fail("machine.direction", "is not a unit vector; give it length 1");
-    }
-    return vector.normalized();
+constexpr std::string_view kForm = "meshwind-machine-1";
+constexpr std::string_view kBaseWord = "base";
+constexpr const char* kLetterPattern = "^[A-Z]$";
+constexpr const char* kLetterOrBasePattern = "^([A-Z]|base)$";
+
+// Rows that several tables have.
+
+template <typename Owner>
+Key<Owner> unit_vector(std::string_view name, Eigen::Vector3d Owner::*field,
+                       std::string_view meaning) {
+    return {name, meaning, vector_schema(), [field](const JsonValue& value, Owner& owner) {
+                const Eigen::Vector3d vector = value.vector3();
+                if (!(std::abs(vector.norm() - 1.0) < kUnitTolerance)) {
+                    value.fail("machine.direction", "is not a unit vector; give it length 1");
+                }
+                owner.*field = vector.normalized();
+            }};
 }
 
-Eigen::Vector3d position(const JsonValue& value) {
-    const Eigen::Vector3d vector = value.vector3();
-    if (!(vector.cwiseAbs().maxCoeff() <= kLargestNumber)) {
-        value.fail("json.out_of_range", "lies beyond 1e6 mm; write mm");
-    }
-    return vector;
+template <typename Owner>
+Key<Owner> position(std::string_view name, Eigen::Vector3d Owner::*field,
+                    std::string_view meaning) {
+    return {name, meaning, vector_schema(kPlace), [field](const JsonValue& value, Owner& owner) {
+                const Eigen::Vector3d vector = value.vector3();
+                if (!(vector.cwiseAbs().maxCoeff() <= kLargestNumber)) {
+                    value.fail("json.out_of_range", "lies beyond 1e6 mm; write mm");
+                }
+                owner.*field = vector;
+            }};
+}
+
+// Read by nobody but people.
+template <typename Owner>
+Key<Owner> remark(std::string_view name) {
+    return or_null<Owner>({name,
+                           "for the reader of the file",
+                           {{"type", "string"}},
+                           [](const JsonValue& value, Owner&) { (void)value.string(); }});
 }
 
 char axis_letter(const JsonValue& value) {
@@ -51,6 +79,25 @@ char axis_letter(const JsonValue& value) {
     return text[0];
 }
 
+SchemaJson pattern_schema(const char* pattern) {
+    return {{"type", "string"}, {"pattern", pattern}};
+}
+
+SchemaJson reference_to(const char* definition) {
+    return {{"$ref", std::string("#/$defs/") + definition}};
+}
+
+// Axes.
+
+// In mm or degrees in the file, by the type of the axis.
+Key<Axis> axis_number(std::string_view name, double Axis::*field, const JsonRange& range,
+                      std::string_view meaning) {
+    return {name, meaning, number_schema(range), [=](const JsonValue& value, Axis& axis) {
+                const double unit = axis.type == AxisType::Rotary ? rad_from_deg(1.0) : 1.0;
+                axis.*field = unit * value.number(range);
+            }};
+}
+
 std::int64_t resolution_nano(const JsonValue& value) {
     const double nano = value.number(kPositive) * kNanoPerUnit;
     if (std::abs(nano - std::round(nano)) > kNanoSlack || nano < 0.5) {
@@ -59,228 +106,353 @@ std::int64_t resolution_nano(const JsonValue& value) {
     return std::llround(nano);
 }
 
-double optional_number(const JsonObject& object, std::string_view key, const JsonRange& range,
-                       double otherwise) {
-    const std::optional<JsonValue> value = object.optional(key);
-    return value ? value->number(range) : otherwise;
+const KeyTable<Axis>& axis_keys() {
+    static const KeyTable<Axis> kTable = {
+        {
+            required<Axis>(
+                {"letter", "name of the axis in the program", pattern_schema(kLetterPattern),
+                 [](const JsonValue& value, Axis& axis) { axis.letter = axis_letter(value); }}),
+            required(word("type", &Axis::type, {"linear", "rotary"},
+                          "linear counts mm, rotary degrees")),
+            required(unit_vector("direction", &Axis::direction,
+                                 "unit vector: which way it moves, or what it turns about "
+                                 "right-handed, when its number grows")),
+            or_null(position("point", &Axis::point_mm,
+                             "a point on the line that a rotary axis turns about, mm")),
+            or_null(axis_number("min", &Axis::min, {},
+                                "lower end of the travel, mm or deg; null: none")),
+            or_null(axis_number("max", &Axis::max, {},
+                                "upper end of the travel, above min; null: none")),
+            required(axis_number("velocity", &Axis::velocity, kPositive, "mm/s or deg/s")),
+            required(
+                axis_number("acceleration", &Axis::acceleration, kPositive, "mm/s2 or deg/s2")),
+            or_null(axis_number("jerk", &Axis::jerk, {.min = 0.0, .above_min = true},
+                                "mm/s3 or deg/s3; null: no limit")),
+            required<Axis>({"resolution", "smallest step, mm or deg; a multiple of 1e-9",
+                            number_schema(kPositive),
+                            [](const JsonValue& value, Axis& axis) {
+                                axis.resolution_nano = resolution_nano(value);
+                            }}),
+            remark<Axis>("note"),
+        },
+        [](const JsonObject& object, Axis& axis) {
+            if (!(axis.min < axis.max)) {
+                object.required("min").fail(
+                    "machine.limits",
+                    "is not below max; exchange them, or write null for no limit");
+            }
+        }};
+    return kTable;
 }
 
-Axis read_axis(const JsonValue& value) {
-    const JsonObject object =
-        value.object({"letter", "type", "direction", "point", "min", "max", "velocity",
-                      "acceleration", "jerk", "resolution", "note"});
-    Axis axis;
-    axis.letter = axis_letter(object.required("letter"));
-    axis.type = object.required("type").one_of({"linear", "rotary"}) == 0 ? AxisType::Linear
-                                                                          : AxisType::Rotary;
-    axis.direction = unit_vector(object.required("direction"));
-    if (const auto point = object.optional("point")) {
-        axis.point_mm = position(*point);
+Key<Machine> chain_key(const char* name, std::vector<Axis> Machine::*field, bool may_be_empty,
+                       std::string_view meaning) {
+    SchemaJson schema = {{"type", "array"}, {"items", reference_to("axis")}};
+    if (!may_be_empty) {
+        schema["minItems"] = 1;
     }
-    const double unit = axis.type == AxisType::Rotary ? rad_from_deg(1.0) : 1.0;
-    axis.min = unit * optional_number(object, "min", {}, -kInfinity);
-    axis.max = unit * optional_number(object, "max", {}, kInfinity);
-    if (!(axis.min < axis.max)) {
-        object.required("min").fail("machine.limits",
-                                    "is not below max; exchange them, or write null for no limit");
-    }
-    axis.velocity = unit * object.required("velocity").number(kPositive);
-    axis.acceleration = unit * object.required("acceleration").number(kPositive);
-    axis.jerk = unit * optional_number(object, "jerk", {.min = 0.0, .above_min = true}, kInfinity);
-    axis.resolution_nano = resolution_nano(object.required("resolution"));
-    if (const auto note = object.optional("note")) {
-        (void)note->string();
-    }
-    return axis;
+    return {name, meaning, schema, [=](const JsonValue& value, Machine& machine) {
+                for (const JsonValue& entry : value.array()) {
+                    Axis& axis = (machine.*field).emplace_back();
+                    axis.min = -kInfinity;
+                    axis.max = kInfinity;
+                    axis.jerk = kInfinity;
+                    read_keys(axis_keys(), entry, axis);
+                }
+                if ((machine.*field).empty() && !may_be_empty) {
+                    value.fail("machine.missing_axis", "has no axis; list at least one");
+                }
+            }};
 }
 
-bool has_letter(const std::vector<Axis>& axes, char letter) {
-    return std::any_of(axes.begin(), axes.end(),
-                       [letter](const Axis& axis) { return axis.letter == letter; });
+// Parts of the head, and bodies beside it.
+
+Key<EnvelopePart> link_key(const EnvelopePart&) {
+    return {"link", "axis of the eye chain that carries it", pattern_schema(kLetterPattern),
+            [](const JsonValue& value, EnvelopePart& part) { part.link = axis_letter(value); }};
 }
 
-std::vector<Axis> read_chain(const JsonValue& value, const std::vector<Axis>& before) {
-    std::vector<Axis> chain;
-    for (const JsonValue& entry : value.array()) {
-        Axis axis = read_axis(entry);
-        if (has_letter(before, axis.letter) || has_letter(chain, axis.letter)) {
-            entry.fail("machine.duplicate_letter",
-                       std::string("letter ") + axis.letter +
-                           " is taken by another axis; choose a free one");
-        }
-        chain.push_back(std::move(axis));
-    }
-    return chain;
+Key<MachineBody> link_key(const MachineBody&) {
+    return {"link", "axis of the mandrel chain that carries it, or base",
+            pattern_schema(kLetterOrBasePattern), [](const JsonValue& value, MachineBody& body) {
+                if (value.string() != kBaseWord) {
+                    body.link = axis_letter(value);
+                }
+            }};
 }
 
-// The capsule or mesh of an envelope part or a body.
-std::variant<Capsule, EnvelopeMesh> read_shape(const JsonValue& value,
-                                               const std::filesystem::path& folder) {
-    const JsonObject object =
-        value.object({"type", "link", "from", "to", "radius", "file", "note"});
-    if (object.required("type").one_of({"capsule", "mesh"}) == 0) {
-        (void)value.object({"type", "link", "from", "to", "radius", "note"});
-        return Capsule{.from_mm = position(object.required("from")),
-                       .to_mm = position(object.required("to")),
-                       .radius_mm = object.required("radius").number(kPositive)};
-    }
-    (void)value.object({"type", "link", "file", "note"});
-    const std::filesystem::path name = object.required("file").string();
-    return EnvelopeMesh{.file = (name.is_absolute() ? name : folder / name).string()};
+// A row of a part that is of its shape.
+template <typename Part, typename Shape>
+Key<Part> of_shape(Key<Shape> key) {
+    return required<Part>({key.name, key.meaning, key.schema,
+                           [read = std::move(key.read)](const JsonValue& value, Part& part) {
+                               read(value, std::get<Shape>(part.shape));
+                           }});
 }
 
-MachineBody read_body(const JsonValue& value, const std::vector<Axis>& mandrel_chain,
-                      const std::filesystem::path& folder) {
-    MachineBody body{{}, read_shape(value, folder)};
-    const JsonValue link =
-        value.object({"type", "link", "from", "to", "radius", "file", "note"}).required("link");
-    if (link.string() != "base") {
-        body.link = axis_letter(link);
-        if (!has_letter(mandrel_chain, *body.link)) {
-            link.fail("machine.link", std::string("axis ") + *body.link +
-                                          " is not in the mandrel chain; name the axis that "
-                                          "carries the body, or \"base\"");
-        }
-    }
-    return body;
+// By the word under "type" a part is a shape from the start.
+template <typename Part, typename Shape>
+Key<Part> type_key(std::string_view name) {
+    return required<Part>({"type", "", {{"const", name}}, [](const JsonValue&, Part& part) {
+                               part.shape = Shape{};
+                           }});
 }
 
-MandrelMount read_mount(const JsonValue& value) {
-    const JsonObject object = value.object({"origin", "x", "z", "note"});
-    MandrelMount mount;
-    if (const auto origin = object.optional("origin")) {
-        mount.origin_mm = position(*origin);
-    }
-    if (const auto x = object.optional("x")) {
-        mount.x = unit_vector(*x);
-    }
-    if (const auto z = object.optional("z")) {
-        mount.z = unit_vector(*z);
-    }
-    if (std::abs(mount.x.dot(mount.z)) > kUnitTolerance) {
-        value.fail("machine.mount",
-                   "x and z are not at right angles; give both, or leave both out");
-    }
-    // Six digits are enough in the file; inside the axes are at right angles to the last bit.
-    mount.x = (mount.x - mount.x.dot(mount.z) * mount.z).normalized();
-    return mount;
+template <typename Part>
+const KeyTable<Part>& capsule_keys() {
+    static const KeyTable<Part> kTable = {{
+        type_key<Part, Capsule>("capsule"),
+        required(link_key(Part{})),
+        of_shape<Part>(position("from", &Capsule::from_mm, "one end of the capsule's axis, mm")),
+        of_shape<Part>(position("to", &Capsule::to_mm, "its other end, mm")),
+        of_shape<Part>(required(number("radius", &Capsule::radius_mm, kPositive, "mm"))),
+        remark<Part>("note"),
+    }};
+    return kTable;
 }
 
-EnvelopePart read_part(const JsonValue& value, const std::vector<Axis>& eye_chain,
-                       const std::filesystem::path& folder) {
-    const JsonObject object =
-        value.object({"type", "link", "from", "to", "radius", "file", "note"});
-    EnvelopePart part;
-    const JsonValue link = object.required("link");
-    part.link = axis_letter(link);
-    if (!has_letter(eye_chain, part.link)) {
-        link.fail("machine.link", std::string("axis ") + part.link +
-                                      " is not in the eye chain; name the axis that carries it");
-    }
-    part.shape = read_shape(value, folder);
-    return part;
+// What "file" says counts from the machine file: resolve_meshes.
+template <typename Part>
+const KeyTable<Part>& mesh_keys() {
+    static const KeyTable<Part> kTable = {{
+        type_key<Part, EnvelopeMesh>("mesh"),
+        required(link_key(Part{})),
+        of_shape<Part>(any_text("file", &EnvelopeMesh::file,
+                                "mesh in mm; the name counts from the machine file")),
+        remark<Part>("note"),
+    }};
+    return kTable;
 }
 
-EyeHead read_eye(const JsonValue& value, const std::vector<Axis>& eye_chain,
-                 const std::filesystem::path& folder) {
-    const JsonObject object = value.object({"position", "roller", "exit", "envelope"});
-    EyeHead eye;
-    eye.position_mm = position(object.required("position"));
-    eye.roller = unit_vector(object.required("roller"));
-    eye.exit = unit_vector(object.required("exit"));
-    if (std::abs(eye.roller.dot(eye.exit)) > kUnitTolerance) {
-        value.fail("machine.eye",
-                   "roller and exit are not at right angles; the fibre leaves "
-                   "across the roller");
-    }
-    if (const auto envelope = object.optional("envelope")) {
-        for (const JsonValue& part : envelope->array()) {
-            eye.envelope.push_back(read_part(part, eye_chain, folder));
+template <typename Part>
+JsonObject part_object(const JsonValue& value) {
+    std::vector<std::string_view> names = names_of(capsule_keys<Part>());
+    for (const std::string_view name : names_of(mesh_keys<Part>())) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            names.push_back(name);
         }
     }
-    return eye;
+    return value.object(names);
 }
 
-FibreLimits read_fibre(const JsonValue& value) {
-    const JsonObject object =
-        value.object({"min_free_length", "max_free_length", "take_up", "max_speed"});
-    FibreLimits fibre;
-    const JsonValue least = object.required("min_free_length");
-    fibre.min_free_length_mm = least.number(kLength);
-    fibre.max_free_length_mm = object.required("max_free_length").number(kPositive);
-    if (!(fibre.min_free_length_mm < fibre.max_free_length_mm)) {
-        least.fail("machine.limits", "is not below max_free_length; exchange them");
-    }
-    fibre.take_up_mm = object.required("take_up").number(kLength);
-    fibre.max_speed_mm_s =
-        object.required("max_speed").number(kPositive) * kMmPerM / kSecondsPerMinute;
-    return fibre;
+template <typename Owner, typename Part>
+Key<Owner> parts_key(std::string_view name, std::vector<Part> Owner::*field, const char* capsule,
+                     const char* mesh, std::string_view meaning) {
+    const SchemaJson items = {
+        {"oneOf", SchemaJson::array({reference_to(capsule), reference_to(mesh)})}};
+    return or_null<Owner>({name,
+                           meaning,
+                           {{"type", "array"}, {"items", items}},
+                           [field](const JsonValue& value, Owner& owner) {
+                               for (const JsonValue& entry : value.array()) {
+                                   const bool is_capsule =
+                                       part_object<Part>(entry).required("type").one_of(
+                                           {"capsule", "mesh"}) == 0;
+                                   read_keys(is_capsule ? capsule_keys<Part>() : mesh_keys<Part>(),
+                                             entry, (owner.*field).emplace_back());
+                               }
+                           }});
 }
 
-std::vector<std::string> read_lines(const JsonObject& object, std::string_view key) {
-    std::vector<std::string> lines;
-    if (const auto value = object.optional(key)) {
-        for (const JsonValue& line : value->array()) {
-            lines.push_back(line.string());
-            if (lines.back().find_first_of("\r\n") != std::string::npos) {
-                line.fail("machine.comment", "holds a line break; write one entry per line");
+// The other objects.
+
+const KeyTable<MandrelMount>& mount_keys() {
+    static const KeyTable<MandrelMount> kTable = {
+        {
+            or_null(position("origin", &MandrelMount::origin_mm, "its origin, mm")),
+            or_null(unit_vector("x", &MandrelMount::x, "unit vector of its X axis")),
+            or_null(unit_vector("z", &MandrelMount::z,
+                                "unit vector of its Z axis, the spindle; at a right angle to x")),
+            remark<MandrelMount>("note"),
+        },
+        [](const JsonObject& object, MandrelMount& mount) {
+            if (std::abs(mount.x.dot(mount.z)) > kUnitTolerance) {
+                object.value().fail(
+                    "machine.mount",
+                    "x and z are not at right angles; give both, or leave both out");
+            }
+            // Six digits are enough in the file; inside the axes are at right angles to the last
+            // bit.
+            mount.x = (mount.x - mount.x.dot(mount.z) * mount.z).normalized();
+        }};
+    return kTable;
+}
+
+const KeyTable<EyeHead>& eye_head_keys() {
+    static const KeyTable<EyeHead> kTable = {
+        {
+            required(position("position", &EyeHead::position_mm, "mm")),
+            required(unit_vector("roller", &EyeHead::roller, "unit vector along the roller")),
+            required(unit_vector("exit", &EyeHead::exit,
+                                 "unit vector of the way out, normal to the roller")),
+            parts_key("envelope", &EyeHead::envelope, "capsule", "mesh",
+                      "parts of the head that must not touch the mandrel, each on an axis of the "
+                      "eye chain"),
+        },
+        [](const JsonObject& object, EyeHead& eye) {
+            if (std::abs(eye.roller.dot(eye.exit)) > kUnitTolerance) {
+                object.value().fail("machine.eye",
+                                    "roller and exit are not at right angles; the fibre leaves "
+                                    "across the roller");
+            }
+        }};
+    return kTable;
+}
+
+const KeyTable<FibreLimits>& fibre_keys() {
+    static const KeyTable<FibreLimits> kTable = {
+        {
+            required(number("min_free_length", &FibreLimits::min_free_length_mm, kLength,
+                            "shortest fibre between mandrel and eye, mm")),
+            required(number("max_free_length", &FibreLimits::max_free_length_mm, kPositive,
+                            "longest, mm")),
+            required(number("take_up", &FibreLimits::take_up_mm, kLength,
+                            "length the tensioner can take back, mm")),
+            required<FibreLimits>(
+                {"max_speed", "highest speed of the fibre, m/min", number_schema(kPositive),
+                 [](const JsonValue& value, FibreLimits& fibre) {
+                     fibre.max_speed_mm_s = value.number(kPositive) * kMmPerM / kSecondsPerMinute;
+                 }}),
+        },
+        [](const JsonObject& object, FibreLimits& fibre) {
+            if (!(fibre.min_free_length_mm < fibre.max_free_length_mm)) {
+                object.required("min_free_length")
+                    .fail("machine.limits", "is not below max_free_length; exchange them");
+            }
+        }};
+    return kTable;
+}
+
+Key<Controller> lines_key(std::string_view name, std::vector<std::string> Controller::*field,
+                          std::string_view meaning) {
+    return or_null<Controller>(
+        {name,
+         meaning,
+         {{"type", "array"}, {"items", pattern_schema("^[^\\r\\n]*$")}},
+         [field](const JsonValue& value, Controller& controller) {
+             for (const JsonValue& line : value.array()) {
+                 const std::string& text = (controller.*field).emplace_back(line.string());
+                 if (text.find_first_of("\r\n") != std::string::npos) {
+                     line.fail("machine.comment", "holds a line break; write one entry per line");
+                 }
+             }
+         }});
+}
+
+const KeyTable<Controller>& controller_keys() {
+    static const KeyTable<Controller> kTable = {{
+        required(any_text("dialect", &Controller::dialect,
+                          "language of the program: linuxcnc, fanuc, siemens, grbl, marlin or "
+                          "pulses; krl for carried frames")),
+        or_null(word("feed", &Controller::feed, {"inverse-time", "per-minute"},
+                     "what F means; inverse-time without")),
+        lines_key("header", &Controller::header, "lines of one's own at the head of the program"),
+        lines_key("footer", &Controller::footer, "lines of one's own at its end"),
+        or_null(count("program_number", &Controller::program_number, kLargestProgramNumber,
+                      "O number of fanuc programs; 1 without")),
+    }};
+    return kTable;
+}
+
+// What the keys of the whole file ask of each other.
+
+void check_letters(const JsonObject& object, const Machine& machine) {
+    std::set<char> taken;
+    for (const auto& [name, chain] : {std::pair("mandrel_chain", &machine.mandrel_chain),
+                                      std::pair("eye_chain", &machine.eye_chain)}) {
+        const std::vector<JsonValue> entries = object.required(name).array();
+        for (std::size_t i = 0; i < chain->size(); ++i) {
+            const char letter = (*chain)[i].letter;
+            if (!taken.insert(letter).second) {
+                entries[i].fail("machine.duplicate_letter",
+                                std::string("letter ") + letter +
+                                    " is taken by another axis; choose a free one");
             }
         }
     }
-    return lines;
 }
 
-Controller read_controller(const JsonValue& value) {
-    const JsonObject object =
-        value.object({"dialect", "feed", "header", "footer", "program_number"});
-    Controller controller;
-    controller.dialect = object.required("dialect").string();
-    if (const auto feed = object.optional("feed")) {
-        controller.feed = feed->one_of({"inverse-time", "per-minute"}) == 0 ? FeedMode::InverseTime
-                                                                            : FeedMode::PerMinute;
+template <typename Part>
+void check_links(const std::optional<JsonValue>& list, const std::vector<Part>& parts,
+                 const std::vector<Axis>& chain, const std::string& words) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::optional<char> link = parts[i].link;
+        if (link && std::none_of(chain.begin(), chain.end(),
+                                 [&](const Axis& axis) { return axis.letter == *link; })) {
+            part_object<Part>(list->array()[i])
+                .required("link")
+                .fail("machine.link", std::string("axis ") + *link + words);
+        }
     }
-    controller.header = read_lines(object, "header");
-    controller.footer = read_lines(object, "footer");
-    if (const auto number = object.optional("program_number")) {
-        constexpr int kLargestProgramNumber = 99'999'999;  // eight digits, the longest O word
-        controller.program_number =
-            static_cast<std::int32_t>(number->integer(1, kLargestProgramNumber));
+}
+
+const KeyTable<Machine>& machine_keys() {
+    static const KeyTable<Machine> kTable = {
+        {
+            required<Machine>({"schema",
+                               "form of the file",
+                               {{"const", kForm}},
+                               [](const JsonValue& value, Machine&) {
+                                   if (value.string() != kForm) {
+                                       value.fail("machine.schema",
+                                                  "is \"" + value.string() +
+                                                      "\"; this program reads \"" +
+                                                      std::string(kForm) + "\"");
+                                   }
+                               }}),
+            required(any_text("name", &Machine::name, "for report and program")),
+            remark<Machine>("description"),
+            required(chain_key("mandrel_chain", &Machine::mandrel_chain, false,
+                               "axes that carry the mandrel, from the base outward")),
+            required(chain_key("eye_chain", &Machine::eye_chain, true,
+                               "axes that carry the eye, from the base outward; empty: the eye "
+                               "stands still")),
+            or_null<Machine>(
+                {"mandrel",
+                 "the mandrel's frame in the machine frame; without it both are the same",
+                 keys_schema(mount_keys()),
+                 [](const JsonValue& value, Machine& machine) {
+                     read_keys(mount_keys(), value, machine.mount.emplace());
+                 }}),
+            required(
+                object("eye", &Machine::eye, eye_head_keys(), "where the fibre leaves the head")),
+            parts_key("bodies", &Machine::bodies, "bodyCapsule", "bodyMesh",
+                      "parts that fibre and envelope keep clear of, on an axis of the mandrel "
+                      "chain or on the base"),
+            required(object("fibre", &Machine::fibre, fibre_keys(),
+                            "what the way of the fibre through the machine allows")),
+            required(object("controller", &Machine::controller, controller_keys(),
+                            "what reads the program")),
+        },
+        [](const JsonObject& object, Machine& machine) {
+            check_letters(object, machine);
+            check_links(
+                object.required("eye").object(names_of(eye_head_keys())).optional("envelope"),
+                machine.eye.envelope, machine.eye_chain,
+                " is not in the eye chain; name the axis that carries it");
+            check_links(object.optional("bodies"), machine.bodies, machine.mandrel_chain,
+                        " is not in the mandrel chain; name the axis that carries the body, or "
+                        "\"base\"");
+        }};
+    return kTable;
+}
+
+template <typename Part>
+void resolve_meshes(std::vector<Part>& parts, const std::filesystem::path& folder) {
+    for (Part& part : parts) {
+        if (auto* const mesh = std::get_if<EnvelopeMesh>(&part.shape)) {
+            const std::filesystem::path name = mesh->file;
+            mesh->file = (name.is_absolute() ? name : folder / name).string();
+        }
     }
-    return controller;
 }
 
 Machine machine_from(const JsonDocument& document, const std::string& file) {
-    const JsonObject object =
-        document.root().object({"schema", "name", "description", "mandrel_chain", "eye_chain",
-                                "mandrel", "eye", "bodies", "fibre", "controller"});
-    const JsonValue schema = object.required("schema");
-    if (schema.string() != "meshwind-machine-1") {
-        schema.fail("machine.schema",
-                    "is \"" + schema.string() + "\"; this program reads \"meshwind-machine-1\"");
-    }
-    if (const auto description = object.optional("description")) {
-        (void)description->string();
-    }
-    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     Machine machine;
-    machine.name = object.required("name").string();
-    const JsonValue mandrel_chain = object.required("mandrel_chain");
-    machine.mandrel_chain = read_chain(mandrel_chain, {});
-    if (machine.mandrel_chain.empty()) {
-        mandrel_chain.fail("machine.missing_axis", "has no axis; list at least one");
-    }
-    machine.eye_chain = read_chain(object.required("eye_chain"), machine.mandrel_chain);
-    if (const auto mount = object.optional("mandrel")) {
-        machine.mount = read_mount(*mount);
-    }
-    machine.eye = read_eye(object.required("eye"), machine.eye_chain, folder);
-    if (const auto bodies = object.optional("bodies")) {
-        for (const JsonValue& body : bodies->array()) {
-            machine.bodies.push_back(read_body(body, machine.mandrel_chain, folder));
-        }
-    }
-    machine.fibre = read_fibre(object.required("fibre"));
-    machine.controller = read_controller(object.required("controller"));
+    read_keys(machine_keys(), document.root(), machine);
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    resolve_meshes(machine.eye.envelope, folder);
+    resolve_meshes(machine.bodies, folder);
     return machine;
 }
 
@@ -292,6 +464,23 @@ Machine read_machine(const std::string& file) {
 
 Machine parse_machine(std::string_view text, const std::string& file) {
     return machine_from(JsonDocument::parse(text, file), file);
+}
+
+std::string machine_schema_text() {
+    SchemaJson schema = {
+        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+        {"title", "meshwind machine file"},
+        {"description",
+         "Lengths mm, angles degrees, times s; directions and points in the machine frame with all "
+         "axes at zero. The reader checks more: unit lengths, unique letters, min below max, links "
+         "that exist."}};
+    schema.update(keys_schema(machine_keys()));
+    schema["$defs"] = {{"axis", keys_schema(axis_keys())},
+                       {"capsule", keys_schema(capsule_keys<EnvelopePart>())},
+                       {"mesh", keys_schema(mesh_keys<EnvelopePart>())},
+                       {"bodyCapsule", keys_schema(capsule_keys<MachineBody>())},
+                       {"bodyMesh", keys_schema(mesh_keys<MachineBody>())}};
+    return schema.dump(2) + "\n";
 }
 
 }  // namespace meshwind

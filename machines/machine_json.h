@@ -1,4 +1,5 @@
-/// Reads machine files of the schema "meshwind-machine-1" (data/schema/machine.schema.json).
+/// Machine files of the schema "meshwind-machine-1": read, and their JSON Schema, both from one
+/// table of keys.
 #pragma once
 
 #include <string>
@@ -25,5 +26,8 @@ namespace meshwind {
 
 /// The same from text; `file` serves in messages and as the place that mesh names are relative to.
 [[nodiscard]] Machine parse_machine(std::string_view text, const std::string& file);
+
+/// JSON Schema of machine files; data/schema/machine.schema.json is this text.
+[[nodiscard]] std::string machine_schema_text();
 
 }  // namespace meshwind

@@ -51,16 +51,10 @@ const KeyTable<LengthPiece>& length_keys() {
                     [](const LengthPiece& piece) { return !piece.piece; }, "job.eye_unused",
                     "\"course\" names the whole course; remove one of the two", std::move(key));
             }(),
-            [] {
-                Key<LengthPiece> key =
-                    number("free_length", &LengthPiece::free_length_mm, kLengthRange, "mm");
-                key.schema.erase("default");
-                key.needed = [](const LengthPiece&) { return true; };
-                return key;
-            }(),
+            required(number("free_length", &LengthPiece::free_length_mm, kLengthRange, "mm")),
         },
         {},
-        schema_rules(R"({"required": ["free_length"], "oneOf": [
+        schema_rules(R"({"oneOf": [
           {"required": ["course"],
            "not": {"anyOf": [{"required": ["from_mm"]}, {"required": ["to_mm"]}]}},
           {"required": ["from_mm", "to_mm"], "not": {"required": ["course"]}}

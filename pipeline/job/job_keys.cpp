@@ -17,8 +17,7 @@ std::string vector_text(const Eigen::Vector3d& vector) {
 }
 
 Key<Job::MandrelJob> axis_key() {
-    const SchemaJson vector = {
-        {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+    const SchemaJson vector = vector_schema();
     const SchemaJson axis = {{"type", "object"},
                              {"additionalProperties", false},
                              {"required", SchemaJson::array({"origin", "direction"})},

@@ -1,8 +1,8 @@
 /// Every key of the job file, each as one row.
 #pragma once
 
+#include "core/text/key_table.h"
 #include "pipeline/job/job.h"
-#include "pipeline/job/key_table.h"
 
 namespace meshwind {
 

@@ -287,6 +287,10 @@ class Commands(program.ProgramTest):
             self.assertIn("valid", self.done("validate", program.SOURCE / name).stdout)
         self.done("validate", "six_axis.json")  # found in the project's folders
         self.assertEqual(self.done("validate", "six_axis.json", "--quiet").stdout, "")
+        for kind, arguments in (("job", ()), ("job", ("job",)), ("machine", ("machine",))):
+            schema = (program.SOURCE / f"data/schema/{kind}.schema.json").read_text()
+            self.assertEqual(self.done("validate", "--schema", *arguments).stdout, schema)
+        self.assertEqual(self.run_program("validate", "--schema", "job.json").returncode, 2)
 
     def test_verify_of_a_program_from_elsewhere(self):
         """The laid length is that of the helix, pi / 2 * 50 mm / sin 45 deg."""

@@ -27,6 +27,7 @@ ALLOWED = [
     ("assimp/", "mesh/io/import_assimp.cpp"),
     ("boost/math/", "*.cpp"),
     ("boost/numeric/odeint/", "study/path_reference.cpp"),
+    ("nlohmann/", "core/text/key_table.h"),
     ("nlohmann/", "core/text/strict_json.cpp"),
     ("nlohmann/", "*_json.cpp"),
     ("nlohmann/", "pipeline/job/*"),

@@ -1,7 +1,8 @@
-/// Keys of a JSON object tied to the fields of a struct. Each key is one row; reader, writer and
-/// schema come from it.
+/// Keys of a JSON object tied to the fields of a struct. Each key is one row; reader, writer (where
+/// there is one) and schema come from it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -26,13 +27,15 @@ inline constexpr std::string_view kAutoWord = "auto";
 template <typename Owner>
 struct Key {
     std::string_view name;
-    std::string_view meaning;  ///< for schema and reference; units first
+    std::string_view meaning;  ///< for schema and reference; units first; may be empty
     SchemaJson schema;         ///< without the meaning
+    /// Not called where the file says null, unless it must have the key.
     std::function<void(const JsonValue&, Owner&)> read;
-    /// The value as JSON; empty: left out.
-    std::function<std::string(const Owner&)> text;
-    /// Whether the file must have it, by what the keys before have said. Empty: never.
+    /// The value as JSON; empty: left out. No function: of a table that is only read.
+    std::function<std::string(const Owner&)> text{};
+    /// Whether the file must have it, by what the keys before have said. No function: it need not.
     std::function<bool(const Owner&)> needed{};
+    bool required = false;  ///< the file must have it, whatever else it says
 };
 
 template <typename Owner>
@@ -57,7 +60,7 @@ template <typename Owner>
 void read_keys(const KeyTable<Owner>& table, const JsonValue& value, Owner& owner) {
     const JsonObject object = value.object(names_of(table));
     for (const Key<Owner>& key : table.keys) {
-        if (key.needed && key.needed(owner)) {
+        if (key.required || (key.needed && key.needed(owner))) {
             key.read(object.required(key.name), owner);
         } else if (const auto found = object.optional(key.name)) {
             key.read(*found, owner);
@@ -99,10 +102,19 @@ std::string keys_text(const KeyTable<Owner>& table, const Owner& owner,
 template <typename Owner>
 SchemaJson keys_schema(const KeyTable<Owner>& table) {
     SchemaJson schema = {{"type", "object"}, {"additionalProperties", false}};
+    SchemaJson required = SchemaJson::array();
     for (const Key<Owner>& key : table.keys) {
         SchemaJson& property = schema["properties"][std::string(key.name)];
-        property["description"] = key.meaning;
+        if (!key.meaning.empty()) {
+            property["description"] = key.meaning;
+        }
         property.update(key.schema);
+        if (key.required) {
+            required.push_back(key.name);
+        }
+    }
+    if (!required.empty()) {
+        schema["required"] = required;
     }
     schema.update(table.rules);
     return schema;
@@ -111,6 +123,9 @@ SchemaJson keys_schema(const KeyTable<Owner>& table) {
 inline SchemaJson number_schema(const JsonRange& range) {
     SchemaJson schema = {{"type", "number"}};
     const auto bound = [&](const char* name, double value) {
+        if (std::isinf(value)) {
+            return;
+        }
         // Whole numbers without a fraction, as a person writes them.
         const auto whole = static_cast<std::int64_t>(value);
         static_cast<double>(whole) == value ? schema[name] = whole : schema[name] = value;
@@ -118,6 +133,10 @@ inline SchemaJson number_schema(const JsonRange& range) {
     bound(range.above_min ? "exclusiveMinimum" : "minimum", range.min);
     bound("maximum", range.max);
     return schema;
+}
+
+inline SchemaJson vector_schema(const JsonRange& range = {}) {
+    return {{"type", "array"}, {"items", number_schema(range)}, {"minItems", 3}, {"maxItems", 3}};
 }
 
 inline SchemaJson count_schema(std::int64_t least, std::int64_t most) {
@@ -196,6 +215,19 @@ Key<Owner> count(std::string_view name, Integer Owner::*field, std::int64_t most
             [=](const Owner& owner) { return std::to_string(owner.*field); }};
 }
 
+/// Left out where it is not set.
+template <typename Owner, typename Integer>
+Key<Owner> count(std::string_view name, std::optional<Integer> Owner::*field, std::int64_t most,
+                 std::string_view meaning) {
+    return {name, meaning, count_schema(1, most),
+            [=](const JsonValue& value, Owner& owner) {
+                owner.*field = static_cast<Integer>(value.integer(1, most));
+            },
+            [=](const Owner& owner) {
+                return owner.*field ? std::to_string(*(owner.*field)) : std::string();
+            }};
+}
+
 /// Left out where it is 0.
 template <typename Owner, typename Integer>
 Key<Owner> count_if_any(std::string_view name, Integer Owner::*field, std::int64_t most,
@@ -223,6 +255,18 @@ Key<Owner> count_or_auto(std::string_view name, Integer Owner::*field, std::int6
             }};
 }
 
+/// Any text. Left out where it is empty.
+template <typename Owner>
+Key<Owner> any_text(std::string_view name, std::string Owner::*field, std::string_view meaning) {
+    return {name,
+            meaning,
+            {{"type", "string"}},
+            [=](const JsonValue& value, Owner& owner) { owner.*field = value.string(); },
+            [=](const Owner& owner) {
+                return (owner.*field).empty() ? std::string() : string_text(owner.*field);
+            }};
+}
+
 /// \param words in the order of the enumerators
 template <typename Owner, typename Enum>
 Key<Owner> word(std::string_view name, Enum Owner::*field, std::vector<std::string_view> words,
@@ -247,6 +291,27 @@ Key<Owner> object(std::string_view name, Inner Owner::*field, const KeyTable<Inn
             read_keys(table, value, owner.*field);
         },
         [field, &table](const Owner& owner) { return "{" + keys_text(table, owner.*field) + "}"; }};
+}
+
+/// A key that the file must have.
+template <typename Owner>
+Key<Owner> required(Key<Owner> key) {
+    key.schema.erase("default");
+    key.required = true;
+    return key;
+}
+
+/// A key that may be left out and may be null, which says the same; its meaning tells what holds
+/// then.
+template <typename Owner>
+Key<Owner> or_null(Key<Owner> key) {
+    key.schema.erase("default");
+    if (key.schema.contains("enum")) {
+        key.schema["enum"].push_back(nullptr);
+    } else {
+        key.schema["type"] = SchemaJson::array({key.schema["type"], "null"});
+    }
+    return key;
 }
 
 /// A key that only some objects read: others refuse it and do not write it.
