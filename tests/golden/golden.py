@@ -12,6 +12,7 @@ blocks, time, fibre, courses, covered share. All mandrels are made by the progra
 import argparse
 import hashlib
 import json
+import math
 import os
 import subprocess
 import sys
@@ -92,9 +93,16 @@ def outcome(out):
     return {"figures": figures, "files": files}
 
 
+def same(one, other):
+    """Sums of sines differ in their last digits from one processor's library to another's."""
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=1e-9)
+    return one == other
+
+
 def differences(name, was, now):
     for key, value in now["figures"].items():
-        if was["figures"].get(key) != value:
+        if not same(was["figures"].get(key), value):
             yield f"{name}: {key} {was['figures'].get(key)} -> {value}"
     for file in sorted(was["files"].keys() | now["files"].keys()):
         if was["files"].get(file) != now["files"].get(file):
