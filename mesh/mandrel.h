@@ -13,6 +13,7 @@
 #include "mesh/rim.h"
 #include "mesh/surface.h"
 #include "mesh/triangle_soup.h"
+#include "mesh/winding_mesh_report.h"
 
 namespace meshwind {
 
@@ -31,6 +32,10 @@ struct MandrelOptions {
     };
     std::optional<Axis> axis{};                ///< in the file's frame and units; none: found
     std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
+    enum class Mesh { File, Even };
+    /// Even: where the file's triangles are uneven, even ones over the same surface are wound
+    /// (mesh/even/winding_mesh.h)
+    Mesh mesh = Mesh::File;
 };
 
 /// The winding surface with all that was found on the way. Immutable once loaded.
@@ -48,6 +53,7 @@ struct Mandrel {
     /// is a rotation times `unit_mm`.
     Eigen::Affine3d file_to_mandrel = Eigen::Affine3d::Identity();
     RepairReport repairs;
+    WindingMeshReport winding_mesh;
     std::vector<std::string> remarks;  ///< one line each: what a user should know of this file
 };
 

@@ -172,6 +172,7 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
         options.axis = {job.mandrel.axis->origin, job.mandrel.axis->direction};
     }
     options.keep_regions = job.mandrel.keep_regions;
+    options.mesh = job.mandrel.mesh;
     return options;
 }
 

@@ -28,7 +28,7 @@ void print_size(std::ostream& out, const Mandrel& m) {
         box.extend(p);
     }
     const Eigen::Vector3d size = box.sizes();
-    out << "file          " << m.file << ", " << m.whole.faces.size() << " triangles\n"
+    out << "file          " << m.file << ", " << m.winding_mesh.file_triangles << " triangles\n"
         << "unit          " << fixed(m.unit_mm, 3) << " mm (" << m.unit_rule << ")\n"
         << "size          " << fixed(size.x(), 3) << " x " << fixed(size.y(), 3) << " x "
         << fixed(size.z(), 3) << " mm in the mandrel frame\n"

@@ -1,6 +1,7 @@
 #include "report/report_mandrel.h"
 
 #include "core/units.h"
+#include "report/report_checks.h"
 
 namespace meshwind {
 namespace {
@@ -60,13 +61,18 @@ json mandrel_report(const Mandrel& mandrel) {
             {"unit_mm", mandrel.unit_mm},
             {"unit_rule", mandrel.unit_rule},
             {"triangles", mandrel.surface.face.size()},
-            {"file_triangles", mandrel.whole.faces.size()},
+            {"file_triangles", mandrel.winding_mesh.file_triangles},
             {"file_to_mandrel", matrix_of(mandrel.file_to_mandrel)},
             {"axis", {{"rule", mandrel.axis.rule}, {"residual_mm", mandrel.axis.residual_mm}}},
             {"rims", rims},
             {"area_mm2", area},
             {"regions", regions},
             {"repairs", repairs_of(mandrel.repairs)},
+            {"winding_mesh",
+             {{"own", mandrel.winding_mesh.own},
+              {"least_quality", report_number(mandrel.winding_mesh.least_quality)},
+              {"ruled_shapes", mandrel.winding_mesh.ruled_shapes},
+              {"deviation_mm", report_number(mandrel.winding_mesh.deviation_mm)}}},
             {"smooth_fit",
              {{"quartic", fit.quartic},
               {"cubic", fit.cubic},

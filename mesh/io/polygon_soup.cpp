@@ -118,8 +118,9 @@ void split(const std::vector<Eigen::Vector3d>& points, std::span<const std::int3
 }  // namespace
 
 std::string large_polygon_words() {
-    return "a polygon has more than " + std::to_string(kMostCorners) +
-           " corners, which is not read; export the part as triangles";
+    std::string words = "a polygon has more than ";
+    words += std::to_string(kMostCorners);
+    return words + " corners, which is not read; export the part as triangles";
 }
 
 std::string bad_index_words(std::int64_t index, std::int64_t first, std::size_t point_count) {

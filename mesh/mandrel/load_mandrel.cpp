@@ -9,6 +9,8 @@
 #include "core/interrupt.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "mesh/edge_table.h"
+#include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/weld.h"
@@ -191,6 +193,91 @@ void move(TriangleSoup& soup, const Eigen::Isometry3d& motion) {
     }
 }
 
+void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion) {
+    for (Rim& rim : rims) {
+        rim.centre_mm = motion * rim.centre_mm;
+        rim.axis = motion.linear() * rim.axis;
+    }
+}
+
+// What is wound with its ends and its spindle, still in the file's frame.
+struct Wall {
+    Kept kept;
+    Rims rims;
+    SpindleFrame frame;
+};
+
+Wall wall_of(const TriangleSoup& whole, const Segmentation& segmentation,
+             const std::optional<MandrelOptions::Axis>& axis_mm) {
+    Wall wall;
+    wall.kept = kept_part(whole, segmentation);
+    wall.rims = find_rims(wall.kept.soup);
+    wall.frame = find_spindle(wall.kept.soup, wall.rims.rims, axis_mm);
+    return wall;
+}
+
+std::optional<BodyOfRevolution> body_of(Wall wall) {
+    const Eigen::Isometry3d& motion = wall.frame.mandrel_from_file;
+    move(wall.kept.soup, motion);
+    move(wall.rims.rims, motion);
+    const Surface surface = freeze_surface(
+        wall.kept.soup,
+        {.feature = wall.kept.feature, .region = wall.kept.region, .rim = wall.rims.of_edge});
+    return find_revolution(surface, wall.rims.rims).body;
+}
+
+// Onto the surface of revolution that the file's vertices lie on: straight stretches and joints are
+// then exact, which curves through even points only come near.
+void settle_on(const Meridian& meridian, const Eigen::Isometry3d& mandrel_from_file,
+               const std::vector<char>& kept, LabelledMesh& part) {
+    std::vector<char> wall(part.soup.points_mm.size(), 0);
+    for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
+        for (const std::int32_t v : part.soup.faces[f]) {
+            wall[static_cast<std::size_t>(v)] |= kept[static_cast<std::size_t>(part.region[f])];
+        }
+    }
+    const Eigen::Isometry3d back = mandrel_from_file.inverse();
+    for (std::size_t v = 0; v < wall.size(); ++v) {
+        const Eigen::Vector3d p = mandrel_from_file * part.soup.points_mm[v];
+        const double radius = p.head<2>().norm();
+        if (wall[v] == 0 || !(radius > 0.0)) {
+            continue;
+        }
+        const MeridianPlace place = meridian.at(meridian.foot(radius, p.z()).arc_mm);
+        const double scale = place.radius_mm / radius;
+        part.soup.points_mm[v] = back * Eigen::Vector3d(scale * p.x(), scale * p.y(), place.z_mm);
+    }
+}
+
+// The wall in triangles of our own, where the file's are uneven.
+void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
+               const std::optional<MandrelOptions::Axis>& axis_mm) {
+    std::vector<char> kept;
+    for (const Region& region : segmentation.regions) {
+        kept.push_back(static_cast<char>(region.kept));
+    }
+    WindingMesh made =
+        winding_mesh({mandrel.whole, segmentation.region, segmentation.feature}, kept);
+    made.report.file_triangles = mandrel.winding_mesh.file_triangles;
+    mandrel.winding_mesh = made.report;
+    if (!made.report.own) {
+        return;
+    }
+    const std::optional<BodyOfRevolution> body = body_of(wall);
+    if (body) {
+        settle_on(body->meridian, wall.frame.mandrel_from_file, kept, made.part);
+    }
+    mandrel.whole = std::move(made.part.soup);
+    segmentation.region = std::move(made.part.region);
+    segmentation.feature = std::move(made.part.feature);
+    segmentation.neighbours = face_neighbours(mandrel.whole.faces);
+    const SpindleFrame frame = wall.frame;
+    wall = wall_of(mandrel.whole, segmentation, axis_mm);
+    if (body) {
+        wall.frame = frame;
+    }
+}
+
 void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
     const RepairReport& r = mandrel.repairs;
     if (r.components > 1) {
@@ -217,6 +304,16 @@ void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
                                       fixed(rim.circularity_mm, 2) + " mm off radius " +
                                       fixed(rim.radius_mm, 2) + " mm");
         }
+    }
+    const WindingMeshReport& mesh = mandrel.winding_mesh;
+    if (mesh.own) {
+        mandrel.remarks.push_back("the file's triangles are uneven: what is wound has " +
+                                  std::to_string(mesh.triangles) +
+                                  " even ones, from which no vertex of the file is more than " +
+                                  fixed(mesh.deviation_mm, 3) + " mm off");
+    } else if (!mesh.why_not.empty()) {
+        mandrel.remarks.push_back("the file's triangles are uneven and are wound as they are: " +
+                                  mesh.why_not);
     }
     if (mandrel.axis.rule == "principal") {
         mandrel.remarks.push_back(
@@ -268,17 +365,21 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
         p *= mandrel.unit_mm;
     }
 
+    mandrel.winding_mesh.file_triangles = mandrel.whole.faces.size();
     Segmentation segmentation = segment(mandrel.whole);
     keep_named_regions(segmentation, options.keep_regions, name);
     check_wall(segmentation.regions, name);
     check_interrupt();
-    Kept kept = kept_part(mandrel.whole, segmentation);
-    const Rims rims = find_rims(kept.soup);
     std::optional<MandrelOptions::Axis> given = options.axis;
     if (given) {
         given->origin *= mandrel.unit_mm;
     }
-    const SpindleFrame frame = find_spindle(kept.soup, rims.rims, given);
+    Wall wall = wall_of(mandrel.whole, segmentation, given);
+    check_interrupt();
+    if (options.mesh == MandrelOptions::Mesh::Even) {
+        make_even(mandrel, segmentation, wall, given);
+    }
+    auto& [kept, rims, frame] = wall;
 
     move(mandrel.whole, frame.mandrel_from_file);
     move(kept.soup, frame.mandrel_from_file);
@@ -289,10 +390,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     mandrel.whole_region = std::move(segmentation.region);
     mandrel.regions = std::move(segmentation.regions);
     mandrel.rims = rims.rims;
-    for (Rim& rim : mandrel.rims) {
-        rim.centre_mm = frame.mandrel_from_file * rim.centre_mm;
-        rim.axis = frame.mandrel_from_file.linear() * rim.axis;
-    }
+    move(mandrel.rims, frame.mandrel_from_file);
     const RevolutionFinding found = find_revolution(mandrel.surface, mandrel.rims);
     if (found.body && mark_crease_rings(*found.body, kept.soup, kept.feature)) {
         mandrel.surface = freeze_surface(kept.soup, frozen);

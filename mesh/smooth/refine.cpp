@@ -1,5 +1,4 @@
 #include "mesh/smooth/refine.h"
-#include "mesh/smooth/freeze.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +9,9 @@
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/text/text_number.h"
-#include "core/units.h"
 #include "mesh/edge_table.h"
-#include "mesh/smooth/patch.h"
+#include "mesh/smooth/freeze.h"
+#include "mesh/smooth/smooth_shape.h"
 
 namespace meshwind {
 namespace {
@@ -20,9 +19,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Index = std::int32_t;
-
-// Where a rim turns by more than this at a vertex it has a corner there, as creases do.
-constexpr double kRimCornerRad = rad_from_deg(34.0);
 
 constexpr std::uint8_t kInside = 3;
 constexpr Index kWhole = -1;
@@ -38,92 +34,6 @@ struct Piece {
     std::array<Vector2d, 3> uv;        // in the given face's parameters
     std::array<std::uint8_t, 3> edge;  // of the given face, on which this one's lies, or kInside
     Index parent;
-};
-
-// The tangents of a rim at its vertices, unit, in the direction of the rim's faces. A corner of the
-// rim has none.
-class RimTangents {
-public:
-    explicit RimTangents(const Surface& surface)
-        : surface_(surface), tangent_(surface.position_mm.size(), Vector3d::Zero()) {
-        std::vector<Vector3d> into(tangent_.size(), Vector3d::Zero());
-        std::vector<Vector3d> out_of(tangent_.size(), Vector3d::Zero());
-        for (std::size_t f = 0; f < surface.face.size(); ++f) {
-            for (std::size_t e = 0; e < 3; ++e) {
-                if (surface.neighbour[f][e] == kNoFace) {
-                    const Index from = surface.face[f][e];
-                    const Index to = surface.face[f][(e + 1) % 3];
-                    out_of[at(from)] = into[at(to)] =
-                        surface.position_mm[at(to)] - surface.position_mm[at(from)];
-                }
-            }
-        }
-        for (std::size_t v = 0; v < tangent_.size(); ++v) {
-            const double before = into[v].norm();
-            const double after = out_of[v].norm();
-            if (before > 0.0 && after > 0.0 &&
-                into[v].dot(out_of[v]) > std::cos(kRimCornerRad) * before * after) {
-                // Of the circle through the three vertices.
-                tangent_[v] = (after * after * into[v] + before * before * out_of[v]).normalized();
-            }
-        }
-    }
-
-    // The arc from one vertex of the rim to the next at a share of its way: a cubic whose middle is
-    // exact on circles.
-    [[nodiscard]] Vector3d arc(Index from, Index to, double share) const {
-        const Vector3d& a = surface_.position_mm[at(from)];
-        const Vector3d& b = surface_.position_mm[at(to)];
-        const Vector3d chord = b - a;
-        const auto rate = [&](Index vertex) -> Vector3d {
-            const Vector3d& tangent = tangent_[at(vertex)];
-            const double length = chord.norm();
-            const double cosine = tangent.dot(chord) / length;
-            return cosine > 0.0 ? Vector3d(2.0 * length / (1.0 + cosine) * tangent) : chord;
-        };
-        const double s = share;
-        const double r = 1.0 - s;
-        return r * a + s * b + s * r * (r * (rate(from) - chord) - s * (rate(to) - chord));
-    }
-
-private:
-    const Surface& surface_;
-    std::vector<Vector3d> tangent_;
-};
-
-// Points of the surface over its faces.
-class Shape {
-public:
-    explicit Shape(const Surface& surface) : surface_(surface), rims_(surface) {}
-
-    // On the patch, which is moved within the surface to meet the arcs of the rim: by all of the
-    // gap on the rim, by nothing on the other edges.
-    [[nodiscard]] Vector3d operator()(Index face, const Vector2d& uv) const {
-        const Patch patch(surface_, face);
-        Vector3d place = patch.at(uv).position_mm;
-        const std::array<double, 3> bary = {1.0 - uv.x() - uv.y(), uv.x(), uv.y()};
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::size_t to = (e + 1) % 3;
-            const double sum = bary[e] + bary[to];
-            if (surface_.neighbour[at(face)][e] != kNoFace || !(sum > 0.0)) {
-                continue;
-            }
-            const double share = bary[to] / sum;
-            const Vector2d on_edge = (1.0 - share) * corner_uv(e) + share * corner_uv(to);
-            const auto& vertex = surface_.face[at(face)];
-            place += sum * sum *
-                     (rims_.arc(vertex[e], vertex[to], share) - patch.at(on_edge).position_mm);
-        }
-        return place;
-    }
-
-    [[nodiscard]] static Vector2d corner_uv(std::size_t i) {
-        return {i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
-    }
-
-private:
-    const Surface& surface_;
-    RimTangents rims_;
 };
 
 // The triangle of a piece's corners and midpoints: corner i is i, the midpoint of edge i is 3 + i.
@@ -206,10 +116,11 @@ public:
         : surface_(surface), edge_mm_(edge_mm), shape_(surface), position_(surface.position_mm) {
         pieces_.reserve(surface.face.size());
         for (std::size_t f = 0; f < surface.face.size(); ++f) {
-            pieces_.push_back({surface.face[f],
-                               {Shape::corner_uv(0), Shape::corner_uv(1), Shape::corner_uv(2)},
-                               {0, 1, 2},
-                               static_cast<Index>(f)});
+            pieces_.push_back(
+                {surface.face[f],
+                 {SmoothShape::corner_uv(0), SmoothShape::corner_uv(1), SmoothShape::corner_uv(2)},
+                 {0, 1, 2},
+                 static_cast<Index>(f)});
         }
     }
 
@@ -289,7 +200,7 @@ private:
                 const Piece& piece = pieces_[at(middles[i].piece)];
                 const std::size_t e = middles[i].edge;
                 position_[known + i] =
-                    shape_(piece.parent, 0.5 * (piece.uv[e] + piece.uv[(e + 1) % 3]));
+                    shape_.at(piece.parent, 0.5 * (piece.uv[e] + piece.uv[(e + 1) % 3]));
             }
         });
         return middle;
@@ -297,7 +208,7 @@ private:
 
     const Surface& surface_;
     double edge_mm_;
-    Shape shape_;
+    SmoothShape shape_;
     std::vector<Vector3d> position_;
     std::vector<Piece> pieces_;
 };

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "mesh/mandrel.h"
 #include "pipeline/job/turn_kinds.h"
 #include "postproc/eye/eye_rules.h"
 #include "winding/revolution/pattern_wish.h"
@@ -68,7 +69,8 @@ struct Job {
         LengthUnit units = LengthUnit::Auto;     ///< as `meshwind inspect` reads the part
         std::optional<MandrelAxis> axis;         ///< none: found
         std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
-        double extension_mm = 100.0;             ///< >= 0; room for turns beyond each rim
+        MandrelOptions::Mesh mesh = MandrelOptions::Mesh::File;
+        double extension_mm = 100.0;  ///< >= 0; room for turns beyond each rim
         TurnKind turn = TurnKind::Friction;
         PinWish pins{};  ///< read where the kind of turn does (turn_kinds.h)
     };

@@ -86,6 +86,18 @@ const KeyTable<PinWish>& pin_keys() {
     return kTable;
 }
 
+Key<Job::MandrelJob> mesh_key() {
+    using Mesh = MandrelOptions::Mesh;
+    Key<Job::MandrelJob> key =
+        word("mesh", &Job::MandrelJob::mesh, {"file", "even"},
+             "triangles that are wound; file: the file's own; even: where those are uneven, even "
+             "ones over the surface that the file's vertices stand for");
+    key.text = [text = key.text](const Job::MandrelJob& mandrel) {
+        return mandrel.mesh == Mesh::File ? std::string() : text(mandrel);
+    };
+    return key;
+}
+
 Key<Job::MandrelJob> turn_key() {
     static const std::string kMeaning = [] {
         std::string text = "how the fibre turns there";
@@ -111,6 +123,7 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
              "metres if the part is under 10 units"),
         axis_key(),
         regions_key(),
+        mesh_key(),
         number("extension", &Owner::extension_mm, kExtensionRange,
                "mm of room beyond each rim where the fibre turns"),
         turn_key(),

@@ -1,0 +1,30 @@
+/// Triangles too narrow to tell a direction.
+#pragma once
+
+#include <vector>
+
+#include "mesh/even/labelled_mesh.h"
+
+namespace meshwind {
+
+/// 1 for an equilateral triangle, 0 for one without area: 4 sqrt(3) area over the sum of the
+/// squared sides. Source: bhatia_1990_shape.
+[[nodiscard]] double shape_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                   const Eigen::Vector3d& c);
+
+/// The least quality among the wall's triangles; 1 where there is none.
+[[nodiscard]] double least_quality(const LabelledMesh& part, const std::vector<char>& kept);
+
+/// Share of the wall's area in triangles below a quality.
+[[nodiscard]] double share_below(const LabelledMesh& part, const std::vector<char>& kept,
+                                 double quality);
+
+/// The wall without its narrow triangles, as far as that can be done by leaving out vertices and
+/// turning edges: every vertex left is one of the given ones. Short edges of narrow triangles
+/// collapse where they are below `short_mm` and the vertex that goes is no farther than `off_mm`
+/// from the triangles that stay; long ones between nearly coplanar facets turn. Lines stay lines.
+/// The outcome depends on the input alone.
+[[nodiscard]] LabelledMesh without_slivers(const LabelledMesh& part, const std::vector<char>& kept,
+                                           double short_mm, double off_mm);
+
+}  // namespace meshwind

@@ -1,0 +1,32 @@
+/// The mesh that is wound: the program's own, where the file's is uneven.
+#pragma once
+
+#include <vector>
+
+#include "mesh/even/labelled_mesh.h"
+#include "mesh/winding_mesh_report.h"
+
+namespace meshwind {
+
+/// Below this quality of a triangle (shape_quality) of its wall a mesh is uneven: a triangle of
+/// 1 : 11, as no mesher of its own accord makes one.
+inline constexpr double kUnevenQuality = 0.15;
+
+/// A mesh of our own that leaves a vertex of the file's farther from its surface than this share of
+/// the part's size (the radius of the ball with the wall's area) is not taken: 0.2 mm on a pipe of
+/// 50 mm, less than a blind letter stands out, more than facets are off.
+inline constexpr double kDeviationShare = 2e-3;
+
+struct WindingMesh {
+    LabelledMesh part;  ///< the given one where the report says so
+    WindingMeshReport report;
+};
+
+/// Where the wall has narrow triangles: long facets are halved on their cylinders and cones
+/// (long_facets.h), slivers go (slivers.h), and even triangles are laid over the smooth surface
+/// through the vertices that are left (even_mesh.h). Where that does not come out even and near the
+/// given vertices, the given mesh stays.
+/// \param kept per region: whether it is wall \param part oriented manifold, mm
+[[nodiscard]] WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept);
+
+}  // namespace meshwind

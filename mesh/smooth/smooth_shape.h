@@ -1,0 +1,41 @@
+/// Points of the smooth surface that a frozen mesh stands for.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/units.h"
+#include "mesh/surface.h"
+
+namespace meshwind {
+
+/// Where a line of rim or crease edges turns by more than this at a vertex it has a corner there.
+inline constexpr double kLineCornerRad = rad_from_deg(34.0);
+
+/// The curved patches of a surface, led to curves through the vertices of its rims.
+class SmoothShape {
+public:
+    /// \pre `surface` outlives the shape
+    explicit SmoothShape(const Surface& surface);
+
+    /// On the patch of the face, which is moved within the surface to meet the arcs of the rim: by
+    /// all of the gap on the rim, by nothing on the other edges.
+    /// \param uv barycentric coordinates of the second and the third corner
+    [[nodiscard]] Eigen::Vector3d at(std::int32_t face, const Eigen::Vector2d& uv) const;
+
+    /// The parameters of corner i of a face.
+    [[nodiscard]] static Eigen::Vector2d corner_uv(std::size_t i) {
+        return {i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+    }
+
+private:
+    [[nodiscard]] Eigen::Vector3d rim_arc(std::int32_t from, std::int32_t to, double share) const;
+
+    const Surface& surface_;
+    /// Of rims at their vertices, unit, in the direction of the rim's faces; a corner has none.
+    std::vector<Eigen::Vector3d> rim_tangent_;
+};
+
+}  // namespace meshwind
