@@ -12,6 +12,7 @@ namespace {
 
 std::vector<std::string_view> eye_words() {
     std::vector<std::string_view> words;
+    words.reserve(kEyeRules.size());
     for (const EyeRuleTraits& rule : kEyeRules) {
         words.push_back(rule.word);
     }
