@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/triangle_soup.h"
@@ -15,5 +16,17 @@ struct LabelledMesh {
     std::vector<std::int32_t> region;                  ///< per face
     std::vector<std::array<std::uint8_t, 3>> feature;  ///< per face and edge: 1 on a crease
 };
+
+/// The same with its faces' neighbours, as segmentation holds it.
+struct LabelledView {
+    const TriangleSoup& soup;
+    std::span<const std::int32_t> region;
+    std::span<const std::array<std::uint8_t, 3>> feature;
+    std::span<const std::array<std::int32_t, 3>> neighbours;  ///< see mesh/edge_table.h
+};
+
+/// The faces of the kept regions, in their order, one fan at each vertex; the edges where they end
+/// are no creases. \param kept per region: whether it is wall
+[[nodiscard]] LabelledMesh wall_of(const LabelledView& part, const std::vector<char>& kept);
 
 }  // namespace meshwind

@@ -102,6 +102,14 @@ double shape_quality(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return sides > 0.0 ? 4.0 * std::sqrt(3.0) * area / sides : 0.0;
 }
 
+double least_quality(const TriangleSoup& soup) {
+    double least = 1.0;
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        least = std::min(least, quality_of(soup, f));
+    }
+    return least;
+}
+
 double least_quality(const LabelledMesh& part, const std::vector<char>& kept) {
     double least = 1.0;
     for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {

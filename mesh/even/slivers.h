@@ -12,7 +12,9 @@ namespace meshwind {
 [[nodiscard]] double shape_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                    const Eigen::Vector3d& c);
 
-/// The least quality among the wall's triangles; 1 where there is none.
+/// The least quality of a triangle; 1 where there is none.
+[[nodiscard]] double least_quality(const TriangleSoup& soup);
+/// The same among the wall's triangles.
 [[nodiscard]] double least_quality(const LabelledMesh& part, const std::vector<char>& kept);
 
 /// Share of the wall's area in triangles below a quality.

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "mesh/edge_table.h"
-#include "mesh/repair/repair.h"
 #include "mesh/smooth/freeze.h"
 
 namespace meshwind {
@@ -43,37 +42,10 @@ double height_mm(const Surface& surface, std::int32_t face) {
 
 Surface frozen_wall(const LabelledMesh& part, const std::vector<char>& kept) {
     const auto neighbours = face_neighbours(part.soup.faces);
-    const auto is_wall = [&](std::int32_t f) {
-        return f >= 0 && kept[at_index(part.region[at_index(f)])] != 0;
-    };
-    TriangleSoup wall;
-    std::vector<std::array<std::uint8_t, 3>> feature;
-    std::vector<std::int32_t> region;
-    std::vector<std::int32_t> renumbered(part.soup.points_mm.size(), -1);
-    for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
-        if (!is_wall(static_cast<std::int32_t>(f))) {
-            continue;
-        }
-        std::array<std::int32_t, 3> face = part.soup.faces[f];
-        for (std::int32_t& v : face) {
-            std::int32_t& target = renumbered[at_index(v)];
-            if (target < 0) {
-                target = static_cast<std::int32_t>(wall.points_mm.size());
-                wall.points_mm.push_back(part.soup.points_mm[at_index(v)]);
-            }
-            v = target;
-        }
-        std::array<std::uint8_t, 3> creases = part.feature[f];
-        for (std::size_t e = 0; e < 3; ++e) {
-            creases[e] = is_wall(neighbours[f][e]) ? creases[e] : std::uint8_t{0};
-        }
-        wall.faces.push_back(face);
-        feature.push_back(creases);
-        region.push_back(part.region[f]);
-    }
-    split_vertex_fans(wall);
-    const std::vector<std::array<std::int32_t, 3>> no_rims(wall.faces.size(), {-1, -1, -1});
-    return freeze_surface(wall, {.feature = feature, .region = region, .rim = no_rims});
+    const LabelledMesh wall = wall_of({part.soup, part.region, part.feature, neighbours}, kept);
+    const std::vector<std::array<std::int32_t, 3>> no_rims(wall.soup.faces.size(), {-1, -1, -1});
+    return freeze_surface(wall.soup,
+                          {.feature = wall.feature, .region = wall.region, .rim = no_rims});
 }
 
 std::vector<double> vertex_curvatures_per_mm(const Surface& surface) {

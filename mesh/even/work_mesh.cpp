@@ -34,14 +34,6 @@ bool keeps_way(const std::array<Vector3d, 3>& was, const std::array<Vector3d, 3>
     return size > 0.0 && before.dot(after) >= cosine * size;
 }
 
-// Largest cosine of the three angles: the smaller, the better the smallest angle.
-double worst_cosine(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    const Vector3d ab = (b - a).normalized();
-    const Vector3d bc = (c - b).normalized();
-    const Vector3d ca = (a - c).normalized();
-    return std::max({-ab.dot(ca), -ab.dot(bc), -bc.dot(ca)});
-}
-
 // The two triangles on an edge: a and b its ends, c and d the corners left and right of a -> b.
 struct Diamond {
     WorkMesh::Vertex a, b, c, d;
@@ -267,11 +259,9 @@ bool WorkMesh::may_flip(Edge edge, double cosine) const {
            before.dot(right) >= cosine * size * right.norm();
 }
 
-WorkMesh::FlipView WorkMesh::angles(Edge edge) const {
+FlipCosines WorkMesh::angles(Edge edge) const {
     const Diamond v = diamond_of(mesh, edge);
-    return {
-        std::max(worst_cosine(at(v.a), at(v.b), at(v.c)), worst_cosine(at(v.b), at(v.a), at(v.d))),
-        std::max(worst_cosine(at(v.a), at(v.d), at(v.c)), worst_cosine(at(v.d), at(v.b), at(v.c)))};
+    return flip_cosines(at(v.a), at(v.b), at(v.c), at(v.d));
 }
 
 bool WorkMesh::may_move(Vertex v, const Vector3d& target, double cosine) const {

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "mesh/even/flip_angles.h"
 #include "mesh/even/labelled_mesh.h"
 #include "mesh/repair/open_mesh_kernel.h"
 
@@ -89,11 +90,7 @@ public:
     /// turning one of them by more than the angle of `cosine`.
     [[nodiscard]] bool may_flip(Edge edge, double cosine) const;
     /// Cosine of the smallest angle of the two triangles, before and after.
-    struct FlipView {
-        double before;
-        double after;
-    };
-    [[nodiscard]] FlipView angles(Edge edge) const;
+    [[nodiscard]] FlipCosines angles(Edge edge) const;
 
     /// Whether a vertex may be moved without turning a triangle by more than the angle of `cosine`.
     [[nodiscard]] bool may_move(Vertex v, const Eigen::Vector3d& target, double cosine) const;

@@ -10,6 +10,7 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "mesh/edge_table.h"
+#include "mesh/even/slivers.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
 #include "mesh/repair/repair.h"
@@ -146,44 +147,12 @@ void check_wall(const std::vector<Region>& regions, const std::string& name) {
                          "{\"keep_regions\": [0]}, else export the part's outside");
 }
 
-// What is wound, still in the file's frame, with the per-face arrays the freezing needs.
-struct Kept {
-    TriangleSoup soup;
-    std::vector<std::array<std::uint8_t, 3>> feature;
-    std::vector<std::int32_t> region;
-};
-
-Kept kept_part(const TriangleSoup& whole, const Segmentation& segmentation) {
-    Kept kept;
-    std::vector<std::int32_t> renumbered(whole.points_mm.size(), -1);
-    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-        const std::int32_t region = segmentation.region[f];
-        if (!segmentation.regions[static_cast<std::size_t>(region)].kept) {
-            continue;
-        }
-        std::array<std::int32_t, 3> face = whole.faces[f];
-        for (std::int32_t& v : face) {
-            std::int32_t& target = renumbered[static_cast<std::size_t>(v)];
-            if (target < 0) {
-                target = static_cast<std::int32_t>(kept.soup.points_mm.size());
-                kept.soup.points_mm.push_back(whole.points_mm[static_cast<std::size_t>(v)]);
-            }
-            v = target;
-        }
-        std::array<std::uint8_t, 3> feature = segmentation.feature[f];
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t g = segmentation.neighbours[f][e];
-            const bool open = g < 0 || !segmentation
-                                            .regions[static_cast<std::size_t>(
-                                                segmentation.region[static_cast<std::size_t>(g)])]
-                                            .kept;
-            feature[e] = open ? std::uint8_t{0} : feature[e];
-        }
-        kept.soup.faces.push_back(face);
-        kept.feature.push_back(feature);
-        kept.region.push_back(region);
+std::vector<char> kept_of(const std::vector<Region>& regions) {
+    std::vector<char> kept;
+    kept.reserve(regions.size());
+    for (const Region& region : regions) {
+        kept.push_back(static_cast<char>(region.kept));
     }
-    split_vertex_fans(kept.soup);
     return kept;
 }
 
@@ -202,15 +171,16 @@ void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion) {
 
 // What is wound with its ends and its spindle, still in the file's frame.
 struct Wall {
-    Kept kept;
+    LabelledMesh kept;
     Rims rims;
     SpindleFrame frame;
 };
 
-Wall wall_of(const TriangleSoup& whole, const Segmentation& segmentation,
-             const std::optional<MandrelOptions::Axis>& axis_mm) {
+Wall find_wall(const TriangleSoup& whole, const Segmentation& segmentation,
+               const std::optional<MandrelOptions::Axis>& axis_mm) {
     Wall wall;
-    wall.kept = kept_part(whole, segmentation);
+    wall.kept = wall_of({whole, segmentation.region, segmentation.feature, segmentation.neighbours},
+                        kept_of(segmentation.regions));
     wall.rims = find_rims(wall.kept.soup);
     wall.frame = find_spindle(wall.kept.soup, wall.rims.rims, axis_mm);
     return wall;
@@ -252,10 +222,7 @@ void settle_on(const Meridian& meridian, const Eigen::Isometry3d& mandrel_from_f
 // The wall in triangles of our own, where the file's are uneven.
 void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
                const std::optional<MandrelOptions::Axis>& axis_mm) {
-    std::vector<char> kept;
-    for (const Region& region : segmentation.regions) {
-        kept.push_back(static_cast<char>(region.kept));
-    }
+    const std::vector<char> kept = kept_of(segmentation.regions);
     WindingMesh made =
         winding_mesh({mandrel.whole, segmentation.region, segmentation.feature}, kept);
     made.report.file_triangles = mandrel.winding_mesh.file_triangles;
@@ -272,7 +239,7 @@ void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
     segmentation.feature = std::move(made.part.feature);
     segmentation.neighbours = face_neighbours(mandrel.whole.faces);
     const SpindleFrame frame = wall.frame;
-    wall = wall_of(mandrel.whole, segmentation, axis_mm);
+    wall = find_wall(mandrel.whole, segmentation, axis_mm);
     if (body) {
         wall.frame = frame;
     }
@@ -374,10 +341,12 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     if (given) {
         given->origin *= mandrel.unit_mm;
     }
-    Wall wall = wall_of(mandrel.whole, segmentation, given);
+    Wall wall = find_wall(mandrel.whole, segmentation, given);
     check_interrupt();
     if (options.mesh == MandrelOptions::Mesh::Even) {
         make_even(mandrel, segmentation, wall, given);
+    } else {
+        mandrel.winding_mesh.least_quality = least_quality(wall.kept.soup);
     }
     auto& [kept, rims, frame] = wall;
 

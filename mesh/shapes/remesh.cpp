@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "mesh/even/flip_angles.h"
 #include "mesh/repair/open_mesh_kernel.h"
 
 namespace meshwind {
@@ -69,12 +70,7 @@ Vector3d normal_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return (b - a).cross(c - a).normalized();
 }
 
-// Largest cosine of the angles of a triangle with these unit sides, one after the other round it:
-// the smaller, the better its smallest angle.
-double worst_cosine_of_sides(const Vector3d& ab, const Vector3d& bc, const Vector3d& ca) {
-    return std::max({-ab.dot(ca), -ab.dot(bc), -bc.dot(ca)});
-}
-
+// Of the angles of a triangle, see flip_angles.h.
 double worst_cosine(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return worst_cosine_of_sides((b - a).normalized(), (c - b).normalized(), (a - c).normalized());
 }
@@ -166,21 +162,7 @@ struct FlipView {
                before.dot(normal_of(d, b, c)) < 2.0 * kTurnCosine;
     }
 
-    struct Worst {
-        double before;
-        double after;
-    };
-
-    [[nodiscard]] Worst worst() const {
-        const Vector3d ab = (b - a).normalized();
-        const Vector3d bc = (c - b).normalized();
-        const Vector3d ca = (a - c).normalized();
-        const Vector3d ad = (d - a).normalized();
-        const Vector3d db = (b - d).normalized();
-        const Vector3d dc = (c - d).normalized();
-        return {std::max(worst_cosine_of_sides(ab, bc, ca), worst_cosine_of_sides(-ab, ad, db)),
-                std::max(worst_cosine_of_sides(ad, dc, ca), worst_cosine_of_sides(db, bc, -dc))};
-    }
+    [[nodiscard]] FlipCosines worst() const { return flip_cosines(a, b, c, d); }
 };
 
 // How many edges meet at each vertex, and how many should.
