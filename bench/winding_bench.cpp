@@ -1,4 +1,8 @@
 // What planning spends its time on: judging candidates and finding footprints, on the tee of data/.
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include <benchmark/benchmark.h>
 
 #include "core/random.h"
@@ -7,6 +11,7 @@
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/ray_query.h"
 #include "winding/cover/library.h"
+#include "winding/laminate/families.h"
 #include "winding/laminate/samples.h"
 
 namespace {
@@ -88,5 +93,38 @@ void footprint_of_a_path(benchmark::State& state) {
     state.counters["mm"] = path.empty() ? 0.0 : path.back().s_mm;
 }
 BENCHMARK(footprint_of_a_path)->Unit(benchmark::kMicrosecond);
+
+// Rings a band apart on one long cylinder, as a pattern of many circuits has them: time grows with
+// their number, not with its square.
+void families_of_many(benchmark::State& state) {
+    constexpr double kBand_mm = 6.0;
+    constexpr double kRadius_mm = 40.0;
+    std::vector<SurfacePath> rings(static_cast<std::size_t>(state.range(0)));
+    std::vector<const SurfacePath*> courses;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        for (double s_mm = 0.0; s_mm < 2.0 * kPi * kRadius_mm; s_mm += 2.0) {
+            const double turned = s_mm / kRadius_mm;
+            PathPoint point;
+            point.normal = {std::cos(turned), std::sin(turned), 0.0};
+            point.position_mm = kRadius_mm * point.normal;
+            point.position_mm.z() = static_cast<double>(i) * kBand_mm;
+            point.tangent = {-std::sin(turned), std::cos(turned), 0.0};
+            point.s_mm = s_mm;
+            rings[i].push_back(point);
+        }
+        courses.push_back(&rings[i]);
+    }
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(families_of(courses, kBand_mm));
+    }
+    state.SetComplexityN(state.range(0));
+}
+BENCHMARK(families_of_many)->Arg(500)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK(families_of_many)
+    ->Name("families_of_many_large")
+    ->RangeMultiplier(4)
+    ->Range(2000, 32000)
+    ->Complexity()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

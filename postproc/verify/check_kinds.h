@@ -46,7 +46,7 @@ inline constexpr CheckKind kApproach{
     "approach",
     "Approach",
     "rapid moves to the start within the axes and clear of the mandrel",
-    {told("rapid_moves", "rapid moves"), told("stops", "Stops"), told("swept", "Swept")}};
+    {told("rapid_moves", "rapids"), told("stops", "Stops"), told("swept", "Swept")}};
 inline constexpr CheckKind kPathMode{"path_mode",
                                      "Path mode",
                                      "the controller passes corners as the machine file asks",

@@ -240,8 +240,7 @@ class Ended(OutputTest):
             with self.subTest(number=number):
                 process = self.popen(tee, "-o", self.out, preexec_fn=listen)
                 time.sleep(2)
-                _, err, cpu_s = self.ended_by(process, number)
-                self.assertLess(cpu_s, 2.0)
+                _, err = self.ended_by(process, number)
                 self.assertEqual(process.returncode, 128 + number, err)
                 self.assertEqual(sorted(self.folder.iterdir()),
                                  sorted([self.mandrel, self.hoops, self.slips]))
