@@ -29,7 +29,6 @@
 #include "machines/machine_json.h"
 #include "mesh/io/export.h"
 #include "mesh/mandrel/load_mandrel.h"
-#include "mesh/smooth/refine.h"
 #include "pipeline/check_controller.h"
 #include "pipeline/load_inputs.h"
 #include "pipeline/run_names.h"
@@ -105,15 +104,10 @@ fs::path found_or_none(const std::string& name) {
     return name.empty() ? fs::path() : find_input(name);
 }
 
-// The winding surface refined onto its curved patches, in the frame and units of the mandrel's
-// file. Returns the number of triangles.
+// Returns the number of triangles.
 std::size_t write_refined(const Mandrel& mandrel, double edge_mm, const fs::path& file) {
     const MeshFormat format = mesh_format_of(file);  // before anything is made
-    TriangleSoup soup = refined(mandrel.surface, edge_mm).soup;
-    const Eigen::Affine3d mandrel_to_file = mandrel.file_to_mandrel.inverse();
-    for (Eigen::Vector3d& p : soup.points_mm) {
-        p = mandrel_to_file * p;
-    }
+    const TriangleSoup soup = refined_wall(mandrel, edge_mm);
     write_file(file, mesh_file_bytes(soup, format));
     return soup.faces.size();
 }
@@ -287,8 +281,9 @@ int run_inspect(const InspectArguments& arguments, const Common& common) {
     }
     Progress progress(!shows_bar(common));
     progress.show("mandrel", 0.0);
+    const Job job = job_of(arguments.job, found_or_none(arguments.job.file), false);
     const Mandrel mandrel =
-        load_mandrel(find_input(arguments.mandrel), {.unit_mm = unit_mm(common.units)});
+        load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units)));
     std::size_t refined_faces = 0;
     if (arguments.refine_mm) {
         progress.show("refine", 0.0);

@@ -66,6 +66,7 @@ struct ValidateArguments {
 
 struct InspectArguments {
     std::string mandrel;
+    JobArguments job;  ///< its mandrel alone is read
     std::optional<double> refine_mm;
     std::string out;
 };

@@ -169,6 +169,8 @@ void add_verify(CLI::App& app, VerifyArguments& options) {
 
 void add_inspect(CLI::App& app, InspectArguments& options) {
     app.add_option("mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
+    add_job(app, options.job,
+            "job file: units, axis, regions, ends and blends of the mandrel; without it defaults");
     auto* refine = app.add_option("--refine", options.refine_mm,
                                   "write the winding surface with edges of at most so many mm, new "
                                   "vertices on its curved patches; frame and units of the file")

@@ -32,10 +32,14 @@ struct MandrelOptions {
     };
     std::optional<Axis> axis{};                ///< in the file's frame and units; none: found
     std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
+    /// Of every end with a leg, mm; none: what is no part of the leg (mesh/even/square_ends.h)
+    std::optional<double> cut_ends_mm{};
+    /// Crotches and steps are filled up for a ball of this radius (mesh/even/blend.h); 0: not
+    double blend_mm = 0.0;
     enum class Mesh { File, Even };
     /// Even: where the file's triangles are uneven, even ones over the same surface are wound
     /// (mesh/even/winding_mesh.h)
-    Mesh mesh = Mesh::File;
+    Mesh mesh = Mesh::Even;
 };
 
 /// The winding surface with all that was found on the way. Immutable once loaded.

@@ -14,7 +14,10 @@ struct WindingMeshReport {
     std::size_t file_triangles = 0;  ///< of the file, repaired
     /// Largest distance of a vertex of the file's wall from the smooth surface of the own mesh.
     double deviation_mm = 0.0;
-    std::string why_not;  ///< why the file's mesh stays although it is uneven; in words
+    double blend_mm = 0.0;     ///< radius of the ball that rolled over the wall; 0: none did
+    double blended_mm2 = 0.0;  ///< of the wall where it did not touch, filled up since
+    double filled_mm3 = 0.0;   ///< between the part and what is wound
+    std::string why_not;       ///< why the file's mesh stays although it is uneven; in words
 };
 
 }  // namespace meshwind

@@ -172,6 +172,8 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
         options.axis = {job.mandrel.axis->origin, job.mandrel.axis->direction};
     }
     options.keep_regions = job.mandrel.keep_regions;
+    options.cut_ends_mm = job.mandrel.cut_ends_mm;
+    options.blend_mm = job.mandrel.blend_mm;
     options.mesh = job.mandrel.mesh;
     return options;
 }

@@ -43,6 +43,7 @@ json mandrel_report(const Mandrel& mandrel) {
                         {"axis", json_of(rim.axis)},
                         {"radius", rim.radius_mm},
                         {"circularity_mm", rim.circularity_mm},
+                        {"cut_off_mm", rim.cut_off_mm},
                         {"points", rim.vertices.size()}});
     }
     json regions = json::array();
@@ -72,7 +73,10 @@ json mandrel_report(const Mandrel& mandrel) {
              {{"own", mandrel.winding_mesh.own},
               {"least_quality", report_number(mandrel.winding_mesh.least_quality)},
               {"ruled_shapes", mandrel.winding_mesh.ruled_shapes},
-              {"deviation_mm", report_number(mandrel.winding_mesh.deviation_mm)}}},
+              {"deviation_mm", report_number(mandrel.winding_mesh.deviation_mm)},
+              {"blend_mm", report_number(mandrel.winding_mesh.blend_mm)},
+              {"blended_mm2", report_number(mandrel.winding_mesh.blended_mm2)},
+              {"filled_mm3", report_number(mandrel.winding_mesh.filled_mm3)}}},
             {"smooth_fit",
              {{"quartic", fit.quartic},
               {"cubic", fit.cubic},

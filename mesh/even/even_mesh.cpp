@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <queue>
+#include <utility>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -52,6 +53,9 @@ std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& opti
         const double least = std::min(options.least_mm, options.most_turn / k);
         size[v] = std::clamp(options.turn_rad / k, std::min(least, options.longest_mm),
                              options.longest_mm);
+        if (!options.most_mm.empty()) {
+            size[v] = std::min(size[v], options.most_mm[v]);
+        }
     }
     using Entry = std::pair<double, std::int32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -84,13 +88,23 @@ std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& opti
     return size;
 }
 
+double triangles_of(const Surface& surface, const std::vector<double>& size_mm) {
+    double count = 0.0;
+    for (const auto& v : surface.face) {
+        const double size =
+            (size_mm[at_index(v[0])] + size_mm[at_index(v[1])] + size_mm[at_index(v[2])]) / 3.0;
+        count += area_mm2(surface.position_mm, v) / (kEquilateral * size * size);
+    }
+    return count;
+}
+
 class EvenMesher {
 public:
-    EvenMesher(const LabelledMesh& part, const std::vector<char>& kept,
+    EvenMesher(const LabelledMesh& part, const std::vector<char>& kept, Surface&& wall,
                const EvenMeshOptions& options)
         : options_(options),
           work_(part, kept),
-          surface_(frozen_wall(part, kept)),
+          surface_(std::move(wall)),
           wall_(surface_),
           size_of_surface_(sizes_of(surface_, options)) {
         work_.mesh.add_property(place_);
@@ -105,7 +119,9 @@ public:
     }
 
     LabelledMesh run() {
-        const double most = kMostGrowth * wanted_faces() + kMostGrowthFaces;
+        const double wanted =
+            static_cast<double>(work_.mesh.n_faces()) + triangles_of(surface_, size_of_surface_);
+        const double most = kMostGrowth * wanted + kMostGrowthFaces;
         for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
             check_interrupt();
             if (static_cast<double>(work_.mesh.n_faces()) > most) {
@@ -156,19 +172,6 @@ private:
         const Halfedge half = work_.mesh.halfedge_handle(edge, 0);
         return 0.5 * (place(work_.mesh.from_vertex_handle(half)).size_mm +
                       place(work_.mesh.to_vertex_handle(half)).size_mm);
-    }
-
-    // By the area of the given wall and the edges wanted there, and all that is no wall.
-    [[nodiscard]] double wanted_faces() const {
-        double count = static_cast<double>(work_.mesh.n_faces());
-        for (const auto& v : surface_.face) {
-            const double size =
-                (size_of_surface_[at_index(v[0])] + size_of_surface_[at_index(v[1])] +
-                 size_of_surface_[at_index(v[2])]) /
-                3.0;
-            count += area_mm2(surface_.position_mm, v) / (kEquilateral * size * size);
-        }
-        return count;
     }
 
     void number_wall_faces() {
@@ -492,9 +495,13 @@ private:
 
 }  // namespace
 
-LabelledMesh even_mesh(const LabelledMesh& part, const std::vector<char>& kept,
+double wanted_triangles(const Surface& wall, const EvenMeshOptions& options) {
+    return triangles_of(wall, sizes_of(wall, options));
+}
+
+LabelledMesh even_mesh(const LabelledMesh& part, const std::vector<char>& kept, Surface wall,
                        const EvenMeshOptions& options) {
-    return EvenMesher(part, kept, options).run();
+    return EvenMesher(part, kept, std::move(wall), options).run();
 }
 
 }  // namespace meshwind

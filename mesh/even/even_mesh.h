@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/even/labelled_mesh.h"
+#include "mesh/surface.h"
 
 namespace meshwind {
 
@@ -12,18 +13,25 @@ struct EvenMeshOptions {
     double least_mm = 0.0;  ///< edges are not made shorter than this,
     double most_turn = 0.35;  ///< unless the surface would turn by more than this
     double longest_mm = 0.0;  ///< > 0
-    double grading = 0.2;     ///< by which edges grow per length of way, no unit
-    int sweeps = 10;          ///< of split, collapse, flip and smooth
-    int polish = 4;           ///< closing sweeps that only flip towards larger angles and smooth
+    std::vector<double> most_mm =
+        {};                ///< the same per vertex of the wall; empty: nothing of that kind
+    double grading = 0.2;  ///< by which edges grow per length of way, no unit
+    int sweeps = 10;       ///< of split, collapse, flip and smooth
+    int polish = 4;        ///< closing sweeps that only flip towards larger angles and smooth
 };
+
+/// How many triangles an even mesh of this wall has, about: by its area and the edges wanted there.
+/// \param wall frozen
+[[nodiscard]] double wanted_triangles(const Surface& wall, const EvenMeshOptions& options);
 
 /// The wall of `part` in triangles of nearly equal edges, shorter where it is curved; every vertex
 /// on a curved patch of the given wall (mesh/smooth/patch.h), or on the curve through the vertices
 /// of a crease or of the wall's end. Corners of those lines stay. Faces that are no wall are halved
 /// where an edge that they share with it is. The outcome depends on the input alone.
-/// \param kept per region: whether it is wall \pre part is an oriented manifold, without slivers
+/// \param kept per region: whether it is wall \param wall frozen_wall() of both
+/// \pre part is an oriented manifold, without slivers
 /// Source: botsch_2004_remeshing, with sizes by curvature.
 [[nodiscard]] LabelledMesh even_mesh(const LabelledMesh& part, const std::vector<char>& kept,
-                                     const EvenMeshOptions& options);
+                                     Surface wall, const EvenMeshOptions& options);
 
 }  // namespace meshwind

@@ -48,6 +48,12 @@ constexpr double kNearShare = 0.25;
 // 10,000 edges.
 constexpr int kMostRounds = 40;
 
+// Halves are no more than this, nor than so many for each of the part's triangles: a pipe 100 times
+// as long as wide takes 150 for each. More come of facets with hardly an area.
+constexpr double kMostHalves = 300000.0;
+constexpr double kMostHalvesEach = 200.0;
+constexpr double kFewHalves = 20000.0;
+
 // Triangles turned afterwards stay within 20 degrees.
 constexpr double kTurnCosine = 0.94;
 
@@ -85,7 +91,10 @@ public:
     LongFacets run() {
         survey();
         group();
-        for (int round = 0; round < kMostRounds && halve_once(); ++round) {
+        const double most = std::clamp(kMostHalvesEach * static_cast<double>(facets_.size()),
+                                       kFewHalves, kMostHalves);
+        const bool wanted = halves() <= most;
+        for (int round = 0; wanted && round < kMostRounds && halve_once(); ++round) {
             check_interrupt();
         }
         if (found_.halved > 0) {
@@ -209,6 +218,17 @@ private:
             }
         }
         return -1;
+    }
+
+    // How many pieces the long edges come to, about.
+    [[nodiscard]] double halves() const {
+        double count = 0.0;
+        for (const Edge edge : work_.mesh.edges()) {
+            if (!work_.is_line(edge) && shape_of(edge) >= 0) {
+                count += work_.length(edge) / edge_mm_;
+            }
+        }
+        return count;
     }
 
     // The longest edges first, each once.

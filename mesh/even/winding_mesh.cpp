@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -31,8 +33,14 @@ constexpr double kFacetEdge = 0.1;
 // Share of the wall's area in narrow triangles that may be left: between creases that nearly meet.
 constexpr double kMostNarrow = 1e-3;
 
-// More corners than this where no surface can be fitted, and the mesh has failed.
+// More corners than this where no surface can be fitted, and the mesh has failed. Of the file's own
+// vertices even more: their triangles may still be long.
 constexpr double kMostAveraged = 0.1;
+constexpr double kMostAveragedInFile = 0.5;
+
+// Even triangles are no more than this. A pipe 100 times as long as wide takes 10,000; beyond,
+// vertices stand for no surface, and nobody waits for what comes of them.
+constexpr double kMostTriangles = 200000.0;
 
 double wall_area_mm2(const LabelledMesh& part, const std::vector<char>& kept) {
     double area = 0.0;
@@ -42,6 +50,15 @@ double wall_area_mm2(const LabelledMesh& part, const std::vector<char>& kept) {
         }
     }
     return area;
+}
+
+// Why a frozen wall is none, or empty.
+std::string no_surface(const Surface& wall, double most_averaged) {
+    const auto corners = static_cast<double>(wall.normal.size());
+    return wall.fit.averaged <= most_averaged * corners
+               ? std::string()
+               : "its vertices stand for no smooth surface at " +
+                     percent(wall.fit.averaged / corners, 0) + " of the corners";
 }
 
 // Largest distance of a vertex of the file's wall from the smooth surface of the own mesh.
@@ -73,9 +90,10 @@ double deviation_mm(const LabelledMesh& file, const Surface& surface,
 
 WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept) {
     WindingMesh result;
-    result.report.least_quality = least_quality(part, kept);
-    if (result.report.least_quality >= kUnevenQuality) {
-        result.part = part;
+    WindingMeshReport& report = result.report;
+    report.least_quality = least_quality(part, kept);
+    result.part = part;
+    if (report.least_quality >= kUnevenQuality) {
         return result;
     }
     const double size_mm = std::sqrt(wall_area_mm2(part, kept) / (4.0 * std::numbers::pi));
@@ -84,33 +102,39 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
         return without_slivers(mesh, kept, kShortEdge * size_mm, kLeftOut * size_mm);
     };
     const LongFacets halved = halve_long_facets(clean(part), kept, kFacetEdge * size_mm);
+    report.ruled_shapes = halved.shapes;
+    const LabelledMesh told = clean(halved.part);
     EvenMeshOptions options;
     options.least_mm = kLeastEdge * size_mm;
     options.longest_mm = kLongestEdge * size_mm;
-    LabelledMesh own = even_mesh(clean(halved.part), kept, options);
+    Surface wall = frozen_wall(told, kept);
+    report.why_not = no_surface(wall, kMostAveragedInFile);
+    if (!report.why_not.empty()) {
+        return result;
+    }
+    const double wanted = wanted_triangles(wall, options);
+    if (!(wanted <= kMostTriangles)) {
+        report.why_not = "even triangles would be too many, " + fixed(wanted, 0);
+        return result;
+    }
+    LabelledMesh own = even_mesh(told, kept, std::move(wall), options);
     const Surface surface = frozen_wall(own, kept);
-    result.report.ruled_shapes = halved.shapes;
-    result.report.triangles = surface.face.size();
-    result.report.deviation_mm = deviation_mm(part, surface, kept);
+    report.triangles = surface.face.size();
+    report.deviation_mm = deviation_mm(part, surface, kept);
     const double most_mm = kDeviationShare * size_mm;
     const double narrow = share_below(own, kept, kUnevenQuality);
-    const auto corners = static_cast<double>(surface.normal.size());
-    if (!(result.report.deviation_mm <= most_mm)) {
-        result.report.why_not = "even triangles would be up to " +
-                                fixed(result.report.deviation_mm, 3) +
-                                " mm off its vertices, more than " + fixed(most_mm, 3) + " mm";
+    if (!(report.deviation_mm <= most_mm)) {
+        report.why_not = "even triangles would be up to " + fixed(report.deviation_mm, 3) +
+                         " mm off its vertices, more than " + fixed(most_mm, 3) + " mm";
     } else if (narrow > kMostNarrow) {
-        result.report.why_not = "its narrow triangles cannot be taken out: " + percent(narrow, 1) +
-                                " of the wall would still lie in such";
-    } else if (surface.fit.averaged > kMostAveraged * corners) {
-        result.report.why_not = "its vertices stand for no smooth surface at " +
-                                percent(surface.fit.averaged / corners, 0) + " of the corners";
-    }
-    result.report.own = result.report.why_not.empty();
-    if (result.report.own) {
-        result.part = std::move(own);
+        report.why_not = "its narrow triangles cannot be taken out: " + percent(narrow, 1) +
+                         " of the wall would still lie in such";
     } else {
-        result.part = part;
+        report.why_not = no_surface(surface, kMostAveraged);
+    }
+    report.own = report.why_not.empty();
+    if (report.own) {
+        result.part = std::move(own);
     }
     return result;
 }

@@ -10,7 +10,9 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "mesh/edge_table.h"
+#include "mesh/even/blend.h"
 #include "mesh/even/slivers.h"
+#include "mesh/even/square_ends.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
 #include "mesh/repair/repair.h"
@@ -20,6 +22,7 @@
 #include "mesh/segment/rims.h"
 #include "mesh/segment/segment.h"
 #include "mesh/segment/spindle_axis.h"
+#include "mesh/smooth/refine.h"
 
 namespace meshwind {
 namespace {
@@ -219,6 +222,62 @@ void settle_on(const Meridian& meridian, const Eigen::Isometry3d& mandrel_from_f
     }
 }
 
+void take(LabelledMesh&& part, Mandrel& mandrel, Segmentation& segmentation) {
+    mandrel.whole = std::move(part.soup);
+    segmentation.region = std::move(part.region);
+    segmentation.feature = std::move(part.feature);
+    segmentation.neighbours = face_neighbours(mandrel.whole.faces);
+}
+
+// Area and triangles of regions that have changed. What is cut off an end is an end cap.
+void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& segmentation) {
+    for (std::size_t id = segmentation.regions.size(); id < count; ++id) {
+        Region end;
+        end.id = static_cast<std::int32_t>(id);
+        end.kind = RegionKind::EndCap;
+        end.visible_fraction = 1.0;
+        segmentation.regions.push_back(end);
+    }
+    for (Region& region : segmentation.regions) {
+        region.triangles = 0;
+        region.area_mm2 = 0.0;
+    }
+    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+        Region& region = segmentation.regions[static_cast<std::size_t>(segmentation.region[f])];
+        ++region.triangles;
+        region.area_mm2 += area_mm2(whole.points_mm, whole.faces[f]);
+    }
+}
+
+// Takes off what is no part of the ends' legs.
+std::vector<EndCut> cut_ends(Mandrel& mandrel, Segmentation& segmentation,
+                             const std::optional<double>& depth_mm, const std::string& name) {
+    SquareEnds square = square_ends({mandrel.whole, segmentation.region, segmentation.feature},
+                                    kept_of(segmentation.regions), depth_mm);
+    if (!square.cuts.empty()) {
+        take(std::move(square.part), mandrel, segmentation);
+        count_regions(mandrel.whole, square.kept.size(), segmentation);
+        if (std::none_of(segmentation.regions.begin(), segmentation.regions.end(),
+                         [](const Region& r) { return r.kept && r.triangles > 0; })) {
+            throw InputError("mesh.no_wall", name,
+                             "nothing is left of its wall when so much is cut off its ends; give "
+                             "less as \"cut_ends\" in the job");
+        }
+    }
+    return std::move(square.cuts);
+}
+
+void note(const std::vector<EndCut>& cuts, std::vector<Rim>& rims) {
+    for (const EndCut& cut : cuts) {
+        const auto off = [&](const Rim& rim) { return (rim.centre_mm - cut.centre_mm).norm(); };
+        const auto nearest = std::min_element(
+            rims.begin(), rims.end(), [&](const Rim& a, const Rim& b) { return off(a) < off(b); });
+        if (nearest != rims.end()) {
+            nearest->cut_off_mm = cut.depth_mm;
+        }
+    }
+}
+
 // The wall in triangles of our own, where the file's are uneven.
 void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
                const std::optional<MandrelOptions::Axis>& axis_mm) {
@@ -234,13 +293,32 @@ void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
     if (body) {
         settle_on(body->meridian, wall.frame.mandrel_from_file, kept, made.part);
     }
-    mandrel.whole = std::move(made.part.soup);
-    segmentation.region = std::move(made.part.region);
-    segmentation.feature = std::move(made.part.feature);
-    segmentation.neighbours = face_neighbours(mandrel.whole.faces);
+    take(std::move(made.part), mandrel, segmentation);
     const SpindleFrame frame = wall.frame;
     wall = find_wall(mandrel.whole, segmentation, axis_mm);
     if (body) {
+        wall.frame = frame;
+    }
+}
+
+// What is wound then is no more what the file's triangles stand for.
+void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, const MandrelOptions& options,
+           const std::string& name) {
+    Blend made = blend_wall({mandrel.whole, segmentation.region, segmentation.feature},
+                            kept_of(segmentation.regions), options.blend_mm);
+    if (!made.why_not.empty()) {
+        throw InputError(
+            "mesh.no_blend", name,
+            "cannot be blended by " + fixed(options.blend_mm, 2) + " mm: " + made.why_not);
+    }
+    mandrel.winding_mesh.blend_mm = options.blend_mm;
+    mandrel.winding_mesh.blended_mm2 = made.area_mm2;
+    mandrel.winding_mesh.filled_mm3 = made.volume_mm3;
+    if (made.area_mm2 > 0.0) {
+        take(std::move(made.part), mandrel, segmentation);
+        count_regions(mandrel.whole, segmentation.regions.size(), segmentation);
+        const SpindleFrame frame = wall.frame;
+        wall = find_wall(mandrel.whole, segmentation, options.axis);
         wall.frame = frame;
     }
 }
@@ -272,7 +350,24 @@ void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
                                       fixed(rim.radius_mm, 2) + " mm");
         }
     }
+    for (const Rim& rim : mandrel.rims) {
+        if (rim.cut_off_mm > 0.0) {
+            mandrel.remarks.push_back(
+                "rim " + std::to_string(rim.id) + " is cut " + fixed(rim.cut_off_mm, 2) +
+                " mm before the part's end, where its leg of radius " + fixed(rim.radius_mm, 2) +
+                " mm ends; \"mandrel\": {\"cut_ends\": 0} in the job keeps what is beyond");
+        }
+    }
     const WindingMeshReport& mesh = mandrel.winding_mesh;
+    if (mesh.blend_mm > 0.0) {
+        mandrel.remarks.push_back(mesh.blended_mm2 > 0.0
+                                      ? "the wall is blended by " + fixed(mesh.blend_mm, 2) +
+                                            " mm: " + fixed(mesh.blended_mm2, 0) +
+                                            " mm2 of it stand over the file's, with " +
+                                            fixed(mesh.filled_mm3 / 1000.0, 2) + " cm3 to fill in"
+                                      : "a ball of " + fixed(mesh.blend_mm, 2) +
+                                            " mm touches all of the wall: nothing is blended");
+    }
     if (mesh.own) {
         mandrel.remarks.push_back("the file's triangles are uneven: what is wound has " +
                                   std::to_string(mesh.triangles) +
@@ -341,6 +436,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     if (given) {
         given->origin *= mandrel.unit_mm;
     }
+    const std::vector<EndCut> cuts = cut_ends(mandrel, segmentation, options.cut_ends_mm, name);
     Wall wall = find_wall(mandrel.whole, segmentation, given);
     check_interrupt();
     if (options.mesh == MandrelOptions::Mesh::Even) {
@@ -348,6 +444,11 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     } else {
         mandrel.winding_mesh.least_quality = least_quality(wall.kept.soup);
     }
+    if (options.blend_mm > 0.0) {
+        check_interrupt();
+        blend(mandrel, segmentation, wall, options, name);
+    }
+    note(cuts, wall.rims.rims);
     auto& [kept, rims, frame] = wall;
 
     move(mandrel.whole, frame.mandrel_from_file);
@@ -371,6 +472,15 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
 }
 
 }  // namespace
+
+TriangleSoup refined_wall(const Mandrel& mandrel, double edge_mm) {
+    TriangleSoup soup = refined(mandrel.surface, edge_mm).soup;
+    const Eigen::Affine3d mandrel_to_file = mandrel.file_to_mandrel.inverse();
+    for (Eigen::Vector3d& p : soup.points_mm) {
+        p = mandrel_to_file * p;
+    }
+    return soup;
+}
 
 Mandrel load_mandrel(const std::filesystem::path& file, const MandrelOptions& options) {
     TriangleSoup soup = read_triangles(file);

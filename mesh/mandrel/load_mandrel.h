@@ -18,4 +18,8 @@ namespace meshwind {
 [[nodiscard]] Mandrel build_mandrel(const TriangleSoup& file_units, const std::string& name,
                                     const MandrelOptions& options = {});
 
+/// The winding surface with edges of at most `edge_mm` (mesh/smooth/refine.h), in the frame and
+/// units of the mandrel's file. \throws InputError refine.*
+[[nodiscard]] TriangleSoup refined_wall(const Mandrel& mandrel, double edge_mm);
+
 }  // namespace meshwind

@@ -15,8 +15,13 @@ constexpr double kPlaneShare = 2e-3;
 constexpr double kPlaneCosine = 0.99;
 constexpr double kConvexShare = 0.9;  // of an end cap's boundary length; notches are concave
 
-// End caps against other plateaus such as the tops of letters, by radius relative to the largest.
+// End caps against other plateaus such as the tops of letters, by radius relative to the largest
+// end, which may be open.
 constexpr double kCapRadiusShare = 0.25;
+
+// Share of the part's area that an end's outline encloses at least: that of a pipe 5000 radii long.
+// What is smaller is a sliver.
+constexpr double kCapAreaShare = 1e-4;
 
 std::size_t at(std::int32_t index) {
     return static_cast<std::size_t>(index);
@@ -54,6 +59,32 @@ double planar_area(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>&
         planar += inside ? face_area[at(f)] : 0.0;
     }
     return planar;
+}
+
+// The largest area that an open border of the part encloses.
+double largest_opening_mm2(const TriangleSoup& soup, const Segmentation& s) {
+    std::map<std::int32_t, std::int32_t> next;
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            if (s.neighbours[f][e] < 0) {
+                next.emplace(soup.faces[f][e], soup.faces[f][(e + 1) % 3]);
+            }
+        }
+    }
+    double largest = 0.0;
+    while (!next.empty()) {
+        const Eigen::Vector3d origin = soup.points_mm[at(next.begin()->first)];
+        Eigen::Vector3d area = Eigen::Vector3d::Zero();
+        for (auto step = next.begin(); step != next.end();) {
+            const std::int32_t onward = step->second;
+            area += 0.5 * (soup.points_mm[at(step->first)] - origin)
+                              .cross(soup.points_mm[at(onward)] - origin);
+            next.erase(step);
+            step = next.find(onward);
+        }
+        largest = std::max(largest, area.norm());
+    }
+    return largest;
 }
 
 bool is_plateau(const RegionFacts& r) {
@@ -137,7 +168,11 @@ void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t
 
 void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<RegionFacts>& facts) {
     std::vector<char> plateau(facts.size(), 0);
-    double largest = 0.0;
+    double least = 0.0;
+    double largest = largest_opening_mm2(soup, s);
+    for (const RegionFacts& r : facts) {
+        least += kCapAreaShare * r.area_mm2;
+    }
     for (std::size_t id = 0; id < facts.size(); ++id) {
         if (is_plateau(facts[id])) {
             plateau[id] = 1;
@@ -156,8 +191,9 @@ void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Region
         cap[id] = static_cast<char>(plateau[id] != 0 && !flat_of_box);
         largest = std::max(largest, cap[id] != 0 ? facts[id].outline_mm2 : 0.0);
     }
+    least = std::max(least, kCapRadiusShare * kCapRadiusShare * largest);
     for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (cap[id] != 0 && facts[id].outline_mm2 >= kCapRadiusShare * kCapRadiusShare * largest) {
+        if (cap[id] != 0 && facts[id].outline_mm2 >= least) {
             s.regions[id].kind = RegionKind::EndCap;
         }
     }

@@ -37,8 +37,8 @@ void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t
                    RegionFacts& facts);
 
 /// Sets the kind of the regions that are end caps: mostly planar, all edges convex, so that nothing
-/// stands before them, and as large as the part's other ends. A disc beside another such region is
-/// the flat of a box, not an end.
+/// stands before them, as large as the part's other ends, and no mere speck of it. A disc beside
+/// another such region is the flat of a box, not an end.
 void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<RegionFacts>& facts);
 
 }  // namespace meshwind

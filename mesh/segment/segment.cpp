@@ -29,6 +29,15 @@ constexpr double kMostDirections = 0.5;
 
 constexpr double kBlindShare = 0.05;  // of its area, from which a blind region may see
 
+// A region of which at least this share sees the outside and this share sees nothing is wall and
+// bore in one. So many of its faces are asked, evenly among them.
+constexpr double kBothSidesShare = 0.1;
+constexpr std::size_t kSidesAsked = 4000;
+
+// Wall and bore meet along a few circles: a longer border than so many times the root of the part's
+// area parts what only seems to see, for the coordinates have too few digits.
+constexpr double kLongestBorder = 6.0;
+
 // A blind region smaller than this share of the part may be a nook of the wall.
 constexpr double kBoreAreaShare = 0.01;
 
@@ -240,12 +249,68 @@ std::vector<char> spread(const TriangleSoup& soup, const Segmentation& s,
     return side;
 }
 
-// Where an end face is notched or its lip rounded in places, wall and bore run into each other.
-// Such pieces touch one end cap from both sides; they are parted halfway between the two. Returns
-// per face 1 where it is on the bore's side; empty when nothing runs together.
+// Faces of a region that see the outside, and others that see nothing of it; neither where one of
+// the two has no share in the region to speak of.
+Mouth sides_seen(const TriangleSoup& soup, const RegionFacts& region,
+                 const std::vector<Eigen::Vector3d>& normals, const std::vector<double>& face_area,
+                 const Visibility& visibility) {
+    const std::size_t step = 1 + region.faces.size() / kSidesAsked;
+    std::vector<char> side((region.faces.size() + step - 1) / step, 0);
+    parallel_for(side.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t f = at(region.faces[i * step]);
+            const auto& [a, b, c] = soup.faces[f];
+            const Eigen::Vector3d centre =
+                (soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0;
+            if (visibility.escapes(centre, normals[f], kMostDirections)) {
+                side[i] = 1;
+            } else if (!visibility.escapes(centre, normals[f], kBlindShare)) {
+                side[i] = 2;
+            }
+        }
+    });
+    Mouth mouth;
+    double all = 0.0;
+    double outer = 0.0;
+    double inner = 0.0;
+    for (std::size_t i = 0; i < side.size(); ++i) {
+        const std::int32_t f = region.faces[i * step];
+        all += face_area[at(f)];
+        if (side[i] == 1) {
+            outer += face_area[at(f)];
+            mouth.outer.push_back(f);
+        } else if (side[i] == 2) {
+            inner += face_area[at(f)];
+            mouth.inner.push_back(f);
+        }
+    }
+    return std::min(outer, inner) >= kBothSidesShare * all ? mouth : Mouth{};
+}
+
+// Length of the edges between both sides.
+double border_mm(const TriangleSoup& soup, const Segmentation& s, const std::vector<char>& side) {
+    double twice = 0.0;
+    for (std::size_t f = 0; f < side.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const std::int32_t g = s.neighbours[f][e];
+            if (g >= 0 && side[at(g)] != side[f]) {
+                twice += (soup.points_mm[at(soup.faces[f][(e + 1) % 3])] -
+                          soup.points_mm[at(soup.faces[f][e])])
+                             .norm();
+            }
+        }
+    }
+    return 0.5 * twice;
+}
+
+// Where an end face is notched or its lip rounded, wall and bore run into each other: such pieces
+// touch one end cap from both sides, or a region of theirs sees the outside here and nothing there.
+// They are parted halfway between the two. Returns per face 1 where it is on the bore's side; empty
+// when nothing runs together.
 std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
                              const std::vector<RegionFacts>& facts,
-                             const std::vector<Eigen::Vector3d>& normals) {
+                             const std::vector<Eigen::Vector3d>& normals,
+                             const std::vector<double>& face_area, const Visibility& visibility) {
     constexpr std::size_t kFew = 8;  // of the faces around a cap, one in so many may be misjudged
     std::vector<std::int32_t> piece_of_region(s.regions.size(), -1);
     const auto pieces = pieces_of(s.regions, facts);
@@ -276,6 +341,18 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
         all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
         all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
     }
+    for (const Region& region : s.regions) {
+        if (region.kind == RegionKind::Other && region.visible_fraction > kBothSidesShare &&
+            region.visible_fraction < 1.0 - kBothSidesShare) {
+            const Mouth mouth =
+                sides_seen(soup, facts[at(region.id)], normals, face_area, visibility);
+            if (!mouth.inner.empty()) {
+                joined[at(piece_of_region[at(region.id)])] = 1;
+                all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
+                all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
+            }
+        }
+    }
     if (std::count(joined.begin(), joined.end(), 1) == 0) {
         return {};
     }
@@ -283,6 +360,10 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
     for (std::size_t f = 0; f < side.size(); ++f) {
         const std::int32_t piece = piece_of(static_cast<std::int32_t>(f));
         side[f] = static_cast<char>(piece >= 0 && joined[at(piece)] != 0 && side[f] == 2);
+    }
+    const double total_mm2 = std::accumulate(face_area.begin(), face_area.end(), 0.0);
+    if (border_mm(soup, s, side) > kLongestBorder * std::sqrt(total_mm2)) {
+        return {};
     }
     return side;
 }
@@ -431,7 +512,7 @@ Segmentation segment(const TriangleSoup& soup) {
     survey();
     mark_end_caps(soup, s, facts);
     mark_bores(s, facts, total_mm2);
-    const std::vector<char> bore_side = bore_sides(soup, s, facts, normals);
+    const std::vector<char> bore_side = bore_sides(soup, s, facts, normals, face_area, visibility);
     if (!bore_side.empty()) {
         std::vector<RegionKind> kind(soup.faces.size());
         for (std::size_t f = 0; f < kind.size(); ++f) {

@@ -19,10 +19,10 @@ struct Segmentation {
 
 /// Regions are bounded by feature edges. End caps: see end_caps.h. Bore: large regions that see
 /// nothing and the blind ones beside them; pieces that lie in the holes of end caps only; pieces
-/// that mostly see nothing. Where a notched end face lets wall and bore run together, they are
-/// parted halfway. The rest is outer wall with all its collars, chamfers and lettering, and is
-/// `kept`. Visibility is sampled, with a bounded number of rays per region. \pre soup is an
-/// oriented manifold with the outside in front (see repair.h)
+/// that mostly see nothing. Where a notched end face or a round lip lets wall and bore run
+/// together, they are parted halfway. The rest is outer wall with all its collars, chamfers and
+/// lettering, and is `kept`. Visibility is sampled, with a bounded number of rays per region. \pre
+/// soup is an oriented manifold with the outside in front (see repair.h)
 [[nodiscard]] Segmentation segment(const TriangleSoup& soup);
 
 }  // namespace meshwind

@@ -6,11 +6,17 @@
 #include <Eigen/Geometry>
 
 #include "core/small_linear.h"
+#include "core/units.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
+
+// A wall goes all around its axis when it leaves no wider gap than this, a little more than a prism
+// of three sides does. A bend of a quarter or half a turn lies about the axis of its torus as well,
+// and nothing could hold it there.
+constexpr double kWidestGap_rad = 0.7 * kPi;
 
 struct Line {
     Vector3d origin;
@@ -63,6 +69,31 @@ Vector3d centroid_of(const std::vector<PointOnSurface>& points) {
 
 double distance_from(const Line& line, const Vector3d& point) {
     return (point - line.origin).cross(line.direction).norm();
+}
+
+// Largest angle about the line in which there is no surface. Points close to the line have no
+// angle.
+double widest_gap_rad(const Line& line, const std::vector<PointOnSurface>& points,
+                      double mean_radius_mm) {
+    constexpr double kClose = 0.1;
+    const Vector3d u = line.direction.unitOrthogonal();
+    const Vector3d v = line.direction.cross(u);
+    std::vector<double> angles;
+    for (const PointOnSurface& p : points) {
+        if (p.area > 0.0 && distance_from(line, p.point) > kClose * mean_radius_mm) {
+            const Vector3d arm = p.point - line.origin;
+            angles.push_back(std::atan2(v.dot(arm), u.dot(arm)));
+        }
+    }
+    if (angles.empty()) {
+        return 0.0;
+    }
+    std::sort(angles.begin(), angles.end());
+    double widest = angles.front() + 2.0 * kPi - angles.back();
+    for (std::size_t i = 1; i < angles.size(); ++i) {
+        widest = std::max(widest, angles[i] - angles[i - 1]);
+    }
+    return widest;
 }
 
 std::optional<Line> through_coaxial_rims(std::span<const Rim> rims) {
@@ -126,7 +157,9 @@ std::optional<Line> of_revolution(const std::vector<PointOnSurface>& points,
     for (const PointOnSurface& p : points) {
         radius += p.area * distance_from(line, p.point) / area;
     }
-    return line.residual_mm <= kRevolutionShare * radius ? std::optional(line) : std::nullopt;
+    const bool turns = line.residual_mm <= kRevolutionShare * radius &&
+                       widest_gap_rad(line, points, radius) <= kWidestGap_rad;
+    return turns ? std::optional(line) : std::nullopt;
 }
 
 // The principal axis that most rims point along, the longer one of equals; without rims the one

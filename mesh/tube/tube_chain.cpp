@@ -29,6 +29,7 @@ constexpr double kMostPerArc = 100.0;
 // the curvature by less is none.
 constexpr double kLeastCurvature = 0.02;  // times the tube's radius
 constexpr double kLeastJump = 0.3;        // of the curvature beside it
+constexpr double kLeastBow = 1e-3;        // of the tube's radius, of a bend over its chord
 
 // Vertices that the chain is fitted to, evenly picked: it has a dozen unknowns.
 constexpr std::size_t kFitVertices = 3000;
@@ -260,6 +261,21 @@ VectorXd fitted(const Chain& chain, std::span<const Vector3d> points) {
     return x;
 }
 
+// Short legs whose curvature was read across the joint: a bow that the wall does not show is none.
+// Returns whether there was one.
+bool straighten(const CentreLine& line, double radius_mm, std::vector<Stretch>& stretches) {
+    bool any = false;
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+        const CentreArc& arc = line.arcs()[i];
+        const double bow_mm = arc.curvature_per_mm.norm() * arc.length_mm * arc.length_mm / 8.0;
+        if (!stretches[i].curvature_per_mm.isZero() && bow_mm <= kLeastBow * radius_mm) {
+            stretches[i].curvature_per_mm.setZero();
+            any = true;
+        }
+    }
+    return any;
+}
+
 bool nearly_one_radius(const Tube& tube) {
     const auto [least, most] = std::minmax_element(
         tube.radius.begin(), tube.radius.end(),
@@ -321,17 +337,22 @@ std::optional<Tube> chain_tube(std::span<const Rim> rims, const Surface& surface
     const double radius_mm = tube.radius.front().radius_mm;
     std::vector<Stretch> stretches = stretches_of(curvature_along(tube.line, radius_mm), radius_mm);
     const bool one_radius = nearly_one_radius(tube);
-    const Chain chain(tube.line.nodes().front(), std::move(stretches), tube, one_radius);
     std::vector<Vector3d> points;
     const std::size_t every = 1 + surface.position_mm.size() / kFitVertices;
     for (std::size_t v = 0; v < surface.position_mm.size(); v += every) {
         points.push_back(surface.position_mm[v]);
     }
-    const VectorXd x = fitted(chain, points);
+    std::optional<Chain> chain;
+    chain.emplace(tube.line.nodes().front(), stretches, tube, one_radius);
+    VectorXd x = fitted(*chain, points);
+    if (x.allFinite() && straighten(chain->line(x), radius_mm, stretches)) {
+        chain.emplace(tube.line.nodes().front(), stretches, tube, one_radius);
+        x = fitted(*chain, points);
+    }
     if (!x.allFinite()) {
         return std::nullopt;
     }
-    const CentreLine whole = chain.line(x);
+    const CentreLine whole = chain->line(x);
     std::optional<CentreLine> line = trimmed(whole, rims);
     if (!line) {
         return std::nullopt;
@@ -339,7 +360,7 @@ std::optional<Tube> chain_tube(std::span<const Rim> rims, const Surface& surface
     std::vector<TubeRadius> radius;
     const double begin = whole.foot(rims[0].centre_mm).arc_mm;
     for (const TubeRadius& node : tube.radius) {
-        radius.push_back({node.arc_mm - begin, chain.radius_mm(x, node.arc_mm)});
+        radius.push_back({node.arc_mm - begin, chain->radius_mm(x, node.arc_mm)});
     }
     if (one_radius) {
         radius.resize(1);

@@ -90,10 +90,22 @@ Key<Job::MandrelJob> mesh_key() {
     using Mesh = MandrelOptions::Mesh;
     Key<Job::MandrelJob> key =
         word("mesh", &Job::MandrelJob::mesh, {"file", "even"},
-             "triangles that are wound; file: the file's own; even: where those are uneven, even "
-             "ones over the surface that the file's vertices stand for");
+             "triangles that are wound; even: where the file's are uneven, even ones over the "
+             "surface that its vertices stand for; file: the file's own in any case");
     key.text = [text = key.text](const Job::MandrelJob& mandrel) {
-        return mandrel.mesh == Mesh::File ? std::string() : text(mandrel);
+        return mandrel.mesh == Mesh::Even ? std::string() : text(mandrel);
+    };
+    return key;
+}
+
+// Left out where nothing is blended.
+Key<Job::MandrelJob> blend_key() {
+    Key<Job::MandrelJob> key =
+        number("blend", &Job::MandrelJob::blend_mm, kCutRange,
+               "mm, radius of a ball: crotches and steps that it cannot touch are filled up "
+               "smoothly; the part has to be made so");
+    key.text = [text = key.text](const Job::MandrelJob& mandrel) {
+        return mandrel.blend_mm > 0.0 ? text(mandrel) : std::string();
     };
     return key;
 }
@@ -123,6 +135,10 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
              "metres if the part is under 10 units"),
         axis_key(),
         regions_key(),
+        number("cut_ends", &Owner::cut_ends_mm, kCutRange,
+               "mm that are cut off each end; without it rounded lips, tabs and notches, which are "
+               "no part of the end's leg"),
+        blend_key(),
         mesh_key(),
         number("extension", &Owner::extension_mm, kExtensionRange,
                "mm of room beyond each rim where the fibre turns"),

@@ -52,7 +52,7 @@ std::filesystem::path capped_cylinder_file() {
 // the normal.
 TEST_P(CadParts, KeepTheHelixOnLongFacetsOfAnStl) {
     const auto file = capped_cylinder_file();
-    const Mandrel mandrel = load_mandrel(file);
+    const Mandrel mandrel = load_mandrel(file, {.mesh = MandrelOptions::Mesh::File});
     std::filesystem::remove(file);
     const Surface& surface = mandrel.surface;
     ASSERT_EQ(surface.face.size(), 96U);
@@ -80,7 +80,7 @@ TEST_P(CadParts, KeepTheHelixOnLongFacetsOfAnStl) {
 // the plane through the axis where they are axial.
 TEST_P(CadParts, CrossTheCapsInOnePlane) {
     const auto file = capped_cylinder_file();
-    MandrelOptions whole;
+    MandrelOptions whole{.mesh = MandrelOptions::Mesh::File};
     for (const Region& region : load_mandrel(file).regions) {
         whole.keep_regions.push_back(region.id);
     }

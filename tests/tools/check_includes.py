@@ -21,6 +21,7 @@ ALLOWED = [
     ("OpenMesh/", "mesh/repair/open_mesh*.h"),
     ("CGAL/", "geodesic/shortest_path.cpp"),
     ("CGAL/", "mesh/shapes/planar_delaunay.cpp"),
+    ("CGAL/", "mesh/even/fair.cpp"),
     ("CGAL/", "mesh/repair/*.cpp"),
     ("embree3/", "mesh/ray_query.cpp"),
     ("flann/", "mesh/nearest.cpp"),

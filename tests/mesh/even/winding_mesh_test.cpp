@@ -10,6 +10,7 @@
 #include "mesh/even/even_mesh.h"
 #include "mesh/even/long_facets.h"
 #include "mesh/even/slivers.h"
+#include "mesh/even/wall_surface.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/revolution/revolution.h"
 #include "mesh/segment/segment.h"
@@ -113,8 +114,9 @@ TEST(WindingMesh, OfAMeshWithNeedlesHasNone) {
         const TriangleSoup soup = make_mandrel(kind, {}, {.edge_mm = 5.0});
         const Walls good = walls_of(soup);
         const double size_mm = std::sqrt(area_mm2(soup) / (4.0 * kPi));
-        const LabelledMesh even = even_mesh(
-            good.part, good.kept, {.least_mm = 0.02 * size_mm, .longest_mm = 0.15 * size_mm});
+        const LabelledMesh even =
+            even_mesh(good.part, good.kept, frozen_wall(good.part, good.kept),
+                      {.least_mm = 0.02 * size_mm, .longest_mm = 0.15 * size_mm});
         const Walls walls = walls_of(test::with_needles(soup, 40, 1e-3, 7));
         const WindingMesh made = winding_mesh(walls.part, walls.kept);
         ASSERT_TRUE(made.report.own) << kind;

@@ -204,7 +204,7 @@ TEST(ExtendedSurface, FillsUpARimThatIsNotFlat) {
     for (Vector3d& p : soup.points_mm) {
         p.z() += 3.0 * (p.z() / 50.0 - 1.0) * std::cos(2.0 * std::atan2(p.y(), p.x()));
     }
-    const Mandrel sawn = build_mandrel(soup, "sawn", {.unit_mm = 1.0});
+    const Mandrel sawn = build_mandrel(soup, "sawn", {.unit_mm = 1.0, .cut_ends_mm = 0.0});
     ASSERT_EQ(sawn.rims.size(), 2U);
     const Surface surface = extended_surface(sawn, 60.0);
     each_edge(surface, [&](std::size_t f, std::size_t e) {

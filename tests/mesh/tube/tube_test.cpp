@@ -97,6 +97,20 @@ TEST(FindTube, ElbowsAndFramesAreExact) {
     EXPECT_NEAR(frame.tube->parts[1].bend_radius_mm, 60.0, 1e-8);
 }
 
+// Legs of a third of the radius: their curvature is read across the joints, and they are straight.
+TEST(FindTube, ShortLegsAreStraight) {
+    const ElbowShape shape{30.0, 90.0, rad_from_deg(90.0), 10.0, 10.0};
+    const TubeFinding finding = found(make_elbow(shape, {.edge_mm = 4.0}));
+    ASSERT_TRUE(finding.tube) << finding.why_not;
+    const std::vector<TubePart>& parts = finding.tube->parts;
+    ASSERT_EQ(parts.size(), 3U);
+    EXPECT_EQ(parts[0].kind, Kind::Straight);
+    EXPECT_EQ(parts[1].kind, Kind::Bend);
+    EXPECT_EQ(parts[2].kind, Kind::Straight);
+    EXPECT_NEAR(parts[1].bend_radius_mm, 90.0, 1e-6);
+    EXPECT_NEAR(parts[0].to_mm, 10.0, 1e-5);
+}
+
 // A quarter to the side, a leg, a half turn out of its plane, and no leg after it.
 TEST(FindTube, SpatialChainKeepsItsParts) {
     const CentreLine line(CentrePlace{}, {{90.0, {0.0, 0.0}},

@@ -1,0 +1,248 @@
+#include "mesh/even/blend.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "core/interrupt.h"
+#include "core/parallel.h"
+#include "mesh/edge_table.h"
+#include "mesh/even/even_mesh.h"
+#include "mesh/even/fair.h"
+#include "mesh/even/slivers.h"
+#include "mesh/even/wall_surface.h"
+#include "mesh/ray_query.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// A ball touches a facet when nothing reaches deeper into it than this share of its radius; facets
+// of a convex wall reach less.
+constexpr double kReaches = 0.01;
+
+// Edges where the ball cannot touch, as a share of its radius: four to a fillet of 90 degrees
+// before it is bent.
+constexpr double kEdge = 0.3;
+
+// Shares of the part's size, as for every even mesh (winding_mesh.cpp).
+constexpr double kLongestEdge = 0.15;
+constexpr double kLeastEdge = 0.01;
+
+constexpr double kMostTriangles = 200000.0;
+// Share of the wall in triangles below this quality that a blended wall may have.
+constexpr double kNarrow = 0.15;
+constexpr double kMostNarrow = 5e-3;
+
+std::size_t at_index(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+double size_of(const Surface& wall) {
+    double area = 0.0;
+    for (const auto& face : wall.face) {
+        area += area_mm2(wall.position_mm, face);
+    }
+    return std::sqrt(area / (4.0 * std::numbers::pi));
+}
+
+// Per face of the wall 1 where the ball cannot touch its middle.
+std::vector<char> out_of_reach(const Surface& wall, double radius_mm) {
+    const TriangleSoup soup{wall.position_mm, wall.face};
+    const RayQuery query{std::span(&soup, 1)};
+    std::vector<char> out(wall.face.size(), 0);
+    constexpr std::size_t kChunk = 256;
+    parallel_for(out.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const auto& [a, b, c] = wall.face[f];
+            const Vector3d& pa = wall.position_mm[at_index(a)];
+            const Vector3d& pb = wall.position_mm[at_index(b)];
+            const Vector3d& pc = wall.position_mm[at_index(c)];
+            const Vector3d normal = (pb - pa).cross(pc - pa).normalized();
+            const Vector3d centre = (pa + pb + pc) / 3.0 + radius_mm * normal;
+            out[f] = static_cast<char>(query.closest(centre, radius_mm).distance_mm <
+                                       (1.0 - kReaches) * radius_mm);
+        }
+    });
+    return out;
+}
+
+// Faces of the part that are wall, in their order: the faces of its frozen wall.
+std::vector<std::int32_t> wall_faces(const LabelledMesh& part, const std::vector<char>& kept) {
+    std::vector<std::int32_t> faces;
+    for (std::size_t f = 0; f < part.region.size(); ++f) {
+        if (kept[at_index(part.region[f])] != 0) {
+            faces.push_back(static_cast<std::int32_t>(f));
+        }
+    }
+    return faces;
+}
+
+EvenMeshOptions options_for(double size_mm) {
+    EvenMeshOptions options;
+    options.least_mm = kLeastEdge * size_mm;
+    options.longest_mm = kLongestEdge * size_mm;
+    return options;
+}
+
+// Creases beside the faces go, and regions that no crease parts any more become one.
+void join_over(LabelledMesh& part, const std::vector<char>& kept,
+               const std::vector<char>& blended) {
+    const auto neighbours = face_neighbours(part.soup.faces);
+    std::vector<std::int32_t> same(kept.size());
+    std::iota(same.begin(), same.end(), 0);
+    const auto first_of = [&](std::int32_t region) {
+        while (same[at_index(region)] != region) {
+            region = same[at_index(region)];
+        }
+        return region;
+    };
+    for (std::size_t f = 0; f < part.region.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            const std::int32_t g = neighbours[f][e];
+            if (g < 0 || kept[at_index(part.region[f])] == 0 ||
+                kept[at_index(part.region[at_index(g)])] == 0) {
+                continue;
+            }
+            if (blended[f] != 0 || blended[at_index(g)] != 0) {
+                part.feature[f][e] = 0;
+            }
+            if (part.feature[f][e] == 0) {
+                const std::int32_t one = first_of(part.region[f]);
+                const std::int32_t other = first_of(part.region[at_index(g)]);
+                same[at_index(std::max(one, other))] = std::min(one, other);
+            }
+        }
+    }
+    for (std::int32_t& region : part.region) {
+        region = first_of(region);
+    }
+}
+
+double volume_mm3(const TriangleSoup& soup) {
+    double volume = 0.0;
+    for (const auto& [a, b, c] : soup.faces) {
+        volume += soup.points_mm[at_index(a)].dot(
+                      soup.points_mm[at_index(b)].cross(soup.points_mm[at_index(c)])) /
+                  6.0;
+    }
+    return volume;
+}
+
+// The wall alone, with the number of each of its points in the part.
+struct WallSoup {
+    TriangleSoup soup;
+    std::vector<std::int32_t> point;
+};
+
+WallSoup wall_soup(const LabelledMesh& part, const std::vector<std::int32_t>& faces) {
+    WallSoup wall;
+    std::vector<std::int32_t> number(part.soup.points_mm.size(), -1);
+    for (const std::int32_t f : faces) {
+        std::array<std::int32_t, 3> face = part.soup.faces[at_index(f)];
+        for (std::int32_t& v : face) {
+            std::int32_t& n = number[at_index(v)];
+            if (n < 0) {
+                n = static_cast<std::int32_t>(wall.point.size());
+                wall.point.push_back(v);
+                wall.soup.points_mm.push_back(part.soup.points_mm[at_index(v)]);
+            }
+            v = n;
+        }
+        wall.soup.faces.push_back(face);
+    }
+    return wall;
+}
+
+// Points whose faces are all blended, and which are not where the wall ends.
+std::vector<char> free_points(const TriangleSoup& wall, const std::vector<char>& blended) {
+    std::vector<char> free(wall.points_mm.size(), 1);
+    const auto neighbours = face_neighbours(wall.faces);
+    for (std::size_t f = 0; f < wall.faces.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            if (blended[f] == 0) {
+                free[at_index(wall.faces[f][e])] = 0;
+            }
+            if (neighbours[f][e] < 0) {
+                free[at_index(wall.faces[f][e])] = 0;
+                free[at_index(wall.faces[f][(e + 1) % 3])] = 0;
+            }
+        }
+    }
+    return free;
+}
+
+// Even triangles, short ones near where the ball cannot touch.
+LabelledMesh fine_near(const LabelledMesh& part, const std::vector<char>& kept, Surface&& wall,
+                       const std::vector<char>& out, double radius_mm) {
+    EvenMeshOptions options = options_for(size_of(wall));
+    options.most_mm.assign(wall.position_mm.size(), options.longest_mm);
+    for (std::size_t f = 0; f < out.size(); ++f) {
+        for (const std::int32_t v : wall.face[f]) {
+            if (out[f] != 0) {
+                options.most_mm[at_index(v)] = std::min(options.longest_mm, kEdge * radius_mm);
+            }
+        }
+    }
+    return even_mesh(part, kept, std::move(wall), options);
+}
+
+}  // namespace
+
+Blend blend_wall(const LabelledMesh& part, const std::vector<char>& kept, double radius_mm) {
+    Blend result;
+    result.part = part;
+    Surface wall = frozen_wall(part, kept);
+    const std::vector<char> out = out_of_reach(wall, radius_mm);
+    if (std::find(out.begin(), out.end(), 1) == out.end()) {
+        return result;
+    }
+    check_interrupt();
+    LabelledMesh fine = fine_near(part, kept, std::move(wall), out, radius_mm);
+    check_interrupt();
+    const std::vector<std::int32_t> faces = wall_faces(fine, kept);
+    const std::vector<char> blended = out_of_reach(frozen_wall(fine, kept), radius_mm);
+    WallSoup filled = wall_soup(fine, faces);
+    const double before = volume_mm3(filled.soup);
+    if (!fair(filled.soup, free_points(filled.soup, blended))) {
+        result.why_not = "no smooth surface fills it";
+        return result;
+    }
+    result.volume_mm3 = volume_mm3(filled.soup) - before;
+    std::vector<char> blended_of_part(fine.soup.faces.size(), 0);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        blended_of_part[at_index(faces[i])] = blended[i];
+        if (blended[i] != 0) {
+            result.area_mm2 += area_mm2(filled.soup.points_mm, filled.soup.faces[i]);
+        }
+    }
+    for (std::size_t v = 0; v < filled.point.size(); ++v) {
+        fine.soup.points_mm[at_index(filled.point[v])] = filled.soup.points_mm[v];
+    }
+    join_over(fine, kept, blended_of_part);
+    check_interrupt();
+    Surface smooth = frozen_wall(fine, kept);
+    const EvenMeshOptions options = options_for(size_of(smooth));
+    if (wanted_triangles(smooth, options) > kMostTriangles) {
+        result.why_not = "it would take too many triangles; blend by a larger radius";
+        return result;
+    }
+    LabelledMesh even = even_mesh(fine, kept, std::move(smooth), options);
+    const double narrow = share_below(even, kept, kNarrow);
+    if (narrow > kMostNarrow) {
+        result.why_not = "its triangles do not come out even";
+        return result;
+    }
+    result.part = std::move(even);
+    return result;
+}
+
+}  // namespace meshwind
