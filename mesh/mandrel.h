@@ -42,6 +42,13 @@ struct MandrelOptions {
     Mesh mesh = Mesh::Even;
 };
 
+/// What hangs together of a winding surface.
+struct WallPiece {
+    double area_mm2 = 0.0;
+    Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero();  ///< of its area, mandrel frame
+    std::vector<std::int32_t> regions;                    ///< ids, sorted
+};
+
 /// The winding surface with all that was found on the way. Immutable once loaded.
 struct Mandrel {
     std::string file;       ///< name without folder
@@ -52,6 +59,7 @@ struct Mandrel {
     Surface surface;                         ///< what is wound
     std::vector<Region> regions;
     std::vector<Rim> rims;
+    std::vector<WallPiece> pieces;  ///< largest first; one where all of it hangs together
     SpindleAxis axis;
     /// Mandrel-frame point in mm = linear * file point in file units + translation; the linear part
     /// is a rotation times `unit_mm`.

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/text/text_number.h"
+#include "mesh/even/blend.h"
 
 namespace meshwind {
 namespace {
@@ -38,6 +39,21 @@ std::string size_words(const Mandrel& mandrel) {
     const std::string rule = mandrel.unit_rule == "file" ? "stated by the file" : mandrel.unit_rule;
     return fixed(size.x(), 1) + " x " + fixed(size.y(), 1) + " x " + fixed(size.z(), 1) +
            " mm (unit " + unit_name(mandrel) + ", " + rule + ")";
+}
+
+std::string blend_proposal(const Mandrel& mandrel, double tow_width_mm) {
+    constexpr double kWorthAWord = 0.002;  // of the wall's area
+    if (mandrel.winding_mesh.blend_mm > 0.0) {
+        return {};
+    }
+    const double sharp_mm2 = out_of_reach_mm2(mandrel.surface, tow_width_mm);
+    const double all_mm2 = area_mm2({mandrel.surface.position_mm, mandrel.surface.face});
+    if (!(sharp_mm2 > kWorthAWord * all_mm2)) {
+        return {};
+    }
+    return "a ball as wide as the tow cannot touch " + percent(sharp_mm2 / all_mm2, 1) +
+           " of the wall, in crotches and at steps; --set mandrel.blend=" + fixed(tow_width_mm, 1) +
+           " fills them up";
 }
 
 std::string unit_question(const Mandrel& mandrel) {

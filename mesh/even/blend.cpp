@@ -197,6 +197,15 @@ LabelledMesh fine_near(const LabelledMesh& part, const std::vector<char>& kept, 
 
 }  // namespace
 
+double out_of_reach_mm2(const Surface& wall, double radius_mm) {
+    const std::vector<char> out = out_of_reach(wall, radius_mm);
+    double area = 0.0;
+    for (std::size_t f = 0; f < out.size(); ++f) {
+        area += out[f] != 0 ? area_mm2(wall.position_mm, wall.face[f]) : 0.0;
+    }
+    return area;
+}
+
 Blend blend_wall(const LabelledMesh& part, const std::vector<char>& kept, double radius_mm) {
     Blend result;
     result.part = part;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/even/labelled_mesh.h"
+#include "mesh/surface.h"
 
 namespace meshwind {
 
@@ -14,6 +15,10 @@ struct Blend {
     double volume_mm3 = 0.0;  ///< filled in
     std::string why_not;      ///< where something would be blended and cannot be; in words
 };
+
+/// Area of the wall, mm2, that a ball of the radius cannot touch from outside: what a blend would
+/// fill up.
+[[nodiscard]] double out_of_reach_mm2(const Surface& wall, double radius_mm);
 
 /// Where a ball of the radius that rolls over the wall cannot touch it, the wall becomes the smooth
 /// surface that goes on from both sides (fair.h): fillets in crotches and along concave creases,

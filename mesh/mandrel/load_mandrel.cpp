@@ -22,6 +22,7 @@
 #include "mesh/segment/rims.h"
 #include "mesh/segment/segment.h"
 #include "mesh/segment/spindle_axis.h"
+#include "mesh/segment/wall_pieces.h"
 #include "mesh/smooth/refine.h"
 
 namespace meshwind {
@@ -323,7 +324,7 @@ void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, const Mandr
     }
 }
 
-void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
+void add_remarks(Mandrel& mandrel, int holes, int crumbs) {
     const RepairReport& r = mandrel.repairs;
     if (r.components > 1) {
         mandrel.remarks.push_back("the file holds " + std::to_string(r.components) +
@@ -338,9 +339,10 @@ void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
         mandrel.remarks.push_back(std::to_string(holes) +
                                   " small holes in the wall are not rims: courses end at them");
     }
-    if (open_shells > 1) {
-        mandrel.remarks.push_back("the winding surface consists of " + std::to_string(open_shells) +
-                                  " separate pieces; keep one with keep_regions");
+    if (crumbs > 0) {
+        mandrel.remarks.push_back(std::to_string(crumbs) +
+                                  " small pieces of the wall hang together with nothing of it and "
+                                  "are not wound; keep_regions names what is");
     }
     constexpr double kRoundShare = 0.02;  // of its radius: a rim further off is worth a word
     for (const Rim& rim : mandrel.rims) {
@@ -384,28 +386,24 @@ void add_remarks(Mandrel& mandrel, int holes, int open_shells) {
     }
 }
 
-int count_pieces(const std::vector<std::array<std::int32_t, 3>>& neighbours) {
-    std::vector<char> reached(neighbours.size(), 0);
-    int pieces = 0;
-    for (std::size_t seed = 0; seed < neighbours.size(); ++seed) {
-        if (reached[seed] != 0) {
-            continue;
-        }
-        ++pieces;
-        std::vector<std::size_t> stack{seed};
-        reached[seed] = 1;
-        while (!stack.empty()) {
-            const std::size_t f = stack.back();
-            stack.pop_back();
-            for (const std::int32_t g : neighbours[f]) {
-                if (g >= 0 && reached[static_cast<std::size_t>(g)] == 0) {
-                    reached[static_cast<std::size_t>(g)] = 1;
-                    stack.push_back(static_cast<std::size_t>(g));
-                }
+// Crumbs of the wall that hang together with nothing of it are no wall. Returns how many.
+int leave_crumbs(const TriangleSoup& whole, Segmentation& segmentation) {
+    constexpr double kCrumbShare = 0.01;  // of the largest piece
+    const LabelledMesh wall =
+        wall_of({whole, segmentation.region, segmentation.feature, segmentation.neighbours},
+                kept_of(segmentation.regions));
+    const std::vector<WallPiece> pieces =
+        wall_pieces(wall.soup, face_neighbours(wall.soup.faces), wall.region);
+    int crumbs = 0;
+    for (const WallPiece& piece : pieces) {
+        if (piece.area_mm2 < kCrumbShare * pieces.front().area_mm2) {
+            ++crumbs;
+            for (const std::int32_t id : piece.regions) {
+                segmentation.regions[static_cast<std::size_t>(id)].kept = false;
             }
         }
     }
-    return pieces;
+    return crumbs;
 }
 
 Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& name,
@@ -431,6 +429,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     Segmentation segmentation = segment(mandrel.whole);
     keep_named_regions(segmentation, options.keep_regions, name);
     check_wall(segmentation.regions, name);
+    const int crumbs = options.keep_regions.empty() ? leave_crumbs(mandrel.whole, segmentation) : 0;
     check_interrupt();
     std::optional<MandrelOptions::Axis> given = options.axis;
     if (given) {
@@ -467,7 +466,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     }
     mandrel.axis = frame.axis;
     mandrel.file_to_mandrel = frame.mandrel_from_file * Eigen::Scaling(mandrel.unit_mm);
-    add_remarks(mandrel, rims.holes, count_pieces(mandrel.surface.neighbour));
+    mandrel.pieces = wall_pieces({mandrel.surface.position_mm, mandrel.surface.face},
+                                 mandrel.surface.neighbour, mandrel.surface.region);
+    add_remarks(mandrel, rims.holes, crumbs);
     return mandrel;
 }
 

@@ -2,6 +2,7 @@
 #include "pipeline/before_planning.h"
 #include "mesh/shapes/make_kinds.h"
 
+#include <algorithm>
 #include <random>
 #include <span>
 #include <string>
@@ -20,6 +21,7 @@
 #include "pipeline/plan_layer.h"
 #include "pipeline/setup.h"
 #include "tests/support/any_machine.h"
+#include "tests/support/shapes.h"
 #include "tests/support/small_pipe.h"
 #include "tests/support/tells.h"
 
@@ -97,6 +99,45 @@ TEST(BeforePlanning, TellsAxisAndMillimetresOfAPartBeyondItsTravel) {
     EXPECT_EQ(outcome(with_carriage(four, -150.0, 150.0), shorter).code, "plan.travel");
     // A hand's breadth too short is not decided here: turns lie on the extensions.
     EXPECT_EQ(outcome(with_carriage(four, -200.5, 200.5), shorter).code, "");
+}
+
+// Two pipes that do not touch: nothing goes from one to the other. A crumb is left out instead.
+TEST(BeforePlanning, AWallInPiecesIsRefusedWithTheirPlaces) {
+    const auto pipe_at = [](double radius, double length, double x) {
+        TriangleSoup pipe = make_mandrel("cylinder", {{"radius", radius}, {"length", length}},
+                                         {.edge_mm = radius / 5.0});
+        for (Eigen::Vector3d& p : pipe.points_mm) {
+            p.x() += x;
+        }
+        return pipe;
+    };
+    TriangleSoup two = pipe_at(25.0, 200.0, 0.0);
+    test::add(two, pipe_at(20.0, 100.0, 90.0));
+    const Outcome found = outcome(shipped("six_axis"), build_mandrel(two, "two.stl"));
+    EXPECT_EQ(found.code, "mesh.pieces");
+    // 2 pi 25 200 and 2 pi 20 100 mm2 less the chords, and the first one's region.
+    for (const char* figure : {"two.stl", "2 pieces", "313.", "125.", "[0]"}) {
+        EXPECT_NE(found.words.find(figure), std::string::npos) << found.words;
+    }
+    TriangleSoup crumb = pipe_at(25.0, 200.0, 0.0);
+    test::add(crumb, pipe_at(2.0, 4.0, 90.0));
+    const Mandrel mandrel = build_mandrel(crumb, "crumb.stl");
+    EXPECT_EQ(mandrel.pieces.size(), 1U);
+    EXPECT_EQ(mandrel.rims.size(), 2U);
+    EXPECT_EQ(outcome(shipped("six_axis"), mandrel).code, "");
+}
+
+// A sharp crotch is worth a word, a round one is not.
+TEST(BeforePlanning, ABlendIsProposedForASharpCrotch) {
+    const auto proposed = [](double blend_mm) {
+        const Mandrel tee = made("tee", {{"blend-radius", blend_mm}});
+        const std::vector<std::string> remarks = remarks_on(shipped("six_axis"), tee, {});
+        return std::any_of(remarks.begin(), remarks.end(), [](const std::string& remark) {
+            return remark.find("mandrel.blend=6.0") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(proposed(0.5));
+    EXPECT_FALSE(proposed(15.0));
 }
 
 TEST(BeforePlanning, OneEndBeyondTheTravelStopsPatternsAndPlainTubes) {
