@@ -56,7 +56,7 @@ Eigen::Isometry3d somewhere() {
     return motion;
 }
 
-constexpr MandrelOptions kAsItCame{.mesh = MandrelOptions::Mesh::File};
+const MandrelOptions kAsItCame{.mesh = MandrelOptions::Mesh::File};
 
 TEST(BuildMandrel, HollowPipeKeepsItsOuterWall) {
     const TriangleSoup pipe = test::moved(test::pipe(20.0, 17.0, 200.0, 24), somewhere());
