@@ -74,10 +74,6 @@ std::string name_of_file(const std::filesystem::path& file, const std::string& o
     return file.empty() ? otherwise : file.filename().string();
 }
 
-std::string place_words(const Vector3d& p) {
-    return "(" + fixed(p.x(), 1) + ", " + fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ")";
-}
-
 double radius_of(const Vector3d& point) {
     return point.head<2>().norm();
 }
@@ -168,24 +164,9 @@ private:
     }
 
     void check_pieces() const {
-        const std::vector<WallPiece>& pieces = mandrel_.pieces;
-        if (pieces.size() < 2) {
-            return;
+        if (mandrel_.pieces.size() > 1) {
+            throw InputError("mesh.pieces", mandrel_.file, pieces_words(mandrel_.pieces));
         }
-        const auto words = [](const WallPiece& piece) {
-            return fixed(piece.area_mm2 / 100.0, 1) + " cm2 around " + place_words(piece.middle_mm);
-        };
-        std::string regions;
-        for (const std::int32_t id : pieces.front().regions) {
-            regions += (regions.empty() ? "" : ", ") + std::to_string(id);
-        }
-        throw InputError("mesh.pieces", mandrel_.file,
-                         "its wall is in " + std::to_string(pieces.size()) +
-                             " pieces that do not touch: the largest has " + words(pieces[0]) +
-                             ", the next " + words(pieces[1]) +
-                             "; unite them in the modeller, or name the regions of one in the job, "
-                             "\"mandrel\": {\"keep_regions\": [" +
-                             regions + "]}");
     }
 
     void check_tow() const {
@@ -599,10 +580,7 @@ std::vector<std::string> remarks_before_planning(const PlannedTask& task) {
     if (tow_of_girth(task) > kMuchOfGirth) {
         remarks.push_back(tow_words(task));
     }
-    std::string blend = blend_proposal(task.mandrel, task.job.tow.width_mm);
-    if (!blend.empty()) {
-        remarks.push_back(std::move(blend));
-    }
+    propose_blend(task.mandrel, task.job.tow.width_mm, remarks);
     if (!task.job.mandrel.axis) {
         return remarks;
     }

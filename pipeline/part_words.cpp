@@ -41,19 +41,37 @@ std::string size_words(const Mandrel& mandrel) {
            " mm (unit " + unit_name(mandrel) + ", " + rule + ")";
 }
 
-std::string blend_proposal(const Mandrel& mandrel, double tow_width_mm) {
+std::string pieces_words(const std::vector<WallPiece>& pieces) {
+    const auto words = [](const WallPiece& piece) {
+        const Eigen::Vector3d& p = piece.middle_mm;
+        return fixed(piece.area_mm2 / 100.0, 1) + " cm2 around (" + fixed(p.x(), 1) + ", " +
+               fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ")";
+    };
+    std::string regions;
+    for (const std::int32_t id : pieces.front().regions) {
+        regions += (regions.empty() ? "" : ", ") + std::to_string(id);
+    }
+    return "its wall is in " + std::to_string(pieces.size()) +
+           " pieces that do not touch: the largest has " + words(pieces[0]) + ", the next " +
+           words(pieces[1]) +
+           "; unite them in the modeller, or name the regions of one in the job, "
+           "\"mandrel\": {\"keep_regions\": [" +
+           regions + "]}";
+}
+
+void propose_blend(const Mandrel& mandrel, double tow_width_mm, std::vector<std::string>& remarks) {
     constexpr double kWorthAWord = 0.002;  // of the wall's area
     if (mandrel.winding_mesh.blend_mm > 0.0) {
-        return {};
+        return;
     }
     const double sharp_mm2 = out_of_reach_mm2(mandrel.surface, tow_width_mm);
     const double all_mm2 = area_mm2({mandrel.surface.position_mm, mandrel.surface.face});
     if (!(sharp_mm2 > kWorthAWord * all_mm2)) {
-        return {};
+        return;
     }
-    return "a ball as wide as the tow cannot touch " + percent(sharp_mm2 / all_mm2, 1) +
-           " of the wall, in crotches and at steps; --set mandrel.blend=" + fixed(tow_width_mm, 1) +
-           " fills them up";
+    remarks.push_back("a ball as wide as the tow cannot touch " + percent(sharp_mm2 / all_mm2, 1) +
+                      " of the wall, in crotches and at steps; --set mandrel.blend=" +
+                      fixed(tow_width_mm, 1) + " fills them up");
 }
 
 std::string unit_question(const Mandrel& mandrel) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "mesh/even/fair.h"
 #include "mesh/even/slivers.h"
 #include "mesh/even/wall_surface.h"
+#include "mesh/even/winding_mesh.h"
 #include "mesh/ray_query.h"
 
 namespace meshwind {
@@ -33,25 +33,14 @@ constexpr double kReaches = 0.01;
 // before it is bent.
 constexpr double kEdge = 0.3;
 
-// Shares of the part's size, as for every even mesh (winding_mesh.cpp).
-constexpr double kLongestEdge = 0.15;
+// Shortest edges, as a share of the part's size: fillets are narrower than what parts have else.
 constexpr double kLeastEdge = 0.01;
 
-constexpr double kMostTriangles = 200000.0;
-// Share of the wall in triangles below this quality that a blended wall may have.
-constexpr double kNarrow = 0.15;
+// Share of the wall in uneven triangles that a blended wall may have.
 constexpr double kMostNarrow = 5e-3;
 
 std::size_t at_index(std::int32_t i) {
     return static_cast<std::size_t>(i);
-}
-
-double size_of(const Surface& wall) {
-    double area = 0.0;
-    for (const auto& face : wall.face) {
-        area += area_mm2(wall.position_mm, face);
-    }
-    return std::sqrt(area / (4.0 * std::numbers::pi));
 }
 
 // Per face of the wall 1 where the ball cannot touch its middle.
@@ -86,10 +75,10 @@ std::vector<std::int32_t> wall_faces(const LabelledMesh& part, const std::vector
     return faces;
 }
 
-EvenMeshOptions options_for(double size_mm) {
-    EvenMeshOptions options;
-    options.least_mm = kLeastEdge * size_mm;
-    options.longest_mm = kLongestEdge * size_mm;
+EvenMeshOptions options_for(const LabelledMesh& part, const std::vector<char>& kept) {
+    const double size = size_mm(part, kept);
+    EvenMeshOptions options = even_options(size);
+    options.least_mm = kLeastEdge * size;
     return options;
 }
 
@@ -183,7 +172,7 @@ std::vector<char> free_points(const TriangleSoup& wall, const std::vector<char>&
 // Even triangles, short ones near where the ball cannot touch.
 LabelledMesh fine_near(const LabelledMesh& part, const std::vector<char>& kept, Surface&& wall,
                        const std::vector<char>& out, double radius_mm) {
-    EvenMeshOptions options = options_for(size_of(wall));
+    EvenMeshOptions options = options_for(part, kept);
     options.most_mm.assign(wall.position_mm.size(), options.longest_mm);
     for (std::size_t f = 0; f < out.size(); ++f) {
         for (const std::int32_t v : wall.face[f]) {
@@ -239,13 +228,13 @@ Blend blend_wall(const LabelledMesh& part, const std::vector<char>& kept, double
     join_over(fine, kept, blended_of_part);
     check_interrupt();
     Surface smooth = frozen_wall(fine, kept);
-    const EvenMeshOptions options = options_for(size_of(smooth));
-    if (wanted_triangles(smooth, options) > kMostTriangles) {
+    const EvenMeshOptions options = options_for(fine, kept);
+    if (wanted_triangles(smooth, options) > kMostEvenTriangles) {
         result.why_not = "it would take too many triangles; blend by a larger radius";
         return result;
     }
     LabelledMesh even = even_mesh(fine, kept, std::move(smooth), options);
-    const double narrow = share_below(even, kept, kNarrow);
+    const double narrow = share_below(even, kept, kUnevenQuality);
     if (narrow > kMostNarrow) {
         result.why_not = "its triangles do not come out even";
         return result;

@@ -495,6 +495,15 @@ private:
 
 }  // namespace
 
+EvenMeshOptions even_options(double size_mm) {
+    constexpr double kLongestEdge = 0.15;
+    constexpr double kLeastEdge = 0.02;
+    EvenMeshOptions options;
+    options.least_mm = kLeastEdge * size_mm;
+    options.longest_mm = kLongestEdge * size_mm;
+    return options;
+}
+
 double wanted_triangles(const Surface& wall, const EvenMeshOptions& options) {
     return triangles_of(wall, sizes_of(wall, options));
 }

@@ -20,6 +20,13 @@ struct EvenMeshOptions {
     int polish = 4;        ///< closing sweeps that only flip towards larger angles and smooth
 };
 
+/// Even triangles are no more than this. A pipe 100 times as long as wide takes 10,000; beyond,
+/// vertices stand for no surface, and nobody waits for what comes of them.
+inline constexpr double kMostEvenTriangles = 200000.0;
+
+/// Edges of a part of this size.
+[[nodiscard]] EvenMeshOptions even_options(double size_mm);
+
 /// How many triangles an even mesh of this wall has, about: by its area and the edges wanted there.
 /// \param wall frozen
 [[nodiscard]] double wanted_triangles(const Surface& wall, const EvenMeshOptions& options);

@@ -1,5 +1,8 @@
 #include "mesh/even/labelled_mesh.h"
 
+#include <cmath>
+
+#include "core/units.h"
 #include "mesh/repair/repair.h"
 
 namespace meshwind {
@@ -34,6 +37,16 @@ LabelledMesh wall_of(const LabelledView& part, const std::vector<char>& kept) {
     }
     split_vertex_fans(wall.soup);
     return wall;
+}
+
+double size_mm(const LabelledMesh& part, const std::vector<char>& kept) {
+    double area = 0.0;
+    for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
+        if (kept[static_cast<std::size_t>(part.region[f])] != 0) {
+            area += area_mm2(part.soup.points_mm, part.soup.faces[f]);
+        }
+    }
+    return std::sqrt(area / (4.0 * kPi));
 }
 
 }  // namespace meshwind

@@ -29,4 +29,8 @@ struct LabelledView {
 /// are no creases. \param kept per region: whether it is wall
 [[nodiscard]] LabelledMesh wall_of(const LabelledView& part, const std::vector<char>& kept);
 
+/// The wall's size: radius of the ball with its area, mm. On a pipe four times as long as wide that
+/// is 1.4 times its radius.
+[[nodiscard]] double size_mm(const LabelledMesh& part, const std::vector<char>& kept);
+
 }  // namespace meshwind

@@ -8,8 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/units.h"
-#include "mesh/edge_table.h"
+#include "core/angle_gap.h"
 #include "mesh/even/ruled_shape.h"
 #include "mesh/even/work_mesh.h"
 #include "mesh/segment/rims.h"
@@ -53,10 +52,8 @@ struct Ends {
     std::vector<Rim> rims;
 };
 
-Ends ends_of(const LabelledMesh& part, const std::vector<char>& kept) {
-    const auto neighbours = face_neighbours(part.soup.faces);
-    const LabelledMesh wall = wall_of({part.soup, part.region, part.feature, neighbours}, kept);
-    Rims found = find_rims(wall.soup);
+Ends ends_of(const LabelledView& part, const std::vector<char>& kept) {
+    Rims found = find_rims(wall_of(part, kept).soup);
     Ends ends;
     ends.rim_of_edge.assign(part.soup.faces.size(), {-1, -1, -1});
     std::size_t next = 0;  // the wall has its faces in the part's order
@@ -80,7 +77,7 @@ struct Cut {
 
 class EndFinder {
 public:
-    EndFinder(const LabelledMesh& part, const std::vector<char>& kept)
+    EndFinder(const LabelledView& part, const std::vector<char>& kept)
         : part_(part),
           kept_(kept),
           ends_(ends_of(part, kept)),
@@ -237,7 +234,7 @@ private:
                 {kFarOff * median, kRounding * shape->radius_mm, 0.1 * shape->residual_mm});
             if (shape->residual_mm <= limit || round + 1 == kRounds) {
                 const bool is_leg = shape->residual_mm <= kOnLeg * shape->radius_mm &&
-                                    widest_gap_rad(*shape, facets) < kWidestGap_rad;
+                                    gap_about_rad(*shape, facets) < kWidestGap_rad;
                 return is_leg ? shape : std::nullopt;
             }
             const auto is_off = [&](std::int32_t f) {
@@ -275,8 +272,8 @@ private:
         return 0.0;
     }
 
-    [[nodiscard]] static double widest_gap_rad(const RuledShape& leg,
-                                               const std::vector<RuledFacet>& facets) {
+    [[nodiscard]] static double gap_about_rad(const RuledShape& leg,
+                                              const std::vector<RuledFacet>& facets) {
         const Vector3d u = leg.axis.unitOrthogonal();
         const Vector3d v = leg.axis.cross(u);
         std::vector<double> angles;
@@ -284,12 +281,7 @@ private:
         for (const RuledFacet& facet : facets) {
             angles.push_back(std::atan2(v.dot(facet.normal), u.dot(facet.normal)));
         }
-        std::sort(angles.begin(), angles.end());
-        double widest = angles.front() + 2.0 * kPi - angles.back();
-        for (std::size_t i = 1; i < angles.size(); ++i) {
-            widest = std::max(widest, angles[i] - angles[i - 1]);
-        }
-        return widest;
+        return widest_gap_rad(std::move(angles));
     }
 
     [[nodiscard]] static double height_mm(const RuledShape& leg, const Vector3d& p) {
@@ -358,7 +350,7 @@ private:
         return cut.depth_mm > kLeastDepth * radius && cut.depth_mm <= kMostDepth * radius;
     }
 
-    const LabelledMesh& part_;
+    const LabelledView& part_;
     const std::vector<char>& kept_;
     Ends ends_;
     std::vector<std::vector<std::int32_t>> faces_at_;  // of the wall, per vertex
@@ -439,15 +431,17 @@ void cut_off(WorkMesh& work, const Cut& cut, std::int32_t end) {
 
 }  // namespace
 
-SquareEnds square_ends(const LabelledMesh& part, const std::vector<char>& kept,
-                       const std::optional<double>& depth_mm) {
-    SquareEnds result{{}, kept, {}};
+std::optional<SquareEnds> square_ends(const LabelledView& part, const std::vector<char>& kept,
+                                      const std::optional<double>& depth_mm) {
     const std::vector<Cut> cuts = EndFinder(part, kept).cuts(depth_mm);
     if (cuts.empty()) {
-        result.part = part;
-        return result;
+        return std::nullopt;
     }
-    WorkMesh work(part, kept);
+    SquareEnds result{{}, kept, {}};
+    WorkMesh work({part.soup,
+                   {part.region.begin(), part.region.end()},
+                   {part.feature.begin(), part.feature.end()}},
+                  kept);
     for (const Cut& cut : cuts) {
         cut_off(work, cut, static_cast<std::int32_t>(result.kept.size()));
         result.kept.push_back(0);

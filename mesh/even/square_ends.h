@@ -27,8 +27,9 @@ struct SquareEnds {
 /// lose more than a quarter of its radius stays as it is, and so does one without such a leg (a
 /// dome, an oblique end), or with a collar, which stands out from its leg.
 /// \param kept per region: whether it is wall \param depth_mm cut off each end with a leg instead;
-/// 0: nothing \pre part is an oriented manifold, mm
-[[nodiscard]] SquareEnds square_ends(const LabelledMesh& part, const std::vector<char>& kept,
-                                     const std::optional<double>& depth_mm);
+/// 0: nothing \return none where nothing is cut off \pre part is an oriented manifold, mm
+[[nodiscard]] std::optional<SquareEnds> square_ends(const LabelledView& part,
+                                                    const std::vector<char>& kept,
+                                                    const std::optional<double>& depth_mm);
 
 }  // namespace meshwind

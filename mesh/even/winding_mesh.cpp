@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -18,10 +17,7 @@
 namespace meshwind {
 namespace {
 
-// Lengths go by the radius of the ball with the wall's area: on a pipe four times as long as wide
-// that is 1.4 times its own.
-constexpr double kLongestEdge = 0.15;
-constexpr double kLeastEdge = 0.02;
+// Short edges of narrow triangles, by the part's size.
 constexpr double kShortEdge = 0.02;
 
 // What vertices that are left out may be off the triangles that stay.
@@ -37,20 +33,6 @@ constexpr double kMostNarrow = 1e-3;
 // vertices even more: their triangles may still be long.
 constexpr double kMostAveraged = 0.1;
 constexpr double kMostAveragedInFile = 0.5;
-
-// Even triangles are no more than this. A pipe 100 times as long as wide takes 10,000; beyond,
-// vertices stand for no surface, and nobody waits for what comes of them.
-constexpr double kMostTriangles = 200000.0;
-
-double wall_area_mm2(const LabelledMesh& part, const std::vector<char>& kept) {
-    double area = 0.0;
-    for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
-        if (kept[static_cast<std::size_t>(part.region[f])] != 0) {
-            area += area_mm2(part.soup.points_mm, part.soup.faces[f]);
-        }
-    }
-    return area;
-}
 
 // Why a frozen wall is none, or empty.
 std::string no_surface(const Surface& wall, double most_averaged) {
@@ -96,24 +78,22 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     if (report.least_quality >= kUnevenQuality) {
         return result;
     }
-    const double size_mm = std::sqrt(wall_area_mm2(part, kept) / (4.0 * std::numbers::pi));
+    const double size = size_mm(part, kept);
     const auto clean = [&](const LabelledMesh& mesh) {
         check_interrupt();
-        return without_slivers(mesh, kept, kShortEdge * size_mm, kLeftOut * size_mm);
+        return without_slivers(mesh, kept, kShortEdge * size, kLeftOut * size);
     };
-    const LongFacets halved = halve_long_facets(clean(part), kept, kFacetEdge * size_mm);
+    const LongFacets halved = halve_long_facets(clean(part), kept, kFacetEdge * size);
     report.ruled_shapes = halved.shapes;
     const LabelledMesh told = clean(halved.part);
-    EvenMeshOptions options;
-    options.least_mm = kLeastEdge * size_mm;
-    options.longest_mm = kLongestEdge * size_mm;
+    const EvenMeshOptions options = even_options(size);
     Surface wall = frozen_wall(told, kept);
     report.why_not = no_surface(wall, kMostAveragedInFile);
     if (!report.why_not.empty()) {
         return result;
     }
     const double wanted = wanted_triangles(wall, options);
-    if (!(wanted <= kMostTriangles)) {
+    if (!(wanted <= kMostEvenTriangles)) {
         report.why_not = "even triangles would be too many, " + fixed(wanted, 0);
         return result;
     }
@@ -121,7 +101,7 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     const Surface surface = frozen_wall(own, kept);
     report.triangles = surface.face.size();
     report.deviation_mm = deviation_mm(part, surface, kept);
-    const double most_mm = kDeviationShare * size_mm;
+    const double most_mm = kDeviationShare * size;
     const double narrow = share_below(own, kept, kUnevenQuality);
     if (!(report.deviation_mm <= most_mm)) {
         report.why_not = "even triangles would be up to " + fixed(report.deviation_mm, 3) +

@@ -13,6 +13,7 @@
 #include "mesh/even/blend.h"
 #include "mesh/even/slivers.h"
 #include "mesh/even/square_ends.h"
+#include "mesh/even/wall_pieces.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
 #include "mesh/repair/repair.h"
@@ -22,7 +23,6 @@
 #include "mesh/segment/rims.h"
 #include "mesh/segment/segment.h"
 #include "mesh/segment/spindle_axis.h"
-#include "mesh/segment/wall_pieces.h"
 #include "mesh/smooth/refine.h"
 
 namespace meshwind {
@@ -173,6 +173,10 @@ void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion) {
     }
 }
 
+LabelledView view(const TriangleSoup& whole, const Segmentation& segmentation) {
+    return {whole, segmentation.region, segmentation.feature, segmentation.neighbours};
+}
+
 // What is wound with its ends and its spindle, still in the file's frame.
 struct Wall {
     LabelledMesh kept;
@@ -183,8 +187,7 @@ struct Wall {
 Wall find_wall(const TriangleSoup& whole, const Segmentation& segmentation,
                const std::optional<MandrelOptions::Axis>& axis_mm) {
     Wall wall;
-    wall.kept = wall_of({whole, segmentation.region, segmentation.feature, segmentation.neighbours},
-                        kept_of(segmentation.regions));
+    wall.kept = wall_of(view(whole, segmentation), kept_of(segmentation.regions));
     wall.rims = find_rims(wall.kept.soup);
     wall.frame = find_spindle(wall.kept.soup, wall.rims.rims, axis_mm);
     return wall;
@@ -253,19 +256,20 @@ void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& s
 // Takes off what is no part of the ends' legs.
 std::vector<EndCut> cut_ends(Mandrel& mandrel, Segmentation& segmentation,
                              const std::optional<double>& depth_mm, const std::string& name) {
-    SquareEnds square = square_ends({mandrel.whole, segmentation.region, segmentation.feature},
-                                    kept_of(segmentation.regions), depth_mm);
-    if (!square.cuts.empty()) {
-        take(std::move(square.part), mandrel, segmentation);
-        count_regions(mandrel.whole, square.kept.size(), segmentation);
-        if (std::none_of(segmentation.regions.begin(), segmentation.regions.end(),
-                         [](const Region& r) { return r.kept && r.triangles > 0; })) {
-            throw InputError("mesh.no_wall", name,
-                             "nothing is left of its wall when so much is cut off its ends; give "
-                             "less as \"cut_ends\" in the job");
-        }
+    std::optional<SquareEnds> square =
+        square_ends(view(mandrel.whole, segmentation), kept_of(segmentation.regions), depth_mm);
+    if (!square) {
+        return {};
     }
-    return std::move(square.cuts);
+    take(std::move(square->part), mandrel, segmentation);
+    count_regions(mandrel.whole, square->kept.size(), segmentation);
+    if (std::none_of(segmentation.regions.begin(), segmentation.regions.end(),
+                     [](const Region& r) { return r.kept && r.triangles > 0; })) {
+        throw InputError("mesh.no_wall", name,
+                         "nothing is left of its wall when so much is cut off its ends; give "
+                         "less as \"cut_ends\" in the job");
+    }
+    return std::move(square->cuts);
 }
 
 void note(const std::vector<EndCut>& cuts, std::vector<Rim>& rims) {
@@ -302,25 +306,23 @@ void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
     }
 }
 
-// What is wound then is no more what the file's triangles stand for.
-void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, const MandrelOptions& options,
+// What is wound then is no more what the file's triangles stand for. The spindle stays.
+void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, double radius_mm,
            const std::string& name) {
     Blend made = blend_wall({mandrel.whole, segmentation.region, segmentation.feature},
-                            kept_of(segmentation.regions), options.blend_mm);
+                            kept_of(segmentation.regions), radius_mm);
     if (!made.why_not.empty()) {
-        throw InputError(
-            "mesh.no_blend", name,
-            "cannot be blended by " + fixed(options.blend_mm, 2) + " mm: " + made.why_not);
+        throw InputError("mesh.no_blend", name,
+                         "cannot be blended by " + fixed(radius_mm, 2) + " mm: " + made.why_not);
     }
-    mandrel.winding_mesh.blend_mm = options.blend_mm;
+    mandrel.winding_mesh.blend_mm = radius_mm;
     mandrel.winding_mesh.blended_mm2 = made.area_mm2;
     mandrel.winding_mesh.filled_mm3 = made.volume_mm3;
     if (made.area_mm2 > 0.0) {
         take(std::move(made.part), mandrel, segmentation);
         count_regions(mandrel.whole, segmentation.regions.size(), segmentation);
-        const SpindleFrame frame = wall.frame;
-        wall = find_wall(mandrel.whole, segmentation, options.axis);
-        wall.frame = frame;
+        wall.kept = wall_of(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
+        wall.rims = find_rims(wall.kept.soup);
     }
 }
 
@@ -386,22 +388,16 @@ void add_remarks(Mandrel& mandrel, int holes, int crumbs) {
     }
 }
 
-// Crumbs of the wall that hang together with nothing of it are no wall. Returns how many.
-int leave_crumbs(const TriangleSoup& whole, Segmentation& segmentation) {
+// Crumbs that hang together with nothing of the wall are none of it. Returns how many.
+int leave_crumbs(std::vector<WallPiece>& pieces, std::vector<Region>& regions) {
     constexpr double kCrumbShare = 0.01;  // of the largest piece
-    const LabelledMesh wall =
-        wall_of({whole, segmentation.region, segmentation.feature, segmentation.neighbours},
-                kept_of(segmentation.regions));
-    const std::vector<WallPiece> pieces =
-        wall_pieces(wall.soup, face_neighbours(wall.soup.faces), wall.region);
     int crumbs = 0;
-    for (const WallPiece& piece : pieces) {
-        if (piece.area_mm2 < kCrumbShare * pieces.front().area_mm2) {
-            ++crumbs;
-            for (const std::int32_t id : piece.regions) {
-                segmentation.regions[static_cast<std::size_t>(id)].kept = false;
-            }
+    while (pieces.back().area_mm2 < kCrumbShare * pieces.front().area_mm2) {
+        ++crumbs;
+        for (const std::int32_t id : pieces.back().regions) {
+            regions[static_cast<std::size_t>(id)].kept = false;
         }
+        pieces.pop_back();
     }
     return crumbs;
 }
@@ -429,7 +425,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     Segmentation segmentation = segment(mandrel.whole);
     keep_named_regions(segmentation, options.keep_regions, name);
     check_wall(segmentation.regions, name);
-    const int crumbs = options.keep_regions.empty() ? leave_crumbs(mandrel.whole, segmentation) : 0;
+    mandrel.pieces = wall_pieces(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
+    const int crumbs =
+        options.keep_regions.empty() ? leave_crumbs(mandrel.pieces, segmentation.regions) : 0;
     check_interrupt();
     std::optional<MandrelOptions::Axis> given = options.axis;
     if (given) {
@@ -445,7 +443,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     }
     if (options.blend_mm > 0.0) {
         check_interrupt();
-        blend(mandrel, segmentation, wall, options, name);
+        blend(mandrel, segmentation, wall, options.blend_mm, name);
     }
     note(cuts, wall.rims.rims);
     auto& [kept, rims, frame] = wall;
@@ -466,8 +464,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     }
     mandrel.axis = frame.axis;
     mandrel.file_to_mandrel = frame.mandrel_from_file * Eigen::Scaling(mandrel.unit_mm);
-    mandrel.pieces = wall_pieces({mandrel.surface.position_mm, mandrel.surface.face},
-                                 mandrel.surface.neighbour, mandrel.surface.region);
+    for (WallPiece& piece : mandrel.pieces) {
+        piece.middle_mm = frame.mandrel_from_file * piece.middle_mm;
+    }
     add_remarks(mandrel, rims.holes, crumbs);
     return mandrel;
 }

@@ -61,28 +61,47 @@ double planar_area(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>&
     return planar;
 }
 
+// Edges by the vertex they begin at.
+struct Step {
+    std::int32_t to = 0;
+    std::int32_t beyond = 0;  // region across the edge, -1: none
+};
+using Steps = std::map<std::int32_t, Step>;
+
+struct Loop {
+    Eigen::Vector3d area_mm2 = Eigen::Vector3d::Zero();  // along the normal it turns left about
+    std::vector<std::int32_t> beyond;
+};
+
+// Takes the loop of the first edge out. \pre there is one
+Loop take_loop(const TriangleSoup& soup, Steps& steps) {
+    Loop loop;
+    const Eigen::Vector3d origin = soup.points_mm[at(steps.begin()->first)];
+    for (auto step = steps.begin(); step != steps.end();) {
+        const std::int32_t onward = step->second.to;
+        loop.area_mm2 +=
+            0.5 *
+            (soup.points_mm[at(step->first)] - origin).cross(soup.points_mm[at(onward)] - origin);
+        loop.beyond.push_back(step->second.beyond);
+        steps.erase(step);
+        step = steps.find(onward);
+    }
+    return loop;
+}
+
 // The largest area that an open border of the part encloses.
 double largest_opening_mm2(const TriangleSoup& soup, const Segmentation& s) {
-    std::map<std::int32_t, std::int32_t> next;
+    Steps steps;
     for (std::size_t f = 0; f < soup.faces.size(); ++f) {
         for (std::size_t e = 0; e < 3; ++e) {
             if (s.neighbours[f][e] < 0) {
-                next.emplace(soup.faces[f][e], soup.faces[f][(e + 1) % 3]);
+                steps.emplace(soup.faces[f][e], Step{soup.faces[f][(e + 1) % 3], -1});
             }
         }
     }
     double largest = 0.0;
-    while (!next.empty()) {
-        const Eigen::Vector3d origin = soup.points_mm[at(next.begin()->first)];
-        Eigen::Vector3d area = Eigen::Vector3d::Zero();
-        for (auto step = next.begin(); step != next.end();) {
-            const std::int32_t onward = step->second;
-            area += 0.5 * (soup.points_mm[at(step->first)] - origin)
-                              .cross(soup.points_mm[at(onward)] - origin);
-            next.erase(step);
-            step = next.find(onward);
-        }
-        largest = std::max(largest, area.norm());
+    while (!steps.empty()) {
+        largest = std::max(largest, take_loop(soup, steps).area_mm2.norm());
     }
     return largest;
 }
@@ -131,37 +150,22 @@ std::vector<RegionFacts> region_facts(const TriangleSoup& soup, const Segmentati
 
 void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t id,
                    RegionFacts& facts) {
-    struct Step {
-        std::int32_t to = 0;
-        std::int32_t beyond = 0;
-    };
-    std::map<std::int32_t, Step> next;
+    Steps steps;
     for (const std::int32_t f : facts.faces) {
         for (std::size_t e = 0; e < 3; ++e) {
             const std::int32_t g = s.neighbours[at(f)][e];
             if (g >= 0 && s.region[at(g)] != id) {
-                next.emplace(soup.faces[at(f)][e],
-                             Step{soup.faces[at(f)][(e + 1) % 3], s.region[at(g)]});
+                steps.emplace(soup.faces[at(f)][e],
+                              Step{soup.faces[at(f)][(e + 1) % 3], s.region[at(g)]});
             }
         }
     }
     const Eigen::Vector3d normal = facts.area_normal.normalized();
-    while (!next.empty()) {
-        const auto first = next.begin();
-        const Eigen::Vector3d origin = soup.points_mm[at(first->first)];
-        std::vector<std::int32_t> beyond;
-        double enclosed = 0.0;
-        for (auto step = first; step != next.end();) {
-            const Eigen::Vector3d from = soup.points_mm[at(step->first)] - origin;
-            const Eigen::Vector3d to = soup.points_mm[at(step->second.to)] - origin;
-            enclosed += 0.5 * normal.dot(from.cross(to));
-            beyond.push_back(step->second.beyond);
-            const std::int32_t onward = step->second.to;
-            next.erase(step);
-            step = next.find(onward);
-        }
+    while (!steps.empty()) {
+        const Loop loop = take_loop(soup, steps);
+        const double enclosed = normal.dot(loop.area_mm2);
         auto& side = enclosed > 0.0 ? facts.beyond_outline : facts.in_holes;
-        side.insert(side.end(), beyond.begin(), beyond.end());
+        side.insert(side.end(), loop.beyond.begin(), loop.beyond.end());
         facts.outline_mm2 = std::max(facts.outline_mm2, enclosed);
     }
 }

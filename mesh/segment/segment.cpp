@@ -341,12 +341,14 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
         all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
         all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
     }
+    bool by_sight = false;
     for (const Region& region : s.regions) {
         if (region.kind == RegionKind::Other && region.visible_fraction > kBothSidesShare &&
             region.visible_fraction < 1.0 - kBothSidesShare) {
             const Mouth mouth =
                 sides_seen(soup, facts[at(region.id)], normals, face_area, visibility);
             if (!mouth.inner.empty()) {
+                by_sight = true;
                 joined[at(piece_of_region[at(region.id)])] = 1;
                 all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
                 all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
@@ -362,7 +364,7 @@ std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
         side[f] = static_cast<char>(piece >= 0 && joined[at(piece)] != 0 && side[f] == 2);
     }
     const double total_mm2 = std::accumulate(face_area.begin(), face_area.end(), 0.0);
-    if (border_mm(soup, s, side) > kLongestBorder * std::sqrt(total_mm2)) {
+    if (by_sight && border_mm(soup, s, side) > kLongestBorder * std::sqrt(total_mm2)) {
         return {};
     }
     return side;

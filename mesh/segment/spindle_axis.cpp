@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
+#include "core/angle_gap.h"
 #include "core/small_linear.h"
 #include "core/units.h"
 
@@ -73,8 +75,8 @@ double distance_from(const Line& line, const Vector3d& point) {
 
 // Largest angle about the line in which there is no surface. Points close to the line have no
 // angle.
-double widest_gap_rad(const Line& line, const std::vector<PointOnSurface>& points,
-                      double mean_radius_mm) {
+double gap_about_rad(const Line& line, const std::vector<PointOnSurface>& points,
+                     double mean_radius_mm) {
     constexpr double kClose = 0.1;
     const Vector3d u = line.direction.unitOrthogonal();
     const Vector3d v = line.direction.cross(u);
@@ -85,15 +87,7 @@ double widest_gap_rad(const Line& line, const std::vector<PointOnSurface>& point
             angles.push_back(std::atan2(v.dot(arm), u.dot(arm)));
         }
     }
-    if (angles.empty()) {
-        return 0.0;
-    }
-    std::sort(angles.begin(), angles.end());
-    double widest = angles.front() + 2.0 * kPi - angles.back();
-    for (std::size_t i = 1; i < angles.size(); ++i) {
-        widest = std::max(widest, angles[i] - angles[i - 1]);
-    }
-    return widest;
+    return widest_gap_rad(std::move(angles));
 }
 
 std::optional<Line> through_coaxial_rims(std::span<const Rim> rims) {
@@ -158,7 +152,7 @@ std::optional<Line> of_revolution(const std::vector<PointOnSurface>& points,
         radius += p.area * distance_from(line, p.point) / area;
     }
     const bool turns = line.residual_mm <= kRevolutionShare * radius &&
-                       widest_gap_rad(line, points, radius) <= kWidestGap_rad;
+                       gap_about_rad(line, points, radius) <= kWidestGap_rad;
     return turns ? std::optional(line) : std::nullopt;
 }
 

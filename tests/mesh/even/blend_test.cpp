@@ -3,29 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <string>
 
 #include <gtest/gtest.h>
 
 #include "core/units.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/shapes/make_kinds.h"
+#include "tests/support/mesh_measures.h"
 #include "tests/support/shapes.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
-
-double volume_mm3(const TriangleSoup& soup) {
-    double volume = 0.0;
-    for (const auto& [a, b, c] : soup.faces) {
-        const auto at = [&](std::int32_t v) { return soup.points_mm[static_cast<std::size_t>(v)]; };
-        volume += at(a).dot(at(b).cross(at(c))) / 6.0;
-    }
-    return volume;
-}
 
 TriangleSoup tee(double blend_mm, double edge_mm) {
     return make_mandrel("tee", {{"blend-radius", blend_mm}}, {.edge_mm = edge_mm});
@@ -34,7 +24,8 @@ TriangleSoup tee(double blend_mm, double edge_mm) {
 // The smooth surface lies a little deeper in the crotch than the ball's.
 TEST(Blend, FillsTheCrotchOfATeeAsABallDoes) {
     const Mandrel blended = build_mandrel(tee(0.5, 5.0), "sharp", {.blend_mm = 15.0});
-    const double by_ball = volume_mm3(tee(15.0, 3.0)) - volume_mm3(tee(0.5, 3.0));
+    const double by_ball =
+        test::measure(tee(15.0, 3.0)).volume_mm3 - test::measure(tee(0.5, 3.0)).volume_mm3;
     EXPECT_GT(blended.winding_mesh.filled_mm3, 0.6 * by_ball);
     EXPECT_LT(blended.winding_mesh.filled_mm3, 1.1 * by_ball);
     // Far from it nothing has moved.

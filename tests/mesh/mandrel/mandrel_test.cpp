@@ -1,6 +1,8 @@
 #include "mesh/mandrel/load_mandrel.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -227,6 +229,41 @@ TEST(BuildMandrel, OpenSkinWithALetterKeepsAllOfIt) {
     const Mandrel m = build_mandrel(soup, "skin", kAsItCame);
     EXPECT_EQ(m.surface.face.size(), soup.faces.size());
     EXPECT_EQ(m.rims.size(), 2U);
+}
+
+// A closed vessel with a pimple of 1 mm2: its flat top is no end of the vessel.
+TEST(BuildMandrel, ASpeckOfAClosedVesselIsNoEnd) {
+    TriangleSoup soup = test::revolve({{0, 0}, {30, 30}, {30, 90}, {0, 120}}, 48);
+    const std::size_t wall = soup.faces.size() / 2;  // one of the cylinder's
+    const auto outer = soup.faces[wall];
+    std::array<Vector3d, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) {
+        p[i] = soup.points_mm[static_cast<std::size_t>(outer[i])];
+    }
+    const Vector3d middle = (p[0] + p[1] + p[2]) / 3.0;
+    const Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    ASSERT_LT(std::abs(normal.z()), 1e-9);
+    const auto ring = [&](double scale, double height) {
+        std::array<std::int32_t, 3> ids{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            ids[i] = static_cast<std::int32_t>(soup.points_mm.size());
+            soup.points_mm.push_back(middle + scale * (p[i] - middle) + height * normal);
+        }
+        return ids;
+    };
+    const auto foot = ring(0.12, 0.0);
+    const auto top = ring(0.1, 0.5);
+    soup.faces[wall] = top;
+    const auto between = [&](const auto& a, const auto& b) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            soup.faces.push_back({a[i], a[j], b[j]});
+            soup.faces.push_back({a[i], b[j], b[i]});
+        }
+    };
+    between(outer, foot);
+    between(foot, top);
+    EXPECT_EQ(count_kind(build_mandrel(soup, "vessel", kAsItCame), RegionKind::EndCap), 0);
 }
 
 // A quarter of a torus lies about the torus' own axis as well, and nothing could hold it there.
