@@ -580,7 +580,6 @@ std::vector<std::string> remarks_before_planning(const PlannedTask& task) {
     if (tow_of_girth(task) > kMuchOfGirth) {
         remarks.push_back(tow_words(task));
     }
-    propose_blend(task.mandrel, task.job.tow.width_mm, remarks);
     if (!task.job.mandrel.axis) {
         return remarks;
     }

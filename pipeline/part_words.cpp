@@ -71,7 +71,7 @@ void propose_blend(const Mandrel& mandrel, double tow_width_mm, std::vector<std:
     }
     remarks.push_back("a ball as wide as the tow cannot touch " + percent(sharp_mm2 / all_mm2, 1) +
                       " of the wall, in crotches and at steps; --set mandrel.blend=" +
-                      fixed(tow_width_mm, 1) + " fills them up");
+                      fixed(tow_width_mm, 1) + " would fill them up");
 }
 
 std::string unit_question(const Mandrel& mandrel) {

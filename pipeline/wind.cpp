@@ -14,6 +14,8 @@
 #include "mesh/revolution/revolution.h"
 #include "pipeline/before_planning.h"
 #include "pipeline/check_controller.h"
+#include "pipeline/part_words.h"
+#include "pipeline/plan_layer.h"
 #include "pipeline/run_names.h"
 #include "postproc/verify/check_kinds.h"
 #include "winding/laminate/build_up.h"
@@ -191,6 +193,9 @@ private:
         }
         options.stage_done = [this](const char* stage) { watch_.stage(stage); };
         wind_layer(layer, options);
+        if (number == 0 && !options_.import) {
+            propose_mends(layer);
+        }
         for (Check check : layer.checks) {
             check.name += options.suffix;
             if (check.place) {
@@ -203,6 +208,18 @@ private:
         }
         layer.build_up_mm = build_up_of(layer);
         return number + 1 < jobs.size() && grow_next(layer, number + 1);
+    }
+
+    // What may help where little of the bare mandrel is covered.
+    void propose_mends(const WoundLayer& layer) {
+        if (layer.plan.failure.empty() && layer.plan.coverage.fraction >= kCoveredShare) {
+            return;
+        }
+        const std::size_t told = run_.remarks.size();
+        propose_blend(layer.setup.mandrel, layer.setup.job.tow.width_mm, run_.remarks);
+        for (std::size_t i = told; i < run_.remarks.size(); ++i) {
+            options_.context.report_remark(run_.remarks[i]);
+        }
     }
 
     // The mandrel with a layer on it, for the next one.

@@ -130,8 +130,8 @@ TEST(BeforePlanning, AWallInPiecesIsRefusedWithTheirPlaces) {
 // A sharp crotch is worth a word, a round one is not.
 TEST(BeforePlanning, ABlendIsProposedForASharpCrotch) {
     const auto proposed = [](double blend_mm) {
-        const Mandrel tee = made("tee", {{"blend-radius", blend_mm}});
-        const std::vector<std::string> remarks = remarks_on(shipped("six_axis"), tee, {});
+        std::vector<std::string> remarks;
+        propose_blend(made("tee", {{"blend-radius", blend_mm}}), 6.0, remarks);
         return std::any_of(remarks.begin(), remarks.end(), [](const std::string& remark) {
             return remark.find("mandrel.blend=6.0") != std::string::npos;
         });
