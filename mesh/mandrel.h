@@ -34,6 +34,8 @@ struct MandrelOptions {
     std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
     /// Of every end with a leg, mm; none: what is no part of the leg (mesh/even/square_ends.h)
     std::optional<double> cut_ends_mm{};
+    /// Lettering and the like is taken off up to this height, mm (mesh/even/details.h); none: 1 mm
+    std::optional<double> remove_details_mm{};
     /// Crotches and steps are filled up for a ball of this radius (mesh/even/blend.h); 0: not
     double blend_mm = 0.0;
     enum class Mesh { File, Even };

@@ -173,6 +173,7 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     }
     options.keep_regions = job.mandrel.keep_regions;
     options.cut_ends_mm = job.mandrel.cut_ends_mm;
+    options.remove_details_mm = job.mandrel.remove_details_mm;
     options.blend_mm = job.mandrel.blend_mm;
     options.mesh = job.mandrel.mesh;
     return options;

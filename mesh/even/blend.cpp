@@ -5,29 +5,23 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/interrupt.h"
-#include "core/parallel.h"
 #include "mesh/edge_table.h"
 #include "mesh/even/even_mesh.h"
 #include "mesh/even/fair.h"
+#include "mesh/even/rolling_ball.h"
 #include "mesh/even/slivers.h"
 #include "mesh/even/wall_surface.h"
 #include "mesh/even/winding_mesh.h"
-#include "mesh/ray_query.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
-
-// A ball touches a facet when nothing reaches deeper into it than this share of its radius; facets
-// of a convex wall reach less.
-constexpr double kReaches = 0.01;
 
 // Edges where the ball cannot touch, as a share of its radius: four to a fillet of 90 degrees
 // before it is bent.
@@ -43,25 +37,8 @@ std::size_t at_index(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-// Per face of the wall 1 where the ball cannot touch its middle.
 std::vector<char> out_of_reach(const Surface& wall, double radius_mm) {
-    const TriangleSoup soup{wall.position_mm, wall.face};
-    const RayQuery query{std::span(&soup, 1)};
-    std::vector<char> out(wall.face.size(), 0);
-    constexpr std::size_t kChunk = 256;
-    parallel_for(out.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const auto& [a, b, c] = wall.face[f];
-            const Vector3d& pa = wall.position_mm[at_index(a)];
-            const Vector3d& pb = wall.position_mm[at_index(b)];
-            const Vector3d& pc = wall.position_mm[at_index(c)];
-            const Vector3d normal = (pb - pa).cross(pc - pa).normalized();
-            const Vector3d centre = (pa + pb + pc) / 3.0 + radius_mm * normal;
-            out[f] = static_cast<char>(query.closest(centre, radius_mm).distance_mm <
-                                       (1.0 - kReaches) * radius_mm);
-        }
-    });
-    return out;
+    return out_of_reach({wall.position_mm, wall.face}, radius_mm, WallSide::Outside);
 }
 
 // Faces of the part that are wall, in their order: the faces of its frozen wall.

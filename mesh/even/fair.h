@@ -1,6 +1,7 @@
-/// A smooth surface where some vertices of a mesh are free.
+/// A smooth surface where some vertices of a mesh are free, or some triangles missing.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "mesh/triangle_soup.h"
@@ -12,5 +13,10 @@ namespace meshwind {
 /// \param free per point of the soup \return false where the faces are no manifold or the system
 /// has no solution; the soup is then as it was. Source: botsch_2004_modeling, as CGAL has it.
 [[nodiscard]] bool fair(TriangleSoup& soup, const std::vector<char>& free);
+
+/// Such a surface in a hole of the mesh: new points and faces stand after the given ones.
+/// \param edge_from, edge_to points of an edge of a face, from the one to the other in that face's
+/// order, on the hole's border \return false as above, also where the edge is on no border
+[[nodiscard]] bool fill_hole(TriangleSoup& soup, std::int32_t edge_from, std::int32_t edge_to);
 
 }  // namespace meshwind

@@ -31,7 +31,8 @@ public:
         Eigen::Vector3d bary = Eigen::Vector3d::Zero();
         Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  ///< on the smooth surface
     };
-    /// \param region of the surface: its faces alone count
+    [[nodiscard]] bool has(std::int32_t region) const { return part_.count(region) != 0; }
+    /// \param region that the surface has: its faces alone count
     [[nodiscard]] Foot nearest(const Eigen::Vector3d& point, std::int32_t region) const;
 
     [[nodiscard]] const SmoothShape& shape() const { return shape_; }

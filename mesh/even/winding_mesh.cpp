@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/text/text_number.h"
+#include "mesh/even/details.h"
 #include "mesh/even/even_mesh.h"
 #include "mesh/even/long_facets.h"
 #include "mesh/even/slivers.h"
 #include "mesh/even/wall_surface.h"
+#include "mesh/ray_query.h"
 
 namespace meshwind {
 namespace {
@@ -34,6 +37,18 @@ constexpr double kMostNarrow = 1e-3;
 constexpr double kMostAveraged = 0.1;
 constexpr double kMostAveragedInFile = 0.5;
 
+// Lettering stands out by 1 mm at most, mm, whatever the part's size, and the wall under it is
+// known to a quarter of that; on small parts it stands out by less than a share of their size.
+constexpr double kLetterHeight_mm = 1.25;
+constexpr double kDetailHeight = 0.05;
+
+// Ball that does not fill the strokes of letters, as a share of the part's size.
+constexpr double kDetailBall = 0.1;
+
+// What is lower than this share of the part's size is left to the even mesh, which need not come
+// nearer to the file's vertices.
+constexpr double kDetailLeast = kDeviationShare / 2.0;
+
 // Why a frozen wall is none, or empty.
 std::string no_surface(const Surface& wall, double most_averaged) {
     const auto corners = static_cast<double>(wall.normal.size());
@@ -43,10 +58,12 @@ std::string no_surface(const Surface& wall, double most_averaged) {
                      percent(wall.fit.averaged / corners, 0) + " of the corners";
 }
 
-// Largest distance of a vertex of the file's wall from the smooth surface of the own mesh.
-double deviation_mm(const LabelledMesh& file, const Surface& surface,
-                    const std::vector<char>& kept) {
+// Largest distance of a vertex of the file's wall from the smooth surface of the own mesh, but for
+// those on details that were taken off.
+double deviation_mm(const LabelledMesh& file, const Surface& surface, const std::vector<char>& kept,
+                    const TriangleSoup& removed, double near_mm) {
     const WallProjection wall(surface);
+    const RayQuery gone{std::span(&removed, 1)};
     std::vector<std::int32_t> region_of_vertex(file.soup.points_mm.size(), -1);
     for (std::size_t f = 0; f < file.soup.faces.size(); ++f) {
         if (kept[static_cast<std::size_t>(file.region[f])] != 0) {
@@ -59,8 +76,9 @@ double deviation_mm(const LabelledMesh& file, const Surface& surface,
     constexpr std::size_t kChunk = 256;
     parallel_for(off.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            if (region_of_vertex[v] >= 0) {
-                const Eigen::Vector3d& p = file.soup.points_mm[v];
+            const Eigen::Vector3d& p = file.soup.points_mm[v];
+            if (region_of_vertex[v] >= 0 && wall.has(region_of_vertex[v]) &&
+                gone.closest(p, near_mm).part < 0) {
                 off[v] = (wall.nearest(p, region_of_vertex[v]).position_mm - p).norm();
             }
         }
@@ -70,22 +88,31 @@ double deviation_mm(const LabelledMesh& file, const Surface& surface,
 
 }  // namespace
 
-WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept) {
+WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept,
+                         const std::optional<double>& details_mm) {
     WindingMesh result;
     WindingMeshReport& report = result.report;
     report.least_quality = least_quality(part, kept);
     result.part = part;
-    if (report.least_quality >= kUnevenQuality) {
+    if (report.least_quality >= kUnevenQuality && !(details_mm && *details_mm > 0.0)) {
         return result;
     }
     const double size = size_mm(part, kept);
+    const double height_mm =
+        details_mm ? *details_mm : std::min(kLetterHeight_mm, kDetailHeight * size);
     const auto clean = [&](const LabelledMesh& mesh) {
         check_interrupt();
         return without_slivers(mesh, kept, kShortEdge * size, kLeftOut * size);
     };
     const LongFacets halved = halve_long_facets(clean(part), kept, kFacetEdge * size);
     report.ruled_shapes = halved.shapes;
-    const LabelledMesh told = clean(halved.part);
+    const double least_detail_mm = kDetailLeast * size;
+    Details details =
+        without_details(clean(halved.part), kept, kDetailBall * size, least_detail_mm, height_mm);
+    report.details = details.count;
+    report.details_mm2 = details.area_mm2;
+    report.details_mm = details.most_mm;
+    const LabelledMesh& told = details.part;
     const EvenMeshOptions options = even_options(size);
     Surface wall = frozen_wall(told, kept);
     report.why_not = no_surface(wall, kMostAveragedInFile);
@@ -100,7 +127,7 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     LabelledMesh own = even_mesh(told, kept, std::move(wall), options);
     const Surface surface = frozen_wall(own, kept);
     report.triangles = surface.face.size();
-    report.deviation_mm = deviation_mm(part, surface, kept);
+    report.deviation_mm = deviation_mm(part, surface, kept, details.removed, least_detail_mm);
     const double most_mm = kDeviationShare * size;
     const double narrow = share_below(own, kept, kUnevenQuality);
     if (!(report.deviation_mm <= most_mm)) {

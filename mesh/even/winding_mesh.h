@@ -1,6 +1,7 @@
 /// The mesh that is wound: the program's own, where the file's is uneven.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mesh/even/labelled_mesh.h"
@@ -23,10 +24,13 @@ struct WindingMesh {
 };
 
 /// Where the wall has narrow triangles: long facets are halved on their cylinders and cones
-/// (long_facets.h), slivers go (slivers.h), and even triangles are laid over the smooth surface
-/// through the vertices that are left (even_mesh.h). Where that does not come out even and near the
-/// given vertices, the given mesh stays.
+/// (long_facets.h), slivers go (slivers.h), lettering is taken off (details.h), and even triangles
+/// are laid over the smooth surface through the vertices that are left (even_mesh.h). Where that
+/// does not come out even and near the given vertices, the given mesh stays.
 /// \param kept per region: whether it is wall \param part oriented manifold, mm
-[[nodiscard]] WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept);
+/// \param details_mm height up to which details are taken off, also from even walls; none: of
+/// lettering, 1 mm; 0: none are
+[[nodiscard]] WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept,
+                                       const std::optional<double>& details_mm = {});
 
 }  // namespace meshwind

@@ -285,10 +285,11 @@ void note(const std::vector<EndCut>& cuts, std::vector<Rim>& rims) {
 
 // The wall in triangles of our own, where the file's are uneven.
 void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
-               const std::optional<MandrelOptions::Axis>& axis_mm) {
+               const std::optional<MandrelOptions::Axis>& axis_mm,
+               const std::optional<double>& details_mm) {
     const std::vector<char> kept = kept_of(segmentation.regions);
     WindingMesh made =
-        winding_mesh({mandrel.whole, segmentation.region, segmentation.feature}, kept);
+        winding_mesh({mandrel.whole, segmentation.region, segmentation.feature}, kept, details_mm);
     made.report.file_triangles = mandrel.winding_mesh.file_triangles;
     mandrel.winding_mesh = made.report;
     if (!made.report.own) {
@@ -363,6 +364,14 @@ void add_remarks(Mandrel& mandrel, int holes, int crumbs) {
         }
     }
     const WindingMeshReport& mesh = mandrel.winding_mesh;
+    if (mesh.own && mesh.details > 0) {
+        mandrel.remarks.push_back(
+            "lettering and the like is not wound: " + std::to_string(mesh.details) +
+            " places, " + fixed(mesh.details_mm2, 0) + " mm2, that stand up to " +
+            fixed(mesh.details_mm, 2) +
+            " mm out of the wall or in it; \"mandrel\": {\"remove_details\": 0} in the job keeps "
+            "them");
+    }
     if (mesh.blend_mm > 0.0) {
         mandrel.remarks.push_back(mesh.blended_mm2 > 0.0
                                       ? "the wall is blended by " + fixed(mesh.blend_mm, 2) +
@@ -437,7 +446,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     Wall wall = find_wall(mandrel.whole, segmentation, given);
     check_interrupt();
     if (options.mesh == MandrelOptions::Mesh::Even) {
-        make_even(mandrel, segmentation, wall, given);
+        make_even(mandrel, segmentation, wall, given, options.remove_details_mm);
     } else {
         mandrel.winding_mesh.least_quality = least_quality(wall.kept.soup);
     }

@@ -66,11 +66,12 @@ struct Job {
         Eigen::Vector3d direction;  ///< not zero, any length
     };
     struct MandrelJob {
-        LengthUnit units = LengthUnit::Auto;     ///< as `meshwind inspect` reads the part
-        std::optional<MandrelAxis> axis;         ///< none: found
-        std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
-        std::optional<double> cut_ends_mm;       ///< >= 0; none: what is no part of an end's leg
-        double blend_mm = 0.0;                   ///< >= 0; 0: crotches and steps stay sharp
+        LengthUnit units = LengthUnit::Auto;      ///< as `meshwind inspect` reads the part
+        std::optional<MandrelAxis> axis;          ///< none: found
+        std::vector<std::int32_t> keep_regions;   ///< region ids; empty: the outer wall
+        std::optional<double> cut_ends_mm;        ///< >= 0; none: what is no part of an end's leg
+        std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
+        double blend_mm = 0.0;                    ///< >= 0; 0: crotches and steps stay sharp
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;
         double extension_mm = 100.0;  ///< >= 0; room for turns beyond each rim
         TurnKind turn = TurnKind::Friction;

@@ -138,6 +138,10 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
         number("cut_ends", &Owner::cut_ends_mm, kCutRange,
                "mm that are cut off each end; without it rounded lips, tabs and notches, which are "
                "no part of the end's leg"),
+        number("remove_details", &Owner::remove_details_mm, kCutRange,
+               "mm up to which lettering, logos and specks stand out of the wall, or go into it, "
+               "that are not wound but taken off; without it 1 mm, where the file's triangles are "
+               "uneven"),
         blend_key(),
         mesh_key(),
         number("extension", &Owner::extension_mm, kExtensionRange,

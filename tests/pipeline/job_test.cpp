@@ -98,6 +98,7 @@ TEST(Job, EveryKeyReachesItsField) {
     EXPECT_EQ(job.tow.thickness_mm, 0.3);
     EXPECT_EQ(job.tow.friction, 0.25);
     EXPECT_EQ(job.mandrel.cut_ends_mm, 1.5);
+    EXPECT_EQ(job.mandrel.remove_details_mm, 0.6);
     EXPECT_EQ(job.mandrel.blend_mm, 8.0);
     EXPECT_EQ(job.mandrel.mesh, MandrelOptions::Mesh::File);
     EXPECT_EQ(job.tow.friction_on_fibre, 0.35);
