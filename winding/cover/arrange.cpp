@@ -24,8 +24,9 @@ std::size_t at(std::int32_t i) {
 class Arranger {
 public:
     Arranger(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
-             std::span<const double> lateness, std::span<OrderedCourse> fibre)
-        : rims_(rims), members_(members), rule_(rule), fibre_(fibre), late_sum_{0.0} {
+             std::span<const double> lateness, std::span<OrderedCourse> fibre,
+             const ClosedTurns& closed)
+        : members_(members), costs_(rims, members, rule, closed), fibre_(fibre), late_sum_{0.0} {
         std::partial_sum(lateness.begin(), lateness.end(), std::back_inserter(late_sum_));
         late_.assign(lateness.begin(), lateness.end());
     }
@@ -51,8 +52,8 @@ private:
     [[nodiscard]] std::size_t node(std::size_t i) const {
         return i < fibre_.size() ? departure_node(start(i)) : arrival_node(end(i - 1));
     }
-    [[nodiscard]] double dwell(std::size_t from, std::size_t to) const {
-        return dwell_rad(rims_[at(end(from).rim)], end(from), start(to), rule_);
+    [[nodiscard]] double cost(std::size_t from, std::size_t to) const {
+        return costs_.rad(fibre_[from].course, fibre_[to].course);
     }
 
     // What it gains, as dwell, that the courses i .. j - 1 and j .. k - 1 change places.
@@ -62,14 +63,14 @@ private:
         const double later = (late_sum_[j] - late_sum_[i]) * second;
         const double earlier = (late_sum_[k] - late_sum_[j]) * first;
         const auto all = static_cast<double>(fibre_.size());
-        double dwells = dwell(j - 1, j) - dwell(k - 1, i);
+        double costs = cost(j - 1, j) - cost(k - 1, i);
         if (i > 0) {
-            dwells += dwell(i - 1, i) - dwell(i - 1, j);
+            costs += cost(i - 1, i) - cost(i - 1, j);
         }
         if (k < fibre_.size()) {
-            dwells += dwell(k - 1, k) - dwell(j - 1, k);
+            costs += cost(k - 1, k) - cost(j - 1, k);
         }
-        return kWorth_rad * (later - earlier) / all + dwells;
+        return kWorth_rad * (later - earlier) / all + costs;
     }
 
     bool exchange_best() {
@@ -104,9 +105,8 @@ private:
         return true;
     }
 
-    std::span<const Rim> rims_;
     std::span<const Member> members_;
-    const TurnRule& rule_;
+    TurnCosts costs_;
     std::span<OrderedCourse> fibre_;
     std::vector<double> late_;
     std::vector<double> late_sum_;  // before each course, and behind the last
@@ -115,14 +115,15 @@ private:
 }  // namespace
 
 void arrange(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
-             std::span<const double> lateness, std::vector<OrderedCourse>& order) {
+             std::span<const double> lateness, std::vector<OrderedCourse>& order,
+             const ClosedTurns& closed) {
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
         end = begin + 1;
         while (end < order.size() && !order[end - 1].cut_after) {
             ++end;
         }
         const std::span<OrderedCourse> fibre = std::span(order).subspan(begin, end - begin);
-        Arranger(rims, members, rule, lateness.subspan(begin, end - begin), fibre).run();
+        Arranger(rims, members, rule, lateness.subspan(begin, end - begin), fibre, closed).run();
         for (OrderedCourse& course : fibre) {
             course.cut_after = false;
         }

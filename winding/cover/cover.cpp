@@ -15,10 +15,10 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "winding/cover/anneal.h"
-#include "winding/cover/arrange.h"
 #include "winding/cover/fibre_routes.h"
 #include "winding/cover/grow.h"
 #include "winding/cover/lay_out.h"
+#include "winding/cover/order_to_follow.h"
 #include "winding/cover/prove_ways.h"
 #include "winding/cover/uncovered.h"
 #include "winding/cover/what_if.h"
@@ -404,16 +404,13 @@ private:
     void put_in_order() {
         gather();
         std::vector<LaidCourse> laid;
-        for (std::size_t i = 0; i < courses_.size(); ++i) {
-            laid.push_back({static_cast<std::int32_t>(library_size_ + i), courses_[i].backward});
-        }
-        order_ = order_courses(mandrel_.rims, members_, laid, rules_.turn);
         std::vector<double> lateness;
-        for (const OrderedCourse& course : order_) {
-            const PlacedCourse& placed = courses_[at(course.course.member) - library_size_];
-            lateness.push_back(character_of(mandrel_.surface, placed.path).lateness());
+        for (const PlacedCourse& course : courses_) {
+            laid.push_back(
+                {static_cast<std::int32_t>(library_size_ + laid.size()), course.backward});
+            lateness.push_back(character_of(mandrel_.surface, course.path).lateness());
         }
-        arrange(mandrel_.rims, members_, rules_.turn, lateness, order_);
+        order_ = order_to_follow(rules_, machine_, members_, laid, lateness);
     }
 
     void keep_longest_fibres() {

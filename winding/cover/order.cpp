@@ -12,11 +12,14 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
+// More than all dwells of a plan together, and less than what a double loses them beside.
+constexpr double kClosed_rad = 1e6;
+
 class Ordering {
 public:
     Ordering(std::span<const Rim> rims, std::span<const Member> members,
-             std::span<const LaidCourse> laid, const TurnRule& rule)
-        : rims_(rims), members_(members), rule_(rule), laid_(laid.begin(), laid.end()) {}
+             std::span<const LaidCourse> laid, const TurnRule& rule, const ClosedTurns& closed)
+        : members_(members), costs_(rims, members, rule, closed), laid_(laid.begin(), laid.end()) {}
 
     std::vector<OrderedCourse> run() {
         link();
@@ -45,8 +48,8 @@ private:
     [[nodiscard]] std::size_t arrives(std::size_t c) const { return arrival_node(end(c)); }
     [[nodiscard]] std::size_t departs(std::size_t c) const { return departure_node(start(c)); }
 
-    [[nodiscard]] double dwell(std::size_t from, std::size_t to) const {
-        return dwell_rad(rims_[at(end(from).rim)], end(from), start(to), rule_);
+    [[nodiscard]] double cost(std::size_t from, std::size_t to) const {
+        return costs_.rad(laid_[from], laid_[to]);
     }
 
     // Pairs arrivals with departures at every node; what is left over is joined by cuts.
@@ -71,20 +74,20 @@ private:
         }
     }
 
-    // Repeatedly joins the pair with the least dwell; removes what is paired from both lists.
+    // Repeatedly joins the pair that costs least; removes what is paired from both lists.
     void pair_up(std::vector<std::size_t>& arrivals, std::vector<std::size_t>& departures) {
         struct Pair {
-            double dwell;
+            double cost;
             std::size_t from, to;
         };
         std::vector<Pair> pairs;
         for (const std::size_t a : arrivals) {
             for (const std::size_t d : departures) {
-                pairs.push_back({dwell(a, d), a, d});
+                pairs.push_back({cost(a, d), a, d});
             }
         }
         std::stable_sort(pairs.begin(), pairs.end(),
-                         [](const Pair& x, const Pair& y) { return x.dwell < y.dwell; });
+                         [](const Pair& x, const Pair& y) { return x.cost < y.cost; });
         for (const Pair& pair : pairs) {
             const auto a = std::find(arrivals.begin(), arrivals.end(), pair.from);
             const auto d = std::find(departures.begin(), departures.end(), pair.to);
@@ -119,8 +122,8 @@ private:
                         cut_[b] != 0) {
                         continue;
                     }
-                    const double change = dwell(a, next_[b]) + dwell(b, next_[a]) -
-                                          dwell(a, next_[a]) - dwell(b, next_[b]);
+                    const double change = cost(a, next_[b]) + cost(b, next_[a]) -
+                                          cost(a, next_[a]) - cost(b, next_[b]);
                     if (best.first == best.second || change < least) {
                         least = change;
                         best = {a, b};
@@ -193,7 +196,7 @@ private:
         return true;
     }
 
-    // The cycles one after the other, each opened at a cut, else at its longest dwell.
+    // The cycles one after the other, each opened at a cut, else where it costs most.
     [[nodiscard]] std::vector<OrderedCourse> sequence() const {
         std::vector<OrderedCourse> order;
         const std::vector<std::size_t> cycle = cycle_of_each();
@@ -202,11 +205,11 @@ private:
                 continue;
             }
             std::size_t last = c;
-            double longest = -1.0;
+            double most = -1.0;
             for (std::size_t i = c, steps = 0; steps == 0 || i != c; i = next_[i], ++steps) {
-                const double value = cut_[i] != 0 ? 2.0 * kPi : dwell(i, next_[i]);
-                if (value > longest) {
-                    longest = value;
+                const double value = cut_[i] != 0 ? 2.0 * kPi : cost(i, next_[i]);
+                if (value > most) {
+                    most = value;
                     last = i;
                 }
             }
@@ -219,9 +222,8 @@ private:
         return order;
     }
 
-    std::span<const Rim> rims_;
     std::span<const Member> members_;
-    const TurnRule& rule_;
+    TurnCosts costs_;
     std::vector<LaidCourse> laid_;
     std::vector<std::size_t> next_;
     std::vector<char> cut_;
@@ -229,9 +231,17 @@ private:
 
 }  // namespace
 
+double TurnCosts::rad(const LaidCourse& from, const LaidCourse& to) const {
+    const RimCrossing& end = end_of(members_[at(from.member)], from.backward);
+    const RimCrossing& start = start_of(members_[at(to.member)], to.backward);
+    const double dwell = dwell_rad(rims_[at(end.rim)], end, start, rule_);
+    return closed_.count({from, to}) != 0 ? dwell + kClosed_rad : dwell;
+}
+
 std::vector<OrderedCourse> order_courses(std::span<const Rim> rims, std::span<const Member> members,
-                                         std::span<const LaidCourse> laid, const TurnRule& rule) {
-    return Ordering(rims, members, laid, rule).run();
+                                         std::span<const LaidCourse> laid, const TurnRule& rule,
+                                         const ClosedTurns& closed) {
+    return Ordering(rims, members, laid, rule, closed).run();
 }
 
 }  // namespace meshwind

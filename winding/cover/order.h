@@ -1,8 +1,9 @@
 /// Putting chosen courses in order, so that as few continuous fibres as can be lay them all.
 #pragma once
 
-#include <cstdint>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "winding/plan/course.h"
@@ -10,13 +11,36 @@
 
 namespace meshwind {
 
+/// Turns that the machine cannot follow, each from one course to another.
+using ClosedTurns = std::set<std::pair<LaidCourse, LaidCourse>>;
+
+/// What it costs that one course follows another: the dwell in rad, and for a closed turn more than
+/// any plan dwells.
+class TurnCosts {
+public:
+    /// All is kept.
+    TurnCosts(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+              const ClosedTurns& closed)
+        : rims_(rims), members_(members), rule_(rule), closed_(closed) {}
+
+    [[nodiscard]] double rad(const LaidCourse& from, const LaidCourse& to) const;
+
+private:
+    std::span<const Rim> rims_;
+    std::span<const Member> members_;
+    const TurnRule& rule_;
+    const ClosedTurns& closed_;
+};
+
 /// An Eulerian trail through the nodes: a fibre that arrives circling an extension one way leaves
 /// circling it the same way, and the dwell angles are kept small. Separate trails that share no
-/// node are tried the other way round, if their courses allow it. \return every course once; the
-/// last one has cut_after set; more cuts only where the ends of the courses leave no other way
+/// node are tried the other way round, if their courses allow it. Closed turns are taken only where
+/// the fibre has no other way. \return every course once; the last one has cut_after set; more cuts
+/// only where the ends of the courses leave no other way
 [[nodiscard]] std::vector<OrderedCourse> order_courses(std::span<const Rim> rims,
                                                        std::span<const Member> members,
                                                        std::span<const LaidCourse> laid,
-                                                       const TurnRule& rule);
+                                                       const TurnRule& rule,
+                                                       const ClosedTurns& closed = {});
 
 }  // namespace meshwind

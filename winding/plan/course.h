@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -61,6 +62,8 @@ struct PlacedCourse {
 struct LaidCourse {
     std::int32_t member = -1;
     bool backward = false;  ///< from the member's end 1 to its end 0
+
+    auto operator<=>(const LaidCourse&) const = default;
 };
 
 /// The end of `member` at which a course wound in this direction begins.

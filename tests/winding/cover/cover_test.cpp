@@ -264,6 +264,39 @@ TEST(PlanCover, LeavesOutWhatIsRefusedAgainAndAgain) {
     expect_no_course_steeper(cover_cylinder(wide_tow(), &machine), limit, Rejection::InItsPlace);
 }
 
+// One turn in three, by where it leaves and arrives.
+bool is_shut(const Piece& from, const Piece& to) {
+    const double place_mm =
+        from.path.back().position_mm.sum() + 7.0 * to.path.front().position_mm.sum();
+    return std::fmod(std::abs(10.0 * place_mm), 3.0) < 1.0;
+}
+
+// Courses come in another order, and none is lost.
+TEST(PlanCover, TakesNoTurnThatTheMachineCannotFollow) {
+    const auto turns_shut = [](const Plan& plan) {
+        int shut = 0;
+        for (std::size_t i = 0; i + 2 < plan.pieces.size(); ++i) {
+            shut += plan.pieces[i + 1].kind == PieceKind::Transition &&
+                            is_shut(plan.pieces[i], plan.pieces[i + 2])
+                        ? 1
+                        : 0;
+        }
+        return shut;
+    };
+    test::AnyMachine machine;
+    machine.follow_rule = [](std::span<const Piece> pieces) {
+        const bool turn = pieces.size() == 3 && pieces[1].kind == PieceKind::Transition;
+        return turn && is_shut(pieces[0], pieces[2]) ? Rejection::FreeLength : Rejection::None;
+    };
+    const Plan any = cover_cylinder(wide_tow());
+    EXPECT_GT(turns_shut(any), 3);
+    const Plan plan = cover_cylinder(wide_tow(), &machine);
+    EXPECT_EQ(turns_shut(plan), 0);
+    EXPECT_EQ(plan.courses, any.courses);
+    EXPECT_EQ(plan.fibres, 1);
+    expect_continuous(plan);
+}
+
 // Whatever is put in their place, courses are refused: the plan with the fewest of them stands.
 TEST(PlanCover, EndsWhereEveryPlanIsRefused) {
     int asked = 0;

@@ -146,6 +146,28 @@ TEST(OrderCourses, JoinsARoundAtTheStartOfAnOpenFibre) {
     expect_joined(0);
 }
 
+// Three rounds from one node back to it, of which each may follow one other.
+TEST(OrderCourses, TakesNoClosedTurnWhereThereIsAnotherWay) {
+    std::vector<Member> members(3);
+    std::vector<LaidCourse> laid;
+    for (std::int32_t i = 0; i < 3; ++i) {
+        Member& member = members[static_cast<std::size_t>(i)];
+        member.end[0] = {0, 0.5 + i, 1.1, -1};
+        member.end[1] = {0, 0.6 + i, 1.1, 1};
+        member.windable_forward = true;
+        laid.push_back({i, false});
+    }
+    const ClosedTurns one_way{{laid[0], laid[1]}, {laid[1], laid[2]}, {laid[2], laid[0]}};
+    const ClosedTurns other_way{{laid[1], laid[0]}, {laid[2], laid[1]}, {laid[0], laid[2]}};
+    for (const ClosedTurns& closed : {one_way, other_way}) {
+        const auto order = order_courses(test::plain_rims(1), members, laid, kRule, closed);
+        ASSERT_EQ(order.size(), 3U);
+        EXPECT_EQ(fibres_of(order), 1);
+        EXPECT_EQ(closed.count({order[0].course, order[1].course}), 0U);
+        EXPECT_EQ(closed.count({order[1].course, order[2].course}), 0U);
+    }
+}
+
 TEST(OrderCourses, OfOneCourseIsThatCourse) {
     test::Draw draw(1);
     const std::vector<Member> members{test::random_member(draw, 2, 20)};

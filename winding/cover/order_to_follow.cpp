@@ -1,0 +1,117 @@
+#include "winding/cover/order_to_follow.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/parallel.h"
+#include "winding/cover/arrange.h"
+#include "winding/cover/lay_out.h"
+#include "winding/cover/order.h"
+
+namespace meshwind {
+namespace {
+
+// Orders that are tried. Each closes turns that it found, so that later ones have fewer to choose
+// from.
+constexpr int kMostOrders = 20;
+
+class Follower {
+public:
+    Follower(const CourseRules& rules, const Windability* machine, std::span<const Member> members,
+             std::span<const LaidCourse> laid, std::span<const double> lateness)
+        : rules_(rules), machine_(machine), members_(members), laid_(laid) {
+        for (std::size_t i = 0; i < laid.size(); ++i) {
+            lateness_[laid[i].member] = lateness[i];
+        }
+    }
+
+    std::vector<OrderedCourse> run() {
+        std::vector<OrderedCourse> best = put_in_order();
+        if (machine_ == nullptr) {
+            return best;
+        }
+        std::vector<OrderedCourse> order = best;
+        std::pair<std::size_t, std::size_t> least;  // cuts, closed turns
+        for (int tried = 0; tried < kMostOrders; ++tried) {
+            const std::size_t known = closed_.size();
+            const std::pair<std::size_t, std::size_t> count{cuts(order), close_turns(order)};
+            if (tried == 0 || count < least) {
+                best = order;
+                least = count;
+            }
+            if (least.second == 0 || closed_.size() == known) {
+                break;
+            }
+            order = put_in_order();
+        }
+        return best;
+    }
+
+private:
+    [[nodiscard]] std::vector<OrderedCourse> put_in_order() const {
+        std::vector<OrderedCourse> order =
+            order_courses(rules_.mandrel.rims, members_, laid_, rules_.turn, closed_);
+        std::vector<double> lateness;
+        lateness.reserve(order.size());
+        for (const OrderedCourse& course : order) {
+            lateness.push_back(lateness_.at(course.course.member));
+        }
+        arrange(rules_.mandrel.rims, members_, rules_.turn, lateness, order, closed_);
+        return order;
+    }
+
+    static std::size_t cuts(std::span<const OrderedCourse> order) {
+        return static_cast<std::size_t>(
+            std::count_if(order.begin(), order.end(),
+                          [](const OrderedCourse& course) { return course.cut_after; }));
+    }
+
+    // Adds the turns of the order that the machine cannot follow. Returns how many they are.
+    std::size_t close_turns(std::span<const OrderedCourse> order) {
+        Plan plan;
+        lay_out(rules_, members_, order, plan);
+        std::vector<std::pair<LaidCourse, LaidCourse>> turns;
+        std::vector<std::size_t> first;  // piece of each: the course before it
+        std::size_t piece = 0;
+        for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+            if (!order[i].cut_after) {
+                turns.emplace_back(order[i].course, order[i + 1].course);
+                first.push_back(piece);
+                ++piece;
+            }
+            ++piece;
+        }
+        std::vector<char> refused(turns.size(), 0);
+        parallel_for(turns.size(), 1, [&](std::size_t i, std::size_t) {
+            constexpr std::size_t kCourseTurnCourse = 3;
+            const auto pieces = std::span(plan.pieces).subspan(first[i], kCourseTurnCourse);
+            refused[i] = static_cast<char>(closed_.count(turns[i]) != 0 ||
+                                           machine_->follow(pieces) != Rejection::None);
+        });
+        for (std::size_t i = 0; i < turns.size(); ++i) {
+            if (refused[i] != 0) {
+                closed_.insert(turns[i]);
+            }
+        }
+        return static_cast<std::size_t>(std::count(refused.begin(), refused.end(), 1));
+    }
+
+    const CourseRules& rules_;
+    const Windability* machine_;
+    std::span<const Member> members_;
+    std::span<const LaidCourse> laid_;
+    std::map<std::int32_t, double> lateness_;  // by member
+    ClosedTurns closed_;
+};
+
+}  // namespace
+
+std::vector<OrderedCourse> order_to_follow(const CourseRules& rules, const Windability* machine,
+                                           std::span<const Member> members,
+                                           std::span<const LaidCourse> laid,
+                                           std::span<const double> lateness) {
+    return Follower(rules, machine, members, laid, lateness).run();
+}
+
+}  // namespace meshwind

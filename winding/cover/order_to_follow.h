@@ -1,0 +1,24 @@
+/// The winding order of courses on a machine.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "winding/cover/library.h"
+#include "winding/plan/course.h"
+#include "winding/plan/windability.h"
+
+namespace meshwind {
+
+/// Orders and arranges courses (order.h, arrange.h). Where the machine cannot follow a turn from
+/// one course to the next, they are put in another order: of those that are tried, the one with the
+/// fewest cuts, and then with the fewest such turns.
+/// \param machine null: each turn can be followed \param members proven
+/// \param lateness per entry of `laid`
+[[nodiscard]] std::vector<OrderedCourse> order_to_follow(const CourseRules& rules,
+                                                         const Windability* machine,
+                                                         std::span<const Member> members,
+                                                         std::span<const LaidCourse> laid,
+                                                         std::span<const double> lateness);
+
+}  // namespace meshwind
