@@ -119,8 +119,7 @@ Job job_of(const JobArguments& arguments, const fs::path& file, bool points) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos || equals == 0) {
             throw InputError("cli.usage", "--set " + text,
-                             "is no setting; write a key of the job and its value, --set "
-                             "tow.width=8");
+                             "is no setting; write a job's key and value, --set tow.width=8");
         }
         settings.push_back({text.substr(0, equals), text.substr(equals + 1)});
     }
@@ -157,13 +156,15 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
                                        .mandrel_frame = post->frame == "mandrel",
                                        .farthest_mm = post->within_mm};
     }
-    Mandrel mandrel = load_mandrel(mandrel_file, mandrel_options(job, unit_mm(common.units)));
+    const auto mandrel = [&](const Job& asked) {
+        return load_mandrel(mandrel_file, mandrel_options(asked, unit_mm(common.units)));
+    };
     options.mandrel_digest = "sha256 " + sha256_hex(read_text_file(mandrel_file));
     spare_inputs(arguments.out, {mandrel_file, options.files.machine, options.files.job,
                                  post != nullptr ? fs::path(post->points) : fs::path()});
     OutputFolder folder(arguments.out);  // unusable: better known now
     options.reading_s = seconds_since(begun);
-    const Run run = wind(std::move(mandrel), machine, job, options);
+    const Run run = wind(mandrel, machine, job, options);
     options.context.report_progress("write", 0.0);
     const std::string report = write_run(run, folder);
     if (!arguments.png.file.empty()) {

@@ -174,7 +174,13 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     options.keep_regions = job.mandrel.keep_regions;
     options.cut_ends_mm = job.mandrel.cut_ends_mm;
     options.remove_details_mm = job.mandrel.remove_details_mm;
-    options.blend_mm = job.mandrel.blend_mm;
+    if (!job.mandrel.blend_mm) {
+        throw InputError(
+            "job.blend_open", "job: /mandrel/blend",
+            "is \"auto\", which the main job alone can choose; give the radius that its "
+            "report has as mandrel.winding_mesh.blend_mm, --set mandrel.blend=8");
+    }
+    options.blend_mm = *job.mandrel.blend_mm;
     options.mesh = job.mandrel.mesh;
     return options;
 }

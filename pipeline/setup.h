@@ -40,6 +40,7 @@ struct Setup {
 
 /// How a job asks for its mandrel to be read.
 /// \param unit_mm overrides the job's units where > 0
+/// \throws InputError job.blend_open where the blend is yet to be chosen (wind.h)
 [[nodiscard]] MandrelOptions mandrel_options(const Job& job, double unit_mm = 0.0);
 
 /// For the first layer. \param machine as load_machine() has it

@@ -1,12 +1,14 @@
 #include "pipeline/wind.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <utility>
 
 #include "core/error.h"
 #include "core/text/digest.h"
+#include "core/text/text_number.h"
 #include "core/version.h"
 #include "machines/eye_inverse.h"
 #include "mesh/io/export.h"
@@ -24,6 +26,9 @@ namespace meshwind {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Radii that are tried where the blend is yet to be chosen, in tow widths.
+constexpr std::array kBlendsInTows{0.0, 1.0, 2.0, 3.0};
 
 class Stopwatch {
 public:
@@ -260,7 +265,58 @@ private:
     ProgramHeader header_;  // of the layer that is wound
 };
 
+double seconds_since(std::chrono::steady_clock::time_point begun) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+Run wind_as_read(const MandrelOf& mandrel, const Machine& machine, const Job& job,
+                 WindOptions options) {
+    const auto begun = std::chrono::steady_clock::now();
+    Mandrel read = mandrel(job);
+    options.reading_s += seconds_since(begun);
+    return wind(std::move(read), machine, job, options);
+}
+
+double covered_share(const Run& run) {
+    const Plan& plan = run.layers.front().plan;
+    return plan.failure.empty() ? plan.coverage.fraction : 0.0;
+}
+
+std::string blend_words(double blend_mm, const Run& run) {
+    const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
+                                      [](const Check& check) { return !check.ok; });
+    return (blend_mm > 0.0 ? "with a blend of " + fixed(blend_mm, 1) + " mm "
+                           : "without a blend ") +
+           percent(covered_share(run), 1) + " of the wall is covered, and " +
+           std::to_string(failed) + " checks fail";
+}
+
 }  // namespace
+
+Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
+         const WindOptions& options) {
+    if (job.mandrel.blend_mm || options.import) {
+        return wind_as_read(mandrel, machine, job, options);
+    }
+    std::optional<Run> best;
+    std::vector<std::string> tried;
+    for (const double widths : kBlendsInTows) {
+        Job asked = job;
+        asked.mandrel.blend_mm = widths * job.tow.width_mm;
+        Run run = wind_as_read(mandrel, machine, asked, options);
+        tried.push_back(blend_words(*asked.mandrel.blend_mm, run));
+        options.context.report_remark(tried.back());
+        const bool better = !best || run.passed() || covered_share(run) > covered_share(*best);
+        if (better) {
+            best = std::move(run);
+        }
+        if (best->passed() && best->planned()) {
+            break;
+        }
+    }
+    best->remarks.insert(best->remarks.end(), tried.begin(), tried.end());
+    return *std::move(best);
+}
 
 bool Run::planned() const {
     for (const WoundLayer& layer : layers) {

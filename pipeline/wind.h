@@ -2,6 +2,7 @@
 /// written.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -58,6 +59,16 @@ struct Run {
 /// \throws InputError for input that cannot be wound at all; what a plan cannot do is a check of
 /// the result that failed
 [[nodiscard]] Run wind(Mandrel mandrel, const Machine& machine, const Job& job,
+                       const WindOptions& options = {});
+
+/// The job's mandrel, read with the blend that the job has.
+using MandrelOf = std::function<Mandrel(const Job& job)>;
+
+/// The same, reading the mandrel. Where the job's blend is yet to be chosen, all of it is done with
+/// no blend and with ever wider ones, until one passes every check; else the one that covers most
+/// stands. What each came to is among the remarks.
+/// \throws as wind() and `mandrel`
+[[nodiscard]] Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
                        const WindOptions& options = {});
 
 }  // namespace meshwind

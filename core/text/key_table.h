@@ -164,7 +164,8 @@ inline SchemaJson with_default(SchemaJson schema, const SchemaJson& value) {
 template <typename Owner>
 Key<Owner> number(std::string_view name, double Owner::*field, const JsonRange& range,
                   std::string_view meaning) {
-    return {name, meaning, with_default(number_schema(range), Owner{}.*field),
+    const Owner defaults;
+    return {name, meaning, with_default(number_schema(range), defaults.*field),
             [=](const JsonValue& value, Owner& owner) { owner.*field = value.number(range); },
             [=](const Owner& owner) { return number_text(owner.*field); }};
 }
@@ -208,7 +209,8 @@ Key<Owner> number_or_auto(std::string_view name, Number Owner::*field, const Jso
 template <typename Owner, typename Integer>
 Key<Owner> count(std::string_view name, Integer Owner::*field, std::int64_t most,
                  std::string_view meaning) {
-    return {name, meaning, with_default(count_schema(1, most), Owner{}.*field),
+    const Owner defaults;
+    return {name, meaning, with_default(count_schema(1, most), defaults.*field),
             [=](const JsonValue& value, Owner& owner) {
                 owner.*field = static_cast<Integer>(value.integer(1, most));
             },
@@ -272,9 +274,10 @@ template <typename Owner, typename Enum>
 Key<Owner> word(std::string_view name, Enum Owner::*field, std::vector<std::string_view> words,
                 std::string_view meaning) {
     const auto word_of = [words](Enum value) { return words[static_cast<std::size_t>(value)]; };
+    const Owner defaults;
     return {name,
             meaning,
-            {{"enum", words}, {"default", word_of(Owner{}.*field)}},
+            {{"enum", words}, {"default", word_of(defaults.*field)}},
             [field, words](const JsonValue& value, Owner& owner) {
                 owner.*field = static_cast<Enum>(value.one_of(words));
             },

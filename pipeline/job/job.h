@@ -71,7 +71,7 @@ struct Job {
         std::vector<std::int32_t> keep_regions;   ///< region ids; empty: the outer wall
         std::optional<double> cut_ends_mm;        ///< >= 0; none: what is no part of an end's leg
         std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
-        double blend_mm = 0.0;                    ///< >= 0; 0: crotches and steps stay sharp
+        std::optional<double> blend_mm = 0.0;  ///< 0: crotches and steps stay sharp; none: by trial
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;
         double extension_mm = 100.0;  ///< >= 0; room for turns beyond each rim
         TurnKind turn = TurnKind::Friction;

@@ -100,14 +100,21 @@ Key<Job::MandrelJob> mesh_key() {
 
 // Left out where nothing is blended.
 Key<Job::MandrelJob> blend_key() {
-    Key<Job::MandrelJob> key =
-        number("blend", &Job::MandrelJob::blend_mm, kCutRange,
-               "mm, radius of a ball: crotches and steps that it cannot touch are filled up "
-               "smoothly; the part has to be made so");
-    key.text = [text = key.text](const Job::MandrelJob& mandrel) {
-        return mandrel.blend_mm > 0.0 ? text(mandrel) : std::string();
+    const auto read = [](const JsonValue& value, Job::MandrelJob& mandrel) {
+        mandrel.blend_mm = is_auto(value) ? std::nullopt : std::optional(value.number(kCutRange));
     };
-    return key;
+    const auto text = [](const Job::MandrelJob& mandrel) {
+        if (mandrel.blend_mm == 0.0) {
+            return std::string();
+        }
+        return mandrel.blend_mm ? number_text(*mandrel.blend_mm) : string_text(kAutoWord);
+    };
+    return {
+        "blend",
+        "mm, radius of a ball: crotches and steps that it cannot touch are filled up smoothly; "
+        "the part has to be made so. auto: wind tries none, then one, two and three tow widths, "
+        "and takes the first with which every check passes",
+        or_word(kAutoWord, number_schema(kCutRange)), read, text};
 }
 
 Key<Job::MandrelJob> turn_key() {

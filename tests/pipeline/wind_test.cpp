@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -13,6 +14,8 @@
 #include "core/parallel.h"
 #include "core/text/digest.h"
 #include "core/units.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/shapes/make_kinds.h"
 #include "pipeline/verify_text.h"
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
@@ -67,6 +70,41 @@ Machine with_carriage_to(double end_mm) {
 
 std::string path_table(const WoundLayer& layer) {
     return path_csv(layer.plan.pieces, layer.programs.front().made.eyes.path);
+}
+
+// A tee, on which no helix can be wound, until the blend is two tow widths wide; from then on a
+// pipe.
+Run wind_with_blend(const std::optional<double>& blend_mm, std::vector<double>& asked_mm) {
+    const auto mandrel = [&](const Job& asked) {
+        asked_mm.push_back(asked.mandrel.blend_mm.value());
+        return asked_mm.back() < 2.0 * kPipeTow_mm
+                   ? build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee")
+                   : small_pipe();
+    };
+    Job job = quick_job();
+    job.mandrel.blend_mm = blend_mm;
+    return wind(mandrel, shipped("six_axis"), job);
+}
+
+TEST(Wind, TriesWiderBlendsUntilEveryCheckPasses) {
+    std::vector<double> asked_mm;
+    const auto run = wind_with_blend(std::nullopt, asked_mm);
+    EXPECT_EQ(asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm}));
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+    EXPECT_GE(run.remarks.size(), 3U);
+}
+
+TEST(Wind, TakesTheBlendThatTheJobHas) {
+    std::vector<double> asked_mm;
+    EXPECT_FALSE(wind_with_blend(kPipeTow_mm, asked_mm).passed());
+    EXPECT_EQ(asked_mm, std::vector<double>{kPipeTow_mm});
+}
+
+TEST(Wind, OnlyTheMainJobChoosesABlend) {
+    Job job = quick_job();
+    job.mandrel.blend_mm.reset();
+    EXPECT_EQ(test::refusal_of([&] { (void)mandrel_options(job); }).code, "job.blend_open");
 }
 
 TEST(Wind, AHelicalLayerIsPlannedWoundAndJudged) {
