@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
@@ -16,6 +17,7 @@
 #include "mesh/revolution/revolution.h"
 #include "pipeline/before_planning.h"
 #include "pipeline/check_controller.h"
+#include "pipeline/more_room.h"
 #include "pipeline/part_words.h"
 #include "pipeline/plan_layer.h"
 #include "pipeline/run_names.h"
@@ -29,6 +31,9 @@ namespace fs = std::filesystem;
 
 // Radii that are tried where the blend is yet to be chosen, in tow widths.
 constexpr std::array kBlendsInTows{0.0, 1.0, 2.0, 3.0};
+
+// More fibres and longer extensions are tried so many times at most.
+constexpr int kMostMends = 2;
 
 class Stopwatch {
 public:
@@ -265,57 +270,129 @@ private:
     ProgramHeader header_;  // of the layer that is wound
 };
 
-double seconds_since(std::chrono::steady_clock::time_point begun) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
-Run wind_as_read(const MandrelOf& mandrel, const Machine& machine, const Job& job,
-                 WindOptions options) {
-    const auto begun = std::chrono::steady_clock::now();
-    Mandrel read = mandrel(job);
-    options.reading_s += seconds_since(begun);
-    return wind(std::move(read), machine, job, options);
+const Plan& first_plan(const Run& run) {
+    return run.layers.front().plan;
 }
 
 double covered_share(const Run& run) {
-    const Plan& plan = run.layers.front().plan;
-    return plan.failure.empty() ? plan.coverage.fraction : 0.0;
+    return first_plan(run).failure.empty() ? first_plan(run).coverage.fraction : 0.0;
 }
 
-std::string blend_words(double blend_mm, const Run& run) {
+bool stands(const Run& run) {
+    return run.planned() && run.passed();
+}
+
+bool is_better(const Run& run, const Run& than) {
+    return stands(run) != stands(than) ? stands(run) : covered_share(run) > covered_share(than);
+}
+
+// "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
+std::string tried_words(const Job& job, const Run& run) {
     const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
                                       [](const Check& check) { return !check.ok; });
-    return (blend_mm > 0.0 ? "with a blend of " + fixed(blend_mm, 1) + " mm "
-                           : "without a blend ") +
+    return "with " + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
+           ", extensions of " + fixed(job.mandrel.extension_mm, 0) + " mm and " +
+           (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
+                                       : std::string("no blend ")) +
            percent(covered_share(run), 1) + " of the wall is covered, and " +
            std::to_string(failed) + " checks fail";
 }
+
+// What the job has to say for the same run.
+std::string settings_words(const Job& job) {
+    std::string words = "--set fibres=" + std::to_string(job.fibres) +
+                        " --set mandrel.extension=" + fixed(job.mandrel.extension_mm, 0);
+    if (job.mandrel.blend_mm > 0.0) {
+        words += " --set mandrel.blend=" + fixed(*job.mandrel.blend_mm, 1);
+    }
+    return words;
+}
+
+// Runs of the main job on one file, of which the best stands.
+class Trials {
+public:
+    Trials(const MandrelOf& mandrel, const Machine& machine, const WindOptions& options)
+        : mandrel_(mandrel), machine_(machine), options_(options) {}
+
+    /// \throws as wind() does for the job as it is
+    void run(const Job& job) {
+        take(job, once(job));
+        for (int mend = 0; mend < kMostMends && next_; ++mend) {
+            const Job more = *std::move(next_);
+            try {
+                take(more, once(more));
+            } catch (const InputError&) {  // no room for it on the machine
+                return;
+            }
+        }
+    }
+
+    [[nodiscard]] bool done() const { return best_ && stands(*best_); }
+
+    [[nodiscard]] Run best() && {
+        if (tried_.size() > 1) {
+            options_.context.report_remark(tried_.back());
+            tried_.push_back("what stands is the job with " +
+                             settings_words(best_->layers.front().setup.job));
+            options_.context.report_remark(tried_.back());
+            best_->remarks.insert(best_->remarks.end(), tried_.begin(), tried_.end());
+        }
+        return *std::move(best_);
+    }
+
+private:
+    void take(const Job& job, Run&& run) {
+        tried_.push_back(tried_words(job, run));
+        next_ = stands(run) ? std::nullopt : more_room(job, first_plan(run));
+        if (!best_ || is_better(run, *best_)) {
+            best_ = std::move(run);
+        }
+    }
+
+    [[nodiscard]] Run once(const Job& job) {
+        if (!tried_.empty()) {
+            options_.context.report_remark(tried_.back());
+        }
+        const auto begun = std::chrono::steady_clock::now();
+        Mandrel read = mandrel_(job);
+        WindOptions options = options_;
+        options.context.remark = [this](const std::string& words) {
+            if (said_.insert(words).second) {
+                options_.context.report_remark(words);
+            }
+        };
+        options.reading_s +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        return wind(std::move(read), machine_, job, options);
+    }
+
+    const MandrelOf& mandrel_;
+    const Machine& machine_;
+    const WindOptions& options_;
+    std::optional<Run> best_;
+    std::optional<Job> next_;  // that may mend the last run
+    std::set<std::string> said_;
+    std::vector<std::string> tried_;
+};
 
 }  // namespace
 
 Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
          const WindOptions& options) {
+    Trials trials(mandrel, machine, options);
     if (job.mandrel.blend_mm || options.import) {
-        return wind_as_read(mandrel, machine, job, options);
+        trials.run(job);
+        return std::move(trials).best();
     }
-    std::optional<Run> best;
-    std::vector<std::string> tried;
     for (const double widths : kBlendsInTows) {
         Job asked = job;
         asked.mandrel.blend_mm = widths * job.tow.width_mm;
-        Run run = wind_as_read(mandrel, machine, asked, options);
-        tried.push_back(blend_words(*asked.mandrel.blend_mm, run));
-        options.context.report_remark(tried.back());
-        const bool better = !best || run.passed() || covered_share(run) > covered_share(*best);
-        if (better) {
-            best = std::move(run);
-        }
-        if (best->passed() && best->planned()) {
+        trials.run(asked);
+        if (trials.done()) {
             break;
         }
     }
-    best->remarks.insert(best->remarks.end(), tried.begin(), tried.end());
-    return *std::move(best);
+    return std::move(trials).best();
 }
 
 bool Run::planned() const {

@@ -64,10 +64,11 @@ struct Run {
 /// The job's mandrel, read with the blend that the job has.
 using MandrelOf = std::function<Mandrel(const Job& job)>;
 
-/// The same, reading the mandrel. Where the job's blend is yet to be chosen, all of it is done with
-/// no blend and with ever wider ones, until one passes every check; else the one that covers most
-/// stands. What each came to is among the remarks.
-/// \throws as wind() and `mandrel`
+/// The same, reading the mandrel. Where checks fail, and the plan says that more fibres or longer
+/// extensions would reach more of the wall, and the job does not give them, it is done again with
+/// those. Where the job's blend is yet to be chosen, all is done with no blend and with ever wider
+/// ones. The first run that passes every check stands, else the one that covers most. What each
+/// came to is among the remarks. \throws as wind() and `mandrel`
 [[nodiscard]] Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
                        const WindOptions& options = {});
 

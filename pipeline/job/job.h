@@ -73,7 +73,8 @@ struct Job {
         std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
         std::optional<double> blend_mm = 0.0;  ///< 0: crotches and steps stay sharp; none: by trial
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;
-        double extension_mm = 100.0;  ///< >= 0; room for turns beyond each rim
+        double extension_mm = 100.0;   ///< >= 0; room for turns beyond each rim
+        bool extension_given = false;  ///< by the job's author; else it may be made longer
         TurnKind turn = TurnKind::Friction;
         PinWish pins{};  ///< read where the kind of turn does (turn_kinds.h)
     };
@@ -98,6 +99,7 @@ struct Job {
     TowJob tow;
     std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
     int fibres = 1;  ///< 1 .. kMostFibres; that may be wound one after the other, cut in between
+    bool fibres_given = false;  ///< by the job's author; else there may be more
     EyeLaw eye;
     RedundancyRule redundancy = RedundancyRule::Optimal;
     ToleranceJob tolerance;

@@ -117,6 +117,16 @@ Key<Job::MandrelJob> blend_key() {
         or_word(kAutoWord, number_schema(kCutRange)), read, text};
 }
 
+// The key, and a flag that it was given.
+template <typename Owner>
+Key<Owner> told(Key<Owner> key, bool Owner::*given) {
+    key.read = [read = std::move(key.read), given](const JsonValue& value, Owner& owner) {
+        read(value, owner);
+        owner.*given = true;
+    };
+    return key;
+}
+
 Key<Job::MandrelJob> turn_key() {
     static const std::string kMeaning = [] {
         std::string text = "how the fibre turns there";
@@ -151,8 +161,10 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
                "uneven"),
         blend_key(),
         mesh_key(),
-        number("extension", &Owner::extension_mm, kExtensionRange,
-               "mm of room beyond each rim where the fibre turns"),
+        told(number("extension", &Owner::extension_mm, kExtensionRange,
+                    "mm of room beyond each rim where the fibre turns; where it is not given, and "
+                    "checks fail, longer ones are tried"),
+             &Owner::extension_given),
         turn_key(),
         only_if<Owner>([](const Owner& mandrel) { return traits_of(mandrel.turn).reads_pins; },
                        "job.pins_unused",
@@ -467,9 +479,11 @@ const KeyTable<Job>& job_keys() {
                    "the part: how its file is read and what of it is wound"),
             object("tow", &Job::tow, tow_keys(), "the band that is wound"),
             layers_key(),
-            count("fibres", &Job::fibres, kMostFibres,
-                  "continuous fibres that may be wound one after the other, each by a program of "
-                  "its own; a further one is taken only where it covers more"),
+            told(count("fibres", &Job::fibres, kMostFibres,
+                       "continuous fibres that may be wound one after the other, each by a program "
+                       "of its own; a further one is taken only where it covers more. Where it is "
+                       "not given, and checks fail, more are tried"),
+                 &Job::fibres_given),
             object("eye", &Job::eye, eye_keys(), "where the delivery eye is"),
             word("redundancy", &Job::redundancy, {"central-angle", "hold", "oscillate", "optimal"},
                  "how the mandrel turns where several turns would do: with the eye in front of the "

@@ -1,0 +1,37 @@
+#include "pipeline/more_room.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace meshwind {
+namespace {
+
+// Share of the wall that more fibres or longer extensions have to reach.
+constexpr double kWorthIt = 0.01;
+
+// The fewest fibres that reach what all those that were looked for do.
+int fibres_enough(const std::vector<double>& reach) {
+    const auto enough = std::find_if(
+        reach.begin(), reach.end(), [&](double share) { return share >= reach.back() - kWorthIt; });
+    return static_cast<int>(enough - reach.begin()) + 1;
+}
+
+}  // namespace
+
+std::optional<Job> more_room(const Job& job, const Plan& plan) {
+    Job more = job;
+    if (!job.fibres_given && !plan.reach_of_fibres.empty()) {
+        more.fibres = std::max(job.fibres, fibres_enough(plan.reach_of_fibres));
+    }
+    for (const WhatIf& what_if : plan.what_if) {
+        if (what_if.rule == WhatIf::Rule::Extension && !job.mandrel.extension_given &&
+            what_if.reachable > plan.coverage.reachable + kWorthIt) {
+            more.mandrel.extension_mm *= what_if.factor;
+        }
+    }
+    const bool same =
+        more.fibres == job.fibres && more.mandrel.extension_mm == job.mandrel.extension_mm;
+    return same ? std::nullopt : std::optional(std::move(more));
+}
+
+}  // namespace meshwind

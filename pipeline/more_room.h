@@ -1,0 +1,15 @@
+/// What of a job may be loosened by itself where a plan fails.
+#pragma once
+
+#include <optional>
+
+#include "pipeline/job/job.h"
+#include "winding/plan/plan.h"
+
+namespace meshwind {
+
+/// The job with as many fibres, and with extensions as long, as the plan says reach a hundredth
+/// more of the wall; what the job gives itself stays. None where nothing is left to loosen.
+[[nodiscard]] std::optional<Job> more_room(const Job& job, const Plan& plan);
+
+}  // namespace meshwind

@@ -1,0 +1,48 @@
+// What a job is loosened by follows from what the plan says, and from what the job leaves open.
+#include "pipeline/more_room.h"
+
+#include <gtest/gtest.h>
+
+namespace meshwind {
+namespace {
+
+Plan plan_that_reaches(std::vector<double> of_fibres, double with_longer_extensions) {
+    Plan plan;
+    plan.coverage.reachable = 0.9;
+    plan.reach_of_fibres = std::move(of_fibres);
+    plan.what_if = {{WhatIf::Rule::Friction, 1.5, 0.99},
+                    {WhatIf::Rule::Extension, 1.5, with_longer_extensions}};
+    return plan;
+}
+
+TEST(MoreRoom, IsAsManyFibresAsReachMore) {
+    const auto more = more_room(Job(), plan_that_reaches({0.6, 0.7, 0.855, 0.86}, 0.9));
+    ASSERT_TRUE(more);
+    EXPECT_EQ(more->fibres, 3);
+    EXPECT_EQ(more->mandrel.extension_mm, Job().mandrel.extension_mm);
+    EXPECT_FALSE(more_room(*more, plan_that_reaches({0.6, 0.7, 0.855, 0.86}, 0.9)));
+}
+
+TEST(MoreRoom, IsLongerExtensionsWhereTheyReachMore) {
+    const auto more = more_room(Job(), plan_that_reaches({0.9}, 0.92));
+    ASSERT_TRUE(more);
+    EXPECT_EQ(more->fibres, 1);
+    EXPECT_EQ(more->mandrel.extension_mm, 1.5 * Job().mandrel.extension_mm);
+    EXPECT_FALSE(more_room(Job(), plan_that_reaches({0.9}, 0.905)));
+    EXPECT_FALSE(more_room(Job(), plan_that_reaches({}, 0.9)));
+}
+
+TEST(MoreRoom, LeavesWhatTheJobGives) {
+    const Plan plan = plan_that_reaches({0.6, 0.9}, 0.95);
+    const Job all = parse_job(R"({"fibres": 1, "mandrel": {"extension": 100}})", "job");
+    EXPECT_FALSE(more_room(all, plan));
+    const Job fibres = parse_job(R"({"fibres": 1})", "job");
+    ASSERT_TRUE(more_room(fibres, plan));
+    EXPECT_EQ(more_room(fibres, plan)->fibres, 1);
+    const Job extension = parse_job(R"({"mandrel": {"extension": 100}})", "job");
+    ASSERT_TRUE(more_room(extension, plan));
+    EXPECT_EQ(more_room(extension, plan)->mandrel.extension_mm, 100.0);
+}
+
+}  // namespace
+}  // namespace meshwind
