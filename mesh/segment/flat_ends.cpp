@@ -12,6 +12,7 @@
 #include "core/angle_gap.h"
 #include "core/units.h"
 #include "mesh/rim.h"
+#include "mesh/segment/feature_edges.h"
 #include "mesh/segment/rims.h"
 
 namespace meshwind {
@@ -29,9 +30,11 @@ const double kPlaneCosine = std::cos(rad_from_deg(3.0));
 constexpr double kLeastAreaShare = 1e-4;
 
 // An outline is round when so much of its length is so near to its circle, as a share of the
-// radius. Tabs may break the rest of it. Twelve facets stand off their circle by 3.4 %.
+// radius, and it encloses so much of its area. Tabs may break the rest of it. Twelve facets stand
+// off their circle by 3.4 %. Strips of a bend lie on circles too, but go around none.
 constexpr double kRoundLength = 0.6;
 constexpr double kRoundShare = 0.04;
+constexpr double kRoundArea = 0.8;
 
 // Tabs are no higher than this share of the end's radius, and stand on one side of its axis: what
 // goes around it is a leg.
@@ -43,9 +46,10 @@ constexpr double kWallBehind = 0.35;
 constexpr double kWallOutside = 1.35;
 constexpr double kWallLean = 0.5;
 
-// An end face is at least so many times as wide as the wall begins behind it, else it is a facet of
-// something round: of a torus of twelve facets around it is twice as wide.
+// An end face without sharp edges is at least so many times as wide as the wall begins behind it,
+// else it is a facet of something round: of a torus of twelve facets around it is twice as wide.
 constexpr double kWidthOfLip = 2.5;
+constexpr double kSharpLength = 0.5;  // of an outline with sharp edges
 
 // Seen from the axis, wall and tabs are all around when no wider gap is between them.
 constexpr double kWidestGap_rad = 2.1;
@@ -253,74 +257,117 @@ private:
         return std::atan2(v.dot(arm), u.dot(arm));
     }
 
-    // What stands before the patch beside the border, in pieces that hang together. None where
-    // one of them is higher or wider than tabs are.
-    [[nodiscard]] std::optional<std::vector<std::vector<std::int32_t>>> tabs_on(const Patch& patch,
-                                                                                double radius_mm) {
-        std::vector<std::vector<std::int32_t>> tabs;
-        const int outside = next_mark_++;
-        const Vector3d middle = centre(patch.faces.front());
+    [[nodiscard]] bool lies_in(const Patch& patch, std::int32_t f) const {
+        const auto [low, high] = heights(patch, f);
+        return low >= -2.0 * tolerance_mm_ && high <= 2.0 * tolerance_mm_ &&
+               (normals_[at(f)].dot(patch.normal) >= kPlaneCosine || is_narrow(f));
+    }
+
+    // Half the diagonal of the patch's box: no less than the radius of a disc, of most of a ring.
+    [[nodiscard]] double reach_mm(const Patch& patch) const {
+        Eigen::AlignedBox3d box;
         for (const std::int32_t f : patch.faces) {
-            mark_[at(f)] = outside;
+            for (std::size_t i = 0; i < 3; ++i) {
+                box.extend(corner(f, i));
+            }
         }
+        return 0.5 * box.diagonal().norm();
+    }
+
+    using Tab = std::vector<std::int32_t>;
+
+    // What stands before the patch beside its border, in pieces that hang together; the patch grows
+    // by what lies in its plane behind them. None where a piece is higher or farther off than tabs
+    // are: it may be the rest of the part.
+    [[nodiscard]] std::optional<std::vector<Tab>> tabs_on(Patch& patch) {
+        std::vector<Tab> tabs;
+        const int seen = next_mark_++;
+        const Vector3d middle = centre(patch.faces.front());
+        const double reach = reach_mm(patch);
         for (const std::int32_t f : patch.faces) {
-            for (const std::int32_t seed : neighbours_[at(f)]) {
-                if (mark_[at(seed)] == outside || !stands_before(patch, seed)) {
+            mark_[at(f)] = seen;
+        }
+        for (std::size_t i = 0; i < patch.faces.size(); ++i) {
+            const std::array<std::int32_t, 3> around = neighbours_[at(patch.faces[i])];
+            for (const std::int32_t seed : around) {
+                if (seed < 0 || mark_[at(seed)] == seen) {
                     continue;
                 }
-                std::vector<std::int32_t> tab{seed};
-                mark_[at(seed)] = outside;
-                for (std::size_t i = 0; i < tab.size(); ++i) {
-                    if (heights(patch, tab[i]).second > kTabHeight * radius_mm ||
-                        (centre(tab[i]) - middle).norm() > 3.0 * radius_mm) {
+                if (lies_in(patch, seed)) {
+                    mark_[at(seed)] = seen;
+                    patch.faces.push_back(seed);
+                } else if (stands_before(patch, seed)) {
+                    mark_[at(seed)] = seen;
+                    Tab tab{seed};
+                    if (!spread(tab, patch, seen, middle, reach)) {
                         return std::nullopt;
                     }
-                    for (const std::int32_t g : neighbours_[at(tab[i])]) {
-                        if (g >= 0 && mark_[at(g)] != outside && stands_before(patch, g)) {
-                            mark_[at(g)] = outside;
-                            tab.push_back(g);
-                        }
-                    }
+                    tabs.push_back(std::move(tab));
                 }
-                tabs.push_back(std::move(tab));
             }
         }
         return tabs;
     }
 
-    // The faces of an end, if the patch is one.
-    [[nodiscard]] std::optional<std::vector<std::int32_t>> end_of(const Patch& patch) {
-        std::vector<std::int32_t> faces = patch.faces;
-        const double bare_mm2 = marked_outline(faces, patch.normal).second;
-        if (!(bare_mm2 > 0.0)) {
-            return std::nullopt;
+    // False where the tab is too large to be one.
+    bool spread(Tab& tab, Patch& patch, int seen, const Vector3d& middle, double reach) {
+        for (std::size_t i = 0; i < tab.size(); ++i) {
+            if (heights(patch, tab[i]).second > kTabHeight * reach ||
+                (centre(tab[i]) - middle).norm() > 3.0 * reach) {
+                return false;
+            }
+            for (const std::int32_t g : neighbours_[at(tab[i])]) {
+                if (g < 0 || mark_[at(g)] == seen) {
+                    continue;
+                }
+                if (lies_in(patch, g)) {
+                    mark_[at(g)] = seen;
+                    patch.faces.push_back(g);
+                } else if (stands_before(patch, g)) {
+                    mark_[at(g)] = seen;
+                    tab.push_back(g);
+                }
+            }
         }
-        const auto tabs = tabs_on(patch, std::sqrt(bare_mm2 / kPi));
+        return true;
+    }
+
+    // The faces of an end, if the patch is one.
+    [[nodiscard]] std::optional<std::vector<std::int32_t>> end_of(Patch patch) {
+        const auto tabs = tabs_on(patch);
         if (!tabs) {
             return std::nullopt;
         }
-        for (const auto& tab : *tabs) {
+        std::vector<std::int32_t> faces = patch.faces;
+        for (const Tab& tab : *tabs) {
             faces.insert(faces.end(), tab.begin(), tab.end());
         }
-        const std::vector<HalfEdge> outline = marked_outline(faces, patch.normal).first;
+        const auto [outline, enclosed_mm2] = marked_outline(faces, patch.normal);
         if (outline.empty()) {
             return std::nullopt;
         }
         const Rim circle = circle_of(outline, patch);
-        const bool on_one_side = std::all_of(tabs->begin(), tabs->end(), [&](const auto& tab) {
-            std::vector<double> angles;
-            for (const std::int32_t f : tab) {
-                for (std::size_t i = 0; i < 3; ++i) {
-                    angles.push_back(angle_about(circle, corner(f, i)));
-                }
+        const bool are_tabs = std::all_of(
+            tabs->begin(), tabs->end(), [&](const Tab& tab) { return is_tab(tab, patch, circle); });
+        const bool is_end =
+            are_tabs && is_round(outline, circle) &&
+            enclosed_mm2 >= kRoundArea * kPi * circle.radius_mm * circle.radius_mm &&
+            has_wall(outline, circle,
+                     is_sharp(outline) ? std::numeric_limits<double>::infinity() : width_mm(faces));
+        return is_end ? std::optional(std::move(faces)) : std::nullopt;
+    }
+
+    [[nodiscard]] bool is_tab(const Tab& tab, const Patch& patch, const Rim& circle) const {
+        std::vector<double> angles;
+        double highest = 0.0;
+        for (const std::int32_t f : tab) {
+            highest = std::max(highest, heights(patch, f).second);
+            for (std::size_t i = 0; i < 3; ++i) {
+                angles.push_back(angle_about(circle, corner(f, i)));
             }
-            return widest_gap_rad(std::move(angles)) > kWidestGap_rad;
-        });
-        if (!on_one_side || !is_round(outline, circle) ||
-            !has_wall(outline, circle, width_mm(faces))) {
-            return std::nullopt;
         }
-        return faces;
+        return highest <= kTabHeight * circle.radius_mm &&
+               widest_gap_rad(std::move(angles)) > kWidestGap_rad;
     }
 
     std::pair<std::vector<HalfEdge>, double> marked_outline(const std::vector<std::int32_t>& faces,
@@ -357,6 +404,18 @@ private:
             round += on_circle ? length : 0.0;
         }
         return round >= kRoundLength * all;
+    }
+
+    [[nodiscard]] bool is_sharp(const std::vector<HalfEdge>& outline) const {
+        double all = 0.0;
+        double sharp = 0.0;
+        for (const auto& [f, e] : outline) {
+            const double length = (corner(f, e + 1) - corner(f, e)).norm();
+            const double turn = normals_[at(f)].dot(normals_[at(neighbours_[at(f)][e])]);
+            all += length;
+            sharp += turn <= std::cos(kFeatureAngleRad) ? length : 0.0;
+        }
+        return sharp >= kSharpLength * all;
     }
 
     // Whether the surface goes back from the outline and is a leg's wall soon, all around.

@@ -213,7 +213,10 @@ Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const RegionFact
             const Eigen::Vector3d middle =
                 0.5 * (soup.points_mm[at(soup.faces[at(f)][e])] +
                        soup.points_mm[at(soup.faces[at(f)][(e + 1) % 3])]);
-            const bool outward = normals[at(g)].dot(middle - cap.box.center()) > 0.0;
+            // Seen along the cap's normal: a lip leans only a little, and tabs lift the middle.
+            const Eigen::Vector3d along = cap.area_normal.normalized();
+            const Eigen::Vector3d arm = middle - cap.box.center();
+            const bool outward = normals[at(g)].dot(arm - along.dot(arm) * along) > 0.0;
             (outward ? mouth.outer : mouth.inner).push_back(g);
         }
     }
