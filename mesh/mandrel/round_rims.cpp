@@ -30,15 +30,20 @@ const Rim* worst_off_circle(const Mandrel& mandrel) {
 }
 
 std::string off_circle_words(const Mandrel& mandrel, const Rim& rim) {
-    constexpr double kFlatShare = 0.5;  // of what it is off: a plane loop is an end, another a hole
+    // An end that was cut askew is a plane loop, and off its circle by less than half its radius:
+    // an oblique one is then 60 deg off square.
+    constexpr double kFlatShare = 0.5;  // of what it is off
+    constexpr double kMostOfAnEnd = 0.5;
     const Eigen::Vector3d& p = rim.centre_mm;
-    const bool flat = off_plane_mm(mandrel, rim) < kFlatShare * rim.circularity_mm;
+    const bool is_end = rim.circularity_mm < kMostOfAnEnd * rim.radius_mm &&
+                        off_plane_mm(mandrel, rim) < kFlatShare * rim.circularity_mm;
     return "rim " + std::to_string(rim.id) + " around (" + fixed(p.x(), 1) + ", " +
            fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ") is no circle: up to " +
            fixed(rim.circularity_mm, 2) + " mm off radius " + fixed(rim.radius_mm, 2) +
-           (flat ? " mm: the end is oblique or not round; cut it square to its leg in the modeller"
-                 : " mm: a face is missing, the wall has a window, or it is half of a part; close "
-                   "it or export the whole part");
+           (is_end
+                ? " mm: the end is oblique or not round; cut it square to its leg in the modeller"
+                : " mm: a face is missing, the wall has a window, or it is half of a part; close "
+                  "it or export the whole part");
 }
 
 }  // namespace meshwind
