@@ -124,7 +124,7 @@ public:
         if (!planned_) {
             return;
         }
-        check_pieces();
+        require_sound_wall(mandrel_, turn_.takes_run);
         check_tow();
         check_turns();
         if (eye_) {
@@ -161,12 +161,6 @@ private:
 
     [[nodiscard]] std::string machine_place() const {
         return name_of_file(task_.machine_file, machine_.name);
-    }
-
-    void check_pieces() const {
-        if (mandrel_.pieces.size() > 1) {
-            throw InputError("mesh.pieces", mandrel_.file, pieces_words(mandrel_.pieces));
-        }
     }
 
     void check_tow() const {

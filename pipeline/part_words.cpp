@@ -5,8 +5,10 @@
 
 #include <Eigen/Geometry>
 
+#include "core/error.h"
 #include "core/text/text_number.h"
 #include "mesh/even/blend.h"
+#include "mesh/mandrel/round_rims.h"
 
 namespace meshwind {
 namespace {
@@ -57,6 +59,16 @@ std::string pieces_words(const std::vector<WallPiece>& pieces) {
            "; unite them in the modeller, or name the regions of one in the job, "
            "\"mandrel\": {\"keep_regions\": [" +
            regions + "]}";
+}
+
+void require_sound_wall(const Mandrel& mandrel, bool turns_on_extensions) {
+    if (mandrel.pieces.size() > 1) {
+        throw InputError("mesh.pieces", mandrel.file, pieces_words(mandrel.pieces));
+    }
+    const Rim* worst = worst_off_circle(mandrel);
+    if (turns_on_extensions && worst != nullptr) {
+        throw InputError("mesh.rim_not_round", mandrel.file, off_circle_words(mandrel, *worst));
+    }
 }
 
 void propose_blend(const Mandrel& mandrel, double tow_width_mm, std::vector<std::string>& remarks) {

@@ -1,4 +1,5 @@
-/// The part's size and unit in words, for a summary and for those who took one unit for another.
+/// What is to say of a part: its size and unit, for those who took one for another, and what is
+/// wrong with its wall.
 #pragma once
 
 #include <string>
@@ -14,6 +15,10 @@ namespace meshwind {
 /// How many pieces, where the two largest are, and the key that takes the largest alone.
 /// \pre two at least, largest first
 [[nodiscard]] std::string pieces_words(const std::vector<WallPiece>& pieces);
+
+/// Refuses a wall in pieces, and rims that are no circles where fibre turns on cylinders beyond
+/// them. \throws InputError mesh.pieces, mesh.rim_not_round
+void require_sound_wall(const Mandrel& mandrel, bool turns_on_extensions);
 
 /// Adds what a tow's width of putty would fill up, and the key that does so; nothing where hardly
 /// anything is.

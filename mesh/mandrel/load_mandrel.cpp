@@ -16,6 +16,7 @@
 #include "mesh/even/wall_pieces.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
+#include "mesh/mandrel/round_rims.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/weld.h"
 #include "mesh/revolution/crease_rings.h"
@@ -349,7 +350,9 @@ void add_remarks(Mandrel& mandrel, int holes, int crumbs) {
     }
     constexpr double kRoundShare = 0.02;  // of its radius: a rim further off is worth a word
     for (const Rim& rim : mandrel.rims) {
-        if (rim.circularity_mm > kRoundShare * rim.radius_mm) {
+        if (!is_round(rim)) {
+            mandrel.remarks.push_back(off_circle_words(mandrel, rim) + "; the main job refuses it");
+        } else if (rim.circularity_mm > kRoundShare * rim.radius_mm) {
             mandrel.remarks.push_back("rim " + std::to_string(rim.id) + " is no circle: up to " +
                                       fixed(rim.circularity_mm, 2) + " mm off radius " +
                                       fixed(rim.radius_mm, 2) + " mm");

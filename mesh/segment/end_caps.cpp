@@ -170,7 +170,11 @@ void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t
     }
 }
 
-void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<RegionFacts>& facts) {
+void mark_end_caps(const TriangleSoup& soup, const std::vector<std::int32_t>& flat_end,
+                   Segmentation& s, std::vector<RegionFacts>& facts) {
+    const auto is_flat_end = [&](const RegionFacts& r) {
+        return flat_end[at(r.faces.front())] >= 0;
+    };
     std::vector<char> plateau(facts.size(), 0);
     double least = 0.0;
     double largest = largest_opening_mm2(soup, s);
@@ -178,7 +182,7 @@ void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Region
         least += kCapAreaShare * r.area_mm2;
     }
     for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (is_plateau(facts[id])) {
+        if (is_plateau(facts[id]) || is_flat_end(facts[id])) {
             plateau[id] = 1;
             trace_outline(soup, s, static_cast<std::int32_t>(id), facts[id]);
         }
@@ -192,7 +196,7 @@ void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<Region
                 return plateau[at(other)] != 0 &&
                        facts[at(other)].area_mm2 > 0.1 * facts[id].area_mm2;
             });
-        cap[id] = static_cast<char>(plateau[id] != 0 && !flat_of_box);
+        cap[id] = static_cast<char>(plateau[id] != 0 && (!flat_of_box || is_flat_end(facts[id])));
         largest = std::max(largest, cap[id] != 0 ? facts[id].outline_mm2 : 0.0);
     }
     least = std::max(least, kCapRadiusShare * kCapRadiusShare * largest);

@@ -36,9 +36,11 @@ struct RegionFacts {
 void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t id,
                    RegionFacts& facts);
 
-/// Sets the kind of the regions that are end caps: mostly planar, all edges convex, so that nothing
-/// stands before them, as large as the part's other ends, and no mere speck of it. A disc beside
-/// another such region is the flat of a box, not an end.
-void mark_end_caps(const TriangleSoup& soup, Segmentation& s, std::vector<RegionFacts>& facts);
+/// Sets the kind of the regions that are end caps: flat ends, and regions that are mostly planar
+/// with all edges convex, so that nothing stands before them; as large as the part's other ends,
+/// and no mere speck of it. A disc beside another such region is the flat of a box, not an end.
+/// \param flat_end per face, see flat_ends.h; each end is a region of its own
+void mark_end_caps(const TriangleSoup& soup, const std::vector<std::int32_t>& flat_end,
+                   Segmentation& s, std::vector<RegionFacts>& facts);
 
 }  // namespace meshwind

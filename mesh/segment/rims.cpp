@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -148,12 +149,6 @@ void fit(const LoopPoints& loop, const std::vector<double>& weights, Rim& rim) {
     }
 }
 
-double off_circle(const Rim& rim, const Eigen::Vector3d& point) {
-    const Eigen::Vector3d arm = point - rim.centre_mm;
-    const double along = rim.axis.dot(arm);
-    return std::hypot((arm - along * rim.axis).norm() - rim.radius_mm, along);
-}
-
 // Points of a notch would pull the circle: those far off compared with the others are left out.
 void measure(const TriangleSoup& soup, Rim& rim) {
     constexpr int kRounds = 8;
@@ -165,7 +160,7 @@ void measure(const TriangleSoup& soup, Rim& rim) {
     fit(loop, weights, rim);
     for (int round = 0; round < kRounds; ++round) {
         std::transform(loop.points.begin(), loop.points.end(), off.begin(),
-                       [&](const Eigen::Vector3d& p) { return off_circle(rim, p); });
+                       [&](const Eigen::Vector3d& p) { return off_circle_mm(rim, p); });
         // The median by length: many short edges in a notch must not outvote the circle.
         std::vector<std::size_t> order(off.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
@@ -190,11 +185,24 @@ void measure(const TriangleSoup& soup, Rim& rim) {
     }
     rim.circularity_mm = 0.0;
     for (const Eigen::Vector3d& p : loop.points) {
-        rim.circularity_mm = std::max(rim.circularity_mm, off_circle(rim, p));
+        rim.circularity_mm = std::max(rim.circularity_mm, off_circle_mm(rim, p));
     }
 }
 
 }  // namespace
+
+double off_circle_mm(const Rim& rim, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d arm = point - rim.centre_mm;
+    const double along = rim.axis.dot(arm);
+    return std::hypot((arm - along * rim.axis).norm() - rim.radius_mm, along);
+}
+
+Rim rim_through(const TriangleSoup& soup, std::vector<std::int32_t> loop) {
+    Rim rim;
+    rim.vertices = std::move(loop);
+    measure(soup, rim);
+    return rim;
+}
 
 Rims find_rims(const TriangleSoup& soup) {
     Rims result;
@@ -203,9 +211,7 @@ Rims find_rims(const TriangleSoup& soup) {
     std::vector<Rim> candidates;
     double largest = 0.0;
     for (const Loop& loop : loops) {
-        Rim rim;
-        rim.vertices = loop.vertices;
-        measure(soup, rim);
+        Rim rim = rim_through(soup, loop.vertices);
         largest = std::max(largest, rim.radius_mm);
         candidates.push_back(std::move(rim));
     }

@@ -26,4 +26,10 @@ struct Rims {
 /// (tests/mesh/segment/rims_test.cpp). \pre soup is an oriented manifold, one fan per vertex
 [[nodiscard]] Rims find_rims(const TriangleSoup& soup);
 
+/// The circle of one loop of vertices, in its order, as `find_rims` fits it.
+[[nodiscard]] Rim rim_through(const TriangleSoup& soup, std::vector<std::int32_t> loop);
+
+/// Distance of a point from the rim's circle.
+[[nodiscard]] double off_circle_mm(const Rim& rim, const Eigen::Vector3d& point);
+
 }  // namespace meshwind

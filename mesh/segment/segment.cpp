@@ -15,6 +15,7 @@
 #include "mesh/edge_table.h"
 #include "mesh/segment/end_caps.h"
 #include "mesh/segment/feature_edges.h"
+#include "mesh/segment/flat_ends.h"
 #include "mesh/visibility.h"
 
 namespace meshwind {
@@ -45,7 +46,12 @@ std::size_t at(std::int32_t index) {
     return static_cast<std::size_t>(index);
 }
 
-std::vector<std::int32_t> label_faces(const Segmentation& s) {
+// Regions are bounded by feature edges; each flat end is one with all that stands on it.
+std::vector<std::int32_t> label_faces(const Segmentation& s,
+                                      const std::vector<std::int32_t>& flat_end) {
+    const auto parts = [&](std::size_t f, std::size_t e, std::size_t g) {
+        return flat_end[f] != flat_end[g] || (flat_end[f] < 0 && s.feature[f][e] != 0);
+    };
     std::vector<std::int32_t> label(s.neighbours.size(), -1);
     std::int32_t count = 0;
     std::vector<std::int32_t> stack;
@@ -60,7 +66,7 @@ std::vector<std::int32_t> label_faces(const Segmentation& s) {
             stack.pop_back();
             for (std::size_t e = 0; e < 3; ++e) {
                 const std::int32_t g = s.neighbours[f][e];
-                if (g >= 0 && s.feature[f][e] == 0 && label[at(g)] < 0) {
+                if (g >= 0 && label[at(g)] < 0 && !parts(f, e, at(g))) {
                     label[at(g)] = count;
                     stack.push_back(g);
                 }
@@ -207,7 +213,10 @@ Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const RegionFact
             const Eigen::Vector3d middle =
                 0.5 * (soup.points_mm[at(soup.faces[at(f)][e])] +
                        soup.points_mm[at(soup.faces[at(f)][(e + 1) % 3])]);
-            const bool outward = normals[at(g)].dot(middle - cap.box.center()) > 0.0;
+            // Seen along the cap's normal: a lip leans only a little, and tabs lift the middle.
+            const Eigen::Vector3d along = cap.area_normal.normalized();
+            const Eigen::Vector3d arm = middle - cap.box.center();
+            const bool outward = normals[at(g)].dot(arm - along.dot(arm) * along) > 0.0;
             (outward ? mouth.outer : mouth.inner).push_back(g);
         }
     }
@@ -510,9 +519,10 @@ Segmentation segment(const TriangleSoup& soup) {
         look_around(soup, normals, facts, face_area, visibility, s.regions);
     };
     s.feature = feature_edges(soup.faces, normals, s.neighbours);
-    s.region = label_faces(s);
+    const std::vector<std::int32_t> flat_end = flat_ends(soup, s.neighbours, normals, face_area);
+    s.region = label_faces(s, flat_end);
     survey();
-    mark_end_caps(soup, s, facts);
+    mark_end_caps(soup, flat_end, s, facts);
     mark_bores(s, facts, total_mm2);
     const std::vector<char> bore_side = bore_sides(soup, s, facts, normals, face_area, visibility);
     if (!bore_side.empty()) {

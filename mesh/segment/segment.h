@@ -17,12 +17,12 @@ struct Segmentation {
     std::vector<std::array<std::int32_t, 3>> neighbours;  ///< per face and edge, see edge_table.h
 };
 
-/// Regions are bounded by feature edges. End caps: see end_caps.h. Bore: large regions that see
-/// nothing and the blind ones beside them; pieces that lie in the holes of end caps only; pieces
-/// that mostly see nothing. Where a notched end face or a round lip lets wall and bore run
-/// together, they are parted halfway. The rest is outer wall with all its collars, chamfers and
-/// lettering, and is `kept`. Visibility is sampled, with a bounded number of rays per region. \pre
-/// soup is an oriented manifold with the outside in front (see repair.h)
+/// Regions are bounded by feature edges, and by flat ends (flat_ends.h). End caps: see end_caps.h.
+/// Bore: large regions that see nothing and the blind ones beside them; pieces that lie in the
+/// holes of end caps only; pieces that mostly see nothing. Where a notched end face or a round lip
+/// lets wall and bore run together, they are parted halfway. The rest is outer wall with all its
+/// collars, chamfers and lettering, and is `kept`. Visibility is sampled, with a bounded number of
+/// rays per region. \pre soup is an oriented manifold with the outside in front (see repair.h)
 [[nodiscard]] Segmentation segment(const TriangleSoup& soup);
 
 }  // namespace meshwind

@@ -101,6 +101,29 @@ TEST(BeforePlanning, TellsAxisAndMillimetresOfAPartBeyondItsTravel) {
     EXPECT_EQ(outcome(with_carriage(four, -200.5, 200.5), shorter).code, "");
 }
 
+// A pipe cut 45 degrees off square: its end is an ellipse of 25 and 25 sqrt(2) mm.
+TEST(BeforePlanning, ARimOffItsCircleIsRefusedWithItsPlace) {
+    const auto cut_off_square = [](double slope) {
+        TriangleSoup pipe =
+            make_mandrel("cylinder", {{"radius", 25.0}, {"length", 200.0}}, {.edge_mm = 5.0});
+        for (Eigen::Vector3d& p : pipe.points_mm) {
+            p.z() += p.z() > 0.0 ? slope * p.x() * p.z() / 100.0 : 0.0;
+        }
+        return build_mandrel(pipe, "oblique.stl");
+    };
+    const Outcome found = outcome(shipped("six_axis"), cut_off_square(1.0));
+    EXPECT_EQ(found.code, "mesh.rim_not_round");
+    for (const char* word : {"oblique.stl", "rim ", "oblique", "square to its leg"}) {
+        EXPECT_NE(found.words.find(word), std::string::npos) << found.words;
+    }
+    const std::vector<std::string>& remarks = cut_off_square(1.0).remarks;
+    EXPECT_TRUE(std::any_of(remarks.begin(), remarks.end(), [](const std::string& remark) {
+        return remark.find("the main job refuses it") != std::string::npos;
+    }));
+    // 17 degrees: 0.5 (1 / cos - 1) = 0.022 of the radius.
+    EXPECT_EQ(outcome(shipped("six_axis"), cut_off_square(0.3)).code, "");
+}
+
 // Two pipes that do not touch: nothing goes from one to the other. A crumb is left out instead.
 TEST(BeforePlanning, AWallInPiecesIsRefusedWithTheirPlaces) {
     const auto pipe_at = [](double radius, double length, double x) {

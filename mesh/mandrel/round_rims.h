@@ -1,0 +1,25 @@
+/// Rims that are no circles: nothing turns round on a cylinder beyond them.
+#pragma once
+
+#include <string>
+
+#include "mesh/mandrel.h"
+
+namespace meshwind {
+
+/// How far a rim may be off its circle, as a share of its radius, before the main job refuses it.
+/// Ends that are cut where their legs end stay below 0.01; an oblique one reaches 0.05 when it is
+/// 25 deg off square, 0.5 (1 / cos - 1).
+inline constexpr double kMostOffCircle = 0.05;
+
+/// The rim that is farthest off its circle by that measure; null where all are round.
+[[nodiscard]] const Rim* worst_off_circle(const Mandrel& mandrel);
+
+[[nodiscard]] inline bool is_round(const Rim& rim) {
+    return rim.circularity_mm <= kMostOffCircle * rim.radius_mm;
+}
+
+/// Which rim, where, how far off, what may be the cause and what mends it. \pre rim of the mandrel
+[[nodiscard]] std::string off_circle_words(const Mandrel& mandrel, const Rim& rim);
+
+}  // namespace meshwind
