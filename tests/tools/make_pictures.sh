@@ -7,6 +7,8 @@ trap 'rm -rf "$work"' EXIT
 ./meshwind tee.stl --machine six_axis.json -o "$work/tee" --png "$work/tee.png" --quiet
 node tests/viewer/page_test.mjs "$work/tee/report.html" "$work/page"
 mv "$work/tee.png" docs/images/tee.png
+./meshwind data/meshes/cad/lettered_elbow.stl --units m --machine six_axis.json --set tow.width=4 --set tow.friction=0.3 \
+    -o "$work/part" --png docs/images/part.png --quiet
 mv "$work/page/program.png" docs/images/report.png
 mv "$work/page/failed_check.png" docs/images/failed_check.png
 mv "$work/page/dark.png" docs/images/dark.png

@@ -34,6 +34,25 @@ TEST(CadParts, ElbowIsATubeOfItsThreeParts) {
     EXPECT_NEAR(found.tube->radius_at(10.0), 14.0, 0.005);
 }
 
+// Bore, lips, tabs, letters and metres are told apart from the elbow.
+TEST(CadParts, ElbowWithLettersLipsAndTabsIsATube) {
+    const Mandrel mandrel =
+        load_mandrel(std::string(MESHWIND_SOURCE_DIR) + "/data/meshes/cad/lettered_elbow.stl",
+                     {.unit_mm = 1000.0});
+    EXPECT_EQ(mandrel.winding_mesh.details, 2);
+    EXPECT_LT(mandrel.winding_mesh.deviation_mm, 0.005);
+    ASSERT_EQ(mandrel.rims.size(), 2U);
+    for (const Rim& rim : mandrel.rims) {
+        EXPECT_NEAR(rim.radius_mm, 13.3756, 1e-3);
+        EXPECT_GT(rim.cut_off_mm, 0.0);
+    }
+    const TubeFinding found = find_tube(mandrel);
+    ASSERT_TRUE(found.tube) << found.why_not;
+    ASSERT_EQ(found.tube->parts.size(), 3U);
+    EXPECT_NEAR(deg_from_rad(found.tube->parts[1].angle_rad), 31.204, 0.1);
+    EXPECT_NEAR(found.tube->radius_at(10.0), 13.3756, 0.005);
+}
+
 // The same file wound on its own triangles is no tube at all.
 TEST(CadParts, ElbowOnTheFilesTrianglesIsNone) {
     const Mandrel mandrel = part("elbow", MandrelOptions::Mesh::File);
