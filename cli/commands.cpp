@@ -144,7 +144,6 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
     };
     options.force = common.force;
     options.context.report_progress("import", 0.0);
-    const auto begun = std::chrono::steady_clock::now();
     const fs::path mandrel_file = find_input(arguments.mandrel);
     options.files = {.machine = find_input(arguments.machine),
                      .job = found_or_none(arguments.job.file)};
@@ -157,13 +156,13 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
                                        .farthest_mm = post->within_mm};
     }
     const auto mandrel = [&](const Job& asked) {
-        return load_mandrel(mandrel_file, mandrel_options(asked, unit_mm(common.units)));
+        Mandrel read = load_mandrel(mandrel_file, mandrel_options(asked, unit_mm(common.units)));
+        options.mandrel_digest = "sha256 " + sha256_hex(read_text_file(mandrel_file));
+        return read;
     };
-    options.mandrel_digest = "sha256 " + sha256_hex(read_text_file(mandrel_file));
     spare_inputs(arguments.out, {mandrel_file, options.files.machine, options.files.job,
                                  post != nullptr ? fs::path(post->points) : fs::path()});
     OutputFolder folder(arguments.out);  // unusable: better known now
-    options.reading_s = seconds_since(begun);
     const Run run = wind(mandrel, machine, job, options);
     options.context.report_progress("write", 0.0);
     const std::string report = write_run(run, folder);

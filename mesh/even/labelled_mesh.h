@@ -15,6 +15,8 @@ struct LabelledMesh {
     TriangleSoup soup;
     std::vector<std::int32_t> region;                  ///< per face
     std::vector<std::array<std::uint8_t, 3>> feature;  ///< per face and edge: 1 on a crease
+    std::vector<std::int32_t> shape =
+        {};  ///< per face: of wall_shapes.h, -1: none; empty: nothing is known
 };
 
 /// The same with its faces' neighbours, as segmentation holds it.

@@ -44,6 +44,9 @@ constexpr double kLeastShare = 0.7;
 // shorter than the whole; beside the tip of a cone it may not be.
 constexpr double kNearShare = 0.25;
 
+// A crease is straight where its middle is off the shapes beside it by less than this share of it.
+constexpr double kStraight = 1e-5;
+
 // The longest edges lose at least a quarter of their length in every round: enough for facets of
 // 10,000 edges.
 constexpr int kMostRounds = 40;
@@ -85,8 +88,9 @@ Facet facet_of(const WorkMesh& work, Face face) {
 
 class LongFacetHalver {
 public:
-    LongFacetHalver(const LabelledMesh& part, const std::vector<char>& kept, double edge_mm)
-        : work_(part, kept), edge_mm_(edge_mm) {}
+    LongFacetHalver(const LabelledMesh& part, const std::vector<char>& kept, double edge_mm,
+                    const std::vector<WallShape>& exact)
+        : work_(part, kept), edge_mm_(edge_mm), shapes_(exact), exact_(exact.size()) {}
 
     LongFacets run() {
         survey();
@@ -99,7 +103,10 @@ public:
         }
         if (found_.halved > 0) {
             flip();
-            found_.part = work_.part();
+        }
+        found_.part = work_.part();
+        for (std::int32_t& shape : found_.part.shape) {
+            shape = shape < static_cast<std::int32_t>(exact_) ? shape : -1;
         }
         found_.shapes = static_cast<int>(shapes_.size());
         return std::move(found_);
@@ -109,13 +116,20 @@ private:
     void survey() {
         for (const Face face : work_.mesh.faces()) {
             facets_.push_back(work_.is_wall(face) ? facet_of(work_, face) : Facet{});
+            if (work_.label(face).shape >= 0) {
+                const WallShape& shape = shapes_[at_index(work_.label(face).shape)];
+                for (const Vertex v : work_.mesh.fv_range(face)) {
+                    found_.residual_mm =
+                        std::max(found_.residual_mm, shape.distance_mm(work_.at(v)));
+                }
+            }
         }
     }
 
     [[nodiscard]] bool is_long(Face face) const {
         const Facet& facet = facets_[at_index(face.idx())];
-        return work_.is_wall(face) && facet.seen.area_mm2 > 0.0 && facet.longest_mm > edge_mm_ &&
-               facet.longest_mm > kLong * facet.height_mm;
+        return work_.is_wall(face) && work_.label(face).shape < 0 && facet.seen.area_mm2 > 0.0 &&
+               facet.longest_mm > edge_mm_ && facet.longest_mm > kLong * facet.height_mm;
     }
 
     // Long facets beside each other along their long edges, and the shape of each such row.
@@ -193,7 +207,10 @@ private:
                 for (const Face face : row) {
                     work_.label(face).shape = static_cast<std::int32_t>(shapes_.size());
                 }
-                shapes_.push_back(*fit.shape);
+                WallShape shape;
+                shape.kind = WallShape::Kind::Ruled;
+                shape.ruled = *fit.shape;
+                shapes_.push_back(shape);
                 found_.residual_mm = std::max(found_.residual_mm, fit.shape->residual_mm);
                 return;
             }
@@ -210,14 +227,42 @@ private:
         }
     }
 
+    // Not of a ball: its facets are as long as high.
     [[nodiscard]] std::int32_t shape_of(Edge edge) const {
         for (const unsigned side : {0U, 1U}) {
             const Face face = work_.mesh.face_handle(work_.mesh.halfedge_handle(edge, side));
-            if (work_.is_wall(face) && work_.label(face).shape >= 0) {
+            if (work_.is_wall(face) && work_.label(face).shape >= 0 &&
+                shapes_[at_index(work_.label(face).shape)].kind != WallShape::Kind::Ball) {
                 return work_.label(face).shape;
             }
         }
         return -1;
+    }
+
+    // Straight creases are halved too: a facet beside one has no other long edge.
+    [[nodiscard]] bool may_halve(Edge edge) const {
+        if (shape_of(edge) < 0) {
+            return false;
+        }
+        if (!work_.is_line(edge)) {
+            return true;
+        }
+        const Vector3d middle = middle_of(edge);
+        for (const unsigned side : {0U, 1U}) {
+            const Face face = work_.mesh.face_handle(work_.mesh.halfedge_handle(edge, side));
+            if (!work_.is_wall(face) || work_.label(face).shape < 0 ||
+                shapes_[at_index(work_.label(face).shape)].distance_mm(middle) >
+                    kStraight * work_.length(edge)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    [[nodiscard]] Vector3d middle_of(Edge edge) const {
+        const Halfedge half = work_.mesh.halfedge_handle(edge, 0);
+        return 0.5 * (work_.at(work_.mesh.from_vertex_handle(half)) +
+                      work_.at(work_.mesh.to_vertex_handle(half)));
     }
 
     // How many pieces the long edges come to, about.
@@ -240,7 +285,7 @@ private:
         std::vector<Entry> entries;
         for (const Edge edge : work_.mesh.edges()) {
             const double length = work_.length(edge);
-            if (length > edge_mm_ && !work_.is_line(edge) && shape_of(edge) >= 0) {
+            if (length > edge_mm_ && may_halve(edge)) {
                 entries.push_back({length, edge.idx()});
             }
         }
@@ -254,11 +299,10 @@ private:
                 break;
             }
             const Edge edge(entry.edge);
-            const Halfedge half = work_.mesh.halfedge_handle(edge, 0);
-            const Vector3d chord = 0.5 * (work_.at(work_.mesh.from_vertex_handle(half)) +
-                                          work_.at(work_.mesh.to_vertex_handle(half)));
+            const Vector3d chord = middle_of(edge);
             const Vector3d foot = shapes_[at_index(shape_of(edge))].nearest(chord);
-            const bool near = (foot - chord).norm() <= kNearShare * entry.length;
+            const bool near =
+                !work_.is_line(edge) && (foot - chord).norm() <= kNearShare * entry.length;
             work_.split(edge, near ? foot : chord);
             ++found_.halved;
         }
@@ -274,7 +318,7 @@ private:
                 }
                 const auto [before, after] = work_.angles(edge);
                 if (after < before && work_.may_flip(edge, kTurnCosine)) {
-                    work_.mesh.flip(edge);
+                    work_.flip(edge);
                 }
             }
         }
@@ -283,19 +327,16 @@ private:
     WorkMesh work_;
     double edge_mm_;
     std::vector<Facet> facets_;  // per face of the part
-    std::vector<RuledShape> shapes_;
+    std::vector<WallShape> shapes_;
+    std::size_t exact_;  // of them, the first
     LongFacets found_;
 };
 
 }  // namespace
 
 LongFacets halve_long_facets(const LabelledMesh& part, const std::vector<char>& kept,
-                             double edge_mm) {
-    LongFacets found = LongFacetHalver(part, kept, edge_mm).run();
-    if (found.halved == 0) {
-        found.part = part;
-    }
-    return found;
+                             double edge_mm, const std::vector<WallShape>& exact) {
+    return LongFacetHalver(part, kept, edge_mm, exact).run();
 }
 
 }  // namespace meshwind

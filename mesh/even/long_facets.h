@@ -5,20 +5,24 @@
 #include <vector>
 
 #include "mesh/even/labelled_mesh.h"
+#include "mesh/even/wall_shapes.h"
 
 namespace meshwind {
 
 struct LongFacets {
     LabelledMesh part;         ///< with long facets halved until they are short
-    int shapes = 0;            ///< cylinders and cones that were found
+    int shapes = 0;            ///< exact ones, and cylinders and cones of rows of facets
     int halved = 0;            ///< edges that were halved
-    double residual_mm = 0.0;  ///< largest distance of a vertex from its cylinder or cone
+    double residual_mm = 0.0;  ///< largest distance of a vertex from its shape
 };
 
-/// Halves edges above `edge_mm` of the facets that are several times as long as high and lie with
-/// those beside them on one cylinder or cone, by its vertices: the new vertices lie on that
-/// exactly. Other facets stay, as do lines. \param kept per region: whether it is wall
+/// Halves edges above `edge_mm` of the facets that lie on one exact plane, cylinder or cone, or are
+/// several times as long as high and lie with those beside them on one cylinder or cone as nearly
+/// as facets do: the new vertices lie on it. Other facets stay, as do lines, but for straight
+/// creases between exact shapes. \param kept per region: whether it is wall \param exact those that
+/// `part.shape` names
 [[nodiscard]] LongFacets halve_long_facets(const LabelledMesh& part, const std::vector<char>& kept,
-                                           double edge_mm);
+                                           double edge_mm,
+                                           const std::vector<WallShape>& exact = {});
 
 }  // namespace meshwind

@@ -87,7 +87,7 @@ bool turn_long(WorkMesh& work) {
         }
         const auto [before, after] = work.angles(edge);
         if (after < before && work.may_flip(edge, kTurnCosine)) {
-            work.mesh.flip(edge);
+            work.flip(edge);
             any = true;
         }
     }

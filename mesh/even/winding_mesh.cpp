@@ -13,7 +13,9 @@
 #include "mesh/even/details.h"
 #include "mesh/even/even_mesh.h"
 #include "mesh/even/long_facets.h"
+#include "mesh/even/shape_creases.h"
 #include "mesh/even/slivers.h"
+#include "mesh/even/wall_shapes.h"
 #include "mesh/even/wall_surface.h"
 #include "mesh/ray_query.h"
 
@@ -104,7 +106,13 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
         check_interrupt();
         return without_slivers(mesh, kept, kShortEdge * size, kLeftOut * size);
     };
-    const LongFacets halved = halve_long_facets(clean(part), kept, kFacetEdge * size);
+    // On the file's own triangles: without slivers fewer are left that tell a shape.
+    const WallShapes exact = find_wall_shapes(part, kept);
+    LabelledMesh labelled = part;
+    labelled.shape = exact.of_face;
+    mark_shape_creases(exact, kept, labelled);
+    const LongFacets halved =
+        halve_long_facets(clean(labelled), kept, kFacetEdge * size, exact.shapes);
     report.ruled_shapes = halved.shapes;
     const double least_detail_mm = kDetailLeast * size;
     Details details =
@@ -112,6 +120,7 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     report.details = details.count;
     report.details_mm2 = details.area_mm2;
     report.details_mm = details.most_mm;
+    details.part.shape.clear();  // triangles turn over the edge between two shapes
     const LabelledMesh& told = details.part;
     const EvenMeshOptions options = even_options(size);
     Surface wall = frozen_wall(told, kept);

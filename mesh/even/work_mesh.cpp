@@ -72,7 +72,8 @@ WorkMesh::WorkMesh(const LabelledMesh& part, const std::vector<char>& kept) {
     for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
         const auto& [a, b, c] = part.soup.faces[f];
         const Face face = mesh.add_face(Vertex(a), Vertex(b), Vertex(c));
-        label(face) = {part.region[f], -1, kept[static_cast<std::size_t>(part.region[f])] != 0};
+        label(face) = {part.region[f], part.shape.empty() ? -1 : part.shape[f],
+                       kept[static_cast<std::size_t>(part.region[f])] != 0};
     }
     for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
         for (std::size_t e = 0; e < 3; ++e) {
@@ -245,7 +246,8 @@ bool WorkMesh::may_flip(Edge edge, double cosine) const {
     }
     const FaceLabel& one = label(mesh.face_handle(mesh.halfedge_handle(edge, 0)));
     const FaceLabel& other = label(mesh.face_handle(mesh.halfedge_handle(edge, 1)));
-    if (!one.wall || !other.wall || one.region != other.region || one.shape != other.shape ||
+    if (!one.wall || !other.wall || one.region != other.region ||
+        (one.shape != other.shape && one.shape >= 0 && other.shape >= 0) ||
         !mesh.is_flip_ok(edge)) {
         return false;
     }
@@ -257,6 +259,15 @@ bool WorkMesh::may_flip(Edge edge, double cosine) const {
     return left.norm() > 0.0 && right.norm() > 0.0 &&
            before.dot(left) >= cosine * size * left.norm() &&
            before.dot(right) >= cosine * size * right.norm();
+}
+
+void WorkMesh::flip(Edge edge) {
+    FaceLabel& one = label(mesh.face_handle(mesh.halfedge_handle(edge, 0)));
+    FaceLabel& other = label(mesh.face_handle(mesh.halfedge_handle(edge, 1)));
+    if (one.shape != other.shape) {
+        one.shape = other.shape = -1;
+    }
+    mesh.flip(edge);
 }
 
 FlipCosines WorkMesh::angles(Edge edge) const {
@@ -300,6 +311,7 @@ LabelledMesh WorkMesh::part() {
         result.soup.faces.push_back(corners);
         result.feature.push_back(feature);
         result.region.push_back(label(face).region);
+        result.shape.push_back(label(face).shape);
     }
     return result;
 }

@@ -89,6 +89,8 @@ public:
     /// Whether the edge between two triangles of one region of the wall may be turned without
     /// turning one of them by more than the angle of `cosine`.
     [[nodiscard]] bool may_flip(Edge edge, double cosine) const;
+    /// Turns it. Of different shapes, neither triangle has one afterwards.
+    void flip(Edge edge);
     /// Cosine of the smallest angle of the two triangles, before and after.
     [[nodiscard]] FlipCosines angles(Edge edge) const;
 

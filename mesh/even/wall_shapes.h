@@ -1,0 +1,40 @@
+/// Planes, balls, cylinders and cones that a file's facets lie on exactly.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/even/labelled_mesh.h"
+#include "mesh/even/ruled_shape.h"
+
+namespace meshwind {
+
+/// A surface in closed form.
+struct WallShape {
+    enum class Kind { Plane, Ball, Ruled };
+    Kind kind = Kind::Plane;
+    RuledShape ruled;                                     ///< of a cylinder or cone
+    Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();  ///< of a ball; a point of a plane
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< of a plane, unit
+    double radius_mm = 0.0;                               ///< of a ball
+
+    /// The point of the surface nearest to `p`. \pre p is not on the axis, nor a ball's centre
+    [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
+    [[nodiscard]] double distance_mm(const Eigen::Vector3d& p) const;
+    /// Unit normal there, on either side.
+    [[nodiscard]] Eigen::Vector3d normal_at(const Eigen::Vector3d& p) const;
+};
+
+struct WallShapes {
+    std::vector<WallShape> shapes;
+    std::vector<std::int32_t> of_face;  ///< per face of the part, -1: none
+};
+
+/// The shapes of the wall's facets, begun from the largest ones. A shape takes what hangs together,
+/// without a crease, of facets whose vertices lie on it but for rounding and whose normals are its
+/// own. A ring of facets between two circles lies on a cone as well as on a fillet: it is a cone
+/// where it is longer than what it turns into, or turns to different sides.
+/// \param kept per region: whether it is wall
+[[nodiscard]] WallShapes find_wall_shapes(const LabelledMesh& part, const std::vector<char>& kept);
+
+}  // namespace meshwind
