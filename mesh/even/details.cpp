@@ -373,6 +373,7 @@ private:
                 }
             }
             std::vector<Vector3d> points;
+            points.reserve(vertices.size());
             for (const std::int32_t v : vertices) {
                 points.push_back(part_.soup.points_mm[at_index(v)]);
             }

@@ -288,6 +288,7 @@ private:
         std::sort(vertices.begin(), vertices.end());
         vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
         std::vector<Vector3d> points;
+        points.reserve(vertices.size());
         for (const std::int32_t v : vertices) {
             points.push_back(part_.soup.points_mm[at_index(v)]);
         }
