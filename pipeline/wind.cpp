@@ -295,7 +295,7 @@ std::string tried_words(const Job& job, const Run& run) {
            (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
                                        : std::string("no blend ")) +
            percent(covered_share(run), 1) + " of the wall is covered, and " +
-           std::to_string(failed) + " checks fail";
+           std::to_string(failed) + (failed == 1 ? " check fails" : " checks fail");
 }
 
 // What the job has to say for the same run.
