@@ -314,15 +314,19 @@ public:
     Trials(const MandrelOf& mandrel, const Machine& machine, const WindOptions& options)
         : mandrel_(mandrel), machine_(machine), options_(options) {}
 
-    /// \throws as wind() does for the job as it is
+    /// \throws as wind() does for the first job
     void run(const Job& job) {
-        take(job, once(job));
-        for (int mend = 0; mend < kMostMends && next_; ++mend) {
-            const Job more = *std::move(next_);
+        next_ = job;
+        for (int mend = 0; mend <= kMostMends && next_; ++mend) {
+            const Job next = *std::exchange(next_, std::nullopt);
+            if (!best_) {
+                take(next, once(next));
+                continue;
+            }
             try {
-                take(more, once(more));
-            } catch (const InputError&) {  // no room for it on the machine
-                return;
+                take(next, once(next));
+            } catch (const InputError& error) {  // of no use for what stands
+                tried_.push_back(settings_words(next) + " cannot be wound: " + error.what());
             }
         }
     }

@@ -552,10 +552,8 @@ Details without_details(const LabelledMesh& part, const std::vector<char>& kept,
         wall_of({part.soup, part.region, part.feature, work.neighbours()}, kept).soup;
     for (const WallSide side : {WallSide::Inside, WallSide::Outside}) {
         check_interrupt();
-        const auto places = enclosed_places(wall, out_of_reach(wall, ball_mm, side), kDetailShare);
-        if (places.size() > kMostPlaces) {
-            continue;
-        }
+        const auto places =
+            enclosed_places(wall, out_of_reach(wall, ball_mm, side), kDetailShare, kMostPlaces);
         for (const std::vector<std::int32_t>& place : places) {
             check_interrupt();
             std::set<std::int32_t> gone;

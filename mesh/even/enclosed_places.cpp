@@ -114,8 +114,11 @@ std::set<std::int32_t> enclosed_by(const Places& places, std::int32_t place, dou
 
 std::vector<std::vector<std::int32_t>> enclosed_places(const TriangleSoup& wall,
                                                        const std::vector<char>& marked,
-                                                       double most_share) {
+                                                       double most_share, std::size_t most_parts) {
     const Places places = places_of(wall, face_neighbours(wall.faces), marked);
+    if (places.marked.size() > most_parts) {
+        return {};
+    }
     std::vector<std::vector<std::int32_t>> faces(places.marked.size());
     for (std::size_t f = 0; f < places.place.size(); ++f) {
         faces[at_index(places.place[f])].push_back(static_cast<std::int32_t>(f));

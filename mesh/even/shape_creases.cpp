@@ -22,7 +22,6 @@ std::size_t at_index(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-// Marks where shapes meet each other, or what has none, at an angle.
 class CreaseMarker {
 public:
     CreaseMarker(const WallShapes& shapes, const std::vector<char>& kept, LabelledMesh& part)
@@ -38,11 +37,9 @@ public:
             const auto f = static_cast<std::int32_t>(i);
             for (std::size_t e = 0; e < 3; ++e) {
                 const std::int32_t g = beyond(f, e);
-                if (g < 0 || marked[i][e] != 0 || shapes_.of_face[i] < 0 ||
-                    shapes_.of_face[i] == shapes_.of_face[at_index(g)]) {
-                    continue;
-                }
-                if (shapes_.of_face[at_index(g)] >= 0 && meets(f, e, g)) {
+                if (g >= 0 && marked[i][e] == 0 && shapes_.of_face[i] >= 0 &&
+                    shapes_.of_face[at_index(g)] >= 0 &&
+                    shapes_.of_face[i] != shapes_.of_face[at_index(g)] && meets(f, e, g)) {
                     const int back = shared_edge(neighbours_[at_index(g)], f);
                     marked[i][e] = 1;
                     marked[at_index(g)][at_index(back)] = 1;

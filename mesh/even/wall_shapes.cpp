@@ -81,7 +81,7 @@ double signed_angle_rad(const Vector3d& left, const Vector3d& right, const Vecto
     return (left.cross(right).dot(edge) < 0.0 ? -1.0 : 1.0) * angle_rad(left, right);
 }
 
-std::optional<WallShape> fit_plane(std::span<const Vector3d> points, const Vector3d& normal) {
+WallShape plane_through(std::span<const Vector3d> points, const Vector3d& normal) {
     WallShape shape;
     shape.kind = WallShape::Kind::Plane;
     shape.normal = normal;
@@ -294,7 +294,7 @@ private:
         }
         std::optional<WallShape> shape;
         if (kind == WallShape::Kind::Plane) {
-            shape = fit_plane(points, normal.normalized());
+            shape = plane_through(points, normal.normalized());
         } else if (kind == WallShape::Kind::Ball) {
             shape = fit_ball(points);
         } else if (const auto ruled = fit_ruled_shape(points, facets)) {

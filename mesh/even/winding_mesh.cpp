@@ -117,9 +117,6 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     const double least_detail_mm = kDetailLeast * size;
     Details details =
         without_details(clean(halved.part), kept, kDetailBall * size, least_detail_mm, height_mm);
-    report.details = details.count;
-    report.details_mm2 = details.area_mm2;
-    report.details_mm = details.most_mm;
     details.part.shape.clear();  // triangles turn over the edge between two shapes
     const LabelledMesh& told = details.part;
     const EvenMeshOptions options = even_options(size);
@@ -151,6 +148,9 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     report.own = report.why_not.empty();
     if (report.own) {
         result.part = std::move(own);
+        report.details = details.count;
+        report.details_mm2 = details.area_mm2;
+        report.details_mm = details.most_mm;
     }
     return result;
 }

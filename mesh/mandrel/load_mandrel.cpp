@@ -367,7 +367,7 @@ void add_remarks(Mandrel& mandrel, int holes, int crumbs) {
         }
     }
     const WindingMeshReport& mesh = mandrel.winding_mesh;
-    if (mesh.own && mesh.details > 0) {
+    if (mesh.details > 0) {
         mandrel.remarks.push_back(
             "lettering and the like is not wound: " + std::to_string(mesh.details) + " places, " +
             fixed(mesh.details_mm2, 0) + " mm2, that stand up to " + fixed(mesh.details_mm, 2) +

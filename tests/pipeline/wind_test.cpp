@@ -95,6 +95,22 @@ TEST(Wind, TriesWiderBlendsUntilEveryCheckPasses) {
     EXPECT_GE(run.remarks.size(), 3U);
 }
 
+TEST(Wind, GoesOnWhereABlendCannotBeMade) {
+    const auto mandrel = [](const Job& asked) {
+        if (asked.mandrel.blend_mm == kPipeTow_mm) {
+            throw InputError("mesh.no_blend", "pipe", "cannot be blended");
+        }
+        return asked.mandrel.blend_mm == 0.0
+                   ? build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee")
+                   : small_pipe();
+    };
+    Job job = quick_job();
+    job.mandrel.blend_mm.reset();
+    const auto run = wind(mandrel, shipped("six_axis"), job);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+}
+
 TEST(Wind, TakesTheBlendThatTheJobHas) {
     std::vector<double> asked_mm;
     EXPECT_FALSE(wind_with_blend(kPipeTow_mm, asked_mm).passed());

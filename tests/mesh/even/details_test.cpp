@@ -1,5 +1,5 @@
 // Lettering is taken off a pipe, and the pipe itself goes on under it.
-#include "mesh/even/details.h"
+#include "mesh/even/enclosed_places.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +11,7 @@
 
 #include "core/units.h"
 #include "mesh/mandrel/load_mandrel.h"
+#include "tests/support/shapes.h"
 
 namespace meshwind {
 namespace {
@@ -101,6 +102,19 @@ TEST(Details, AreTakenOffUpToTheHeightThatTheJobSays) {
         build_mandrel(pipe_with(letters(2.0)), "high", {.remove_details_mm = 2.5});
     EXPECT_EQ(mandrel.winding_mesh.details, 2);
     EXPECT_LT(farthest_off_mm(mandrel), 1e-3);
+}
+
+// A wall in more parts than lettering makes of it is rough, and looking at each from each would
+// have no end.
+TEST(Details, AreNotLookedForOnARoughWall) {
+    constexpr int kAround = 48;
+    const TriangleSoup wall = test::tube(kRadius_mm, 100.0, kAround, 20);
+    std::vector<char> marked(wall.faces.size(), 0);
+    for (std::size_t f = 2 * kAround; f + 2 * kAround < marked.size(); f += 7) {
+        marked[f] = 1;  // in 18 of 20 rows, none beside another
+    }
+    EXPECT_GT(enclosed_places(wall, marked, 0.05, 1000).size(), 200U);
+    EXPECT_TRUE(enclosed_places(wall, marked, 0.05, 200).empty());
 }
 
 // A collar goes around its leg, and a key along the pipe reaches both its ends.

@@ -12,28 +12,16 @@
 #include "mesh/even/shape_creases.h"
 #include "mesh/even/slivers.h"
 #include "mesh/even/winding_mesh.h"
-#include "mesh/segment/segment.h"
 #include "tests/support/shapes.h"
+#include "tests/support/walls.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector2d;
+using test::Walls;
+using test::walls_of;
 using Kind = WallShape::Kind;
-
-struct Walls {
-    LabelledMesh part;
-    std::vector<char> kept;
-};
-
-Walls walls_of(const TriangleSoup& soup) {
-    const Segmentation s = segment(soup);
-    Walls walls{{soup, s.region, s.feature}, {}};
-    for (const Region& region : s.regions) {
-        walls.kept.push_back(static_cast<char>(region.kept));
-    }
-    return walls;
-}
 
 int count(const WallShapes& found, Kind kind) {
     return static_cast<int>(std::count_if(found.shapes.begin(), found.shapes.end(),

@@ -13,29 +13,17 @@
 #include "mesh/even/wall_surface.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/revolution/revolution.h"
-#include "mesh/segment/segment.h"
 #include "mesh/shapes/make_kinds.h"
 #include "mesh/tube/tube.h"
 #include "tests/support/uneven.h"
+#include "tests/support/walls.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
-
-struct Walls {
-    LabelledMesh part;
-    std::vector<char> kept;
-};
-
-Walls walls_of(const TriangleSoup& soup) {
-    const Segmentation s = segment(soup);
-    Walls walls{{soup, s.region, s.feature}, {}};
-    for (const Region& region : s.regions) {
-        walls.kept.push_back(static_cast<char>(region.kept));
-    }
-    return walls;
-}
+using test::Walls;
+using test::walls_of;
 
 double longest_wall_edge(const LabelledMesh& part, const std::vector<char>& kept) {
     double longest = 0.0;
