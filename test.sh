@@ -57,13 +57,14 @@ run_tests() {
 }
 
 # fuzz_harness NAME SECONDS SEED: the committed corpus and what earlier runs added in build/; stops at the first find.
-# Memory: a reader may take 1 GB; the address sanitizer's shadow and red zones add about as much again, its freed memory 64 MB.
+# Seconds: the 10 that an input may take, ten times as long here. Memory: a reader may take 1 GB; the address sanitizer's
+# shadow and red zones add about as much again, its freed memory 64 MB.
 fuzz_harness() {
     local name=$1 seconds=$2 seed=$3 folder=$root/build/asan/fuzz
     local log=$folder/$name.log
     mkdir -p "$folder/corpus/$name" "$folder/found"
     if ! ASAN_OPTIONS=quarantine_size_mb=64 UBSAN_OPTIONS=print_stacktrace=1 \
-        "$root/build/asan/meshwind/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" "-seed=$seed" -timeout=10 -rss_limit_mb=2048 \
+        "$root/build/asan/meshwind/tests/fuzz/${name}_fuzz" "-max_total_time=$seconds" "-seed=$seed" -timeout=100 -rss_limit_mb=2048 \
         -malloc_limit_mb=1024 -max_len=4096 -print_final_stats=1 "-artifact_prefix=$folder/found/$name-" \
         "$folder/corpus/$name" "$root/tests/fuzz/corpus/$name" >"$log" 2>&1; then
         tail -n 40 "$log"

@@ -1,5 +1,5 @@
-// Paths over a spoilt mesh, as `meshwind inspect` traces them for its estimate, but fewer: more
-// meshes are seen in the same time.
+// Paths over a spoilt mesh, as `meshwind inspect` traces them for its estimate, but fewer, and over
+// the triangles that it has: more meshes are seen in the same time.
 #include <cmath>
 
 #include "core/parallel.h"
@@ -13,8 +13,10 @@ namespace meshwind::fuzz {
 void run(std::span<const std::uint8_t> bytes) {
     set_thread_count(1);
     constexpr int kStarts = 2;
-    const PathAccuracy accuracy =
-        estimate_path_accuracy(build_mandrel(spoilt_mesh(bytes), "spoilt").surface, kStarts);
+    MandrelOptions options;
+    options.mesh = MandrelOptions::Mesh::File;
+    const Mandrel mandrel = build_mandrel(spoilt_mesh(bytes), "spoilt", options);
+    const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface, kStarts);
     if (!std::isfinite(accuracy.walk_mm_per_m) || !std::isfinite(accuracy.patches_mm_per_m)) {
         found("an estimate that is no number");
     }
