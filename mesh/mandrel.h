@@ -1,6 +1,7 @@
 /// A mandrel: the surface that is wound, with all that was found on the way from the file to it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -51,6 +52,12 @@ struct WallPiece {
     std::vector<std::int32_t> regions;                    ///< ids, sorted
 };
 
+/// Where something is that a remark tells of.
+struct RemarkPlace {
+    std::size_t remark = 0;                           ///< index in Mandrel::remarks
+    Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  ///< on the part, mandrel frame
+};
+
 /// The winding surface with all that was found on the way. Immutable once loaded.
 struct Mandrel {
     std::string file;       ///< name without folder
@@ -61,6 +68,7 @@ struct Mandrel {
     Surface surface;                         ///< what is wound
     std::vector<Region> regions;
     std::vector<Rim> rims;
+    TriangleSoup details;           ///< lettering and the like that was taken off, mandrel frame
     std::vector<WallPiece> pieces;  ///< largest first; one where all of it hangs together
     SpindleAxis axis;
     /// Mandrel-frame point in mm = linear * file point in file units + translation; the linear part
@@ -69,6 +77,7 @@ struct Mandrel {
     RepairReport repairs;
     WindingMeshReport winding_mesh;
     std::vector<std::string> remarks;  ///< one line each: what a user should know of this file
+    std::vector<RemarkPlace> places;   ///< of those remarks that are about a place
 };
 
 }  // namespace meshwind

@@ -1,6 +1,10 @@
 /// What the repair of a file has changed.
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 namespace meshwind {
 
 /// What was done to the triangles before they could be used; every count is what was changed.
@@ -13,6 +17,7 @@ struct RepairReport {
     int non_manifold_vertices_split = 0;
     int self_intersecting_faces = 0;  ///< reported, not mended
     int components = 0;
+    std::vector<Eigen::Vector3d> crossings;  ///< middles of those faces, the file's frame and units
 };
 
 }  // namespace meshwind

@@ -148,6 +148,7 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     report.own = report.why_not.empty();
     if (report.own) {
         result.part = std::move(own);
+        result.removed = std::move(details.removed);
         report.details = details.count;
         report.details_mm2 = details.area_mm2;
         report.details_mm = details.most_mm;

@@ -21,6 +21,7 @@ inline constexpr double kDeviationShare = 2e-3;
 struct WindingMesh {
     LabelledMesh part;  ///< the given one where the report says so
     WindingMeshReport report;
+    TriangleSoup removed;  ///< what was taken off as a detail, in the given triangles
 };
 
 /// Where the wall has narrow triangles: long facets are halved on their cylinders and cones

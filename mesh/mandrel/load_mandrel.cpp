@@ -16,7 +16,7 @@
 #include "mesh/even/wall_pieces.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
-#include "mesh/mandrel/round_rims.h"
+#include "mesh/mandrel/remarks.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/weld.h"
 #include "mesh/revolution/crease_rings.h"
@@ -161,10 +161,14 @@ std::vector<char> kept_of(const std::vector<Region>& regions) {
     return kept;
 }
 
-void move(TriangleSoup& soup, const Eigen::Isometry3d& motion) {
-    for (Eigen::Vector3d& p : soup.points_mm) {
+void move(std::vector<Eigen::Vector3d>& points, const Eigen::Isometry3d& motion) {
+    for (Eigen::Vector3d& p : points) {
         p = motion * p;
     }
+}
+
+void move(TriangleSoup& soup, const Eigen::Isometry3d& motion) {
+    move(soup.points_mm, motion);
 }
 
 void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion) {
@@ -293,6 +297,7 @@ void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
         winding_mesh({mandrel.whole, segmentation.region, segmentation.feature}, kept, details_mm);
     made.report.file_triangles = mandrel.winding_mesh.file_triangles;
     mandrel.winding_mesh = made.report;
+    mandrel.details = std::move(made.removed);
     if (!made.report.own) {
         return;
     }
@@ -328,89 +333,19 @@ void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, double radi
     }
 }
 
-void add_remarks(Mandrel& mandrel, int holes, int crumbs) {
-    const RepairReport& r = mandrel.repairs;
-    if (r.components > 1) {
-        mandrel.remarks.push_back("the file holds " + std::to_string(r.components) +
-                                  " separate shells; all are kept as obstacles");
-    }
-    if (r.self_intersecting_faces > 0) {
-        mandrel.remarks.push_back(std::to_string(r.self_intersecting_faces) +
-                                  " triangles cross others; paths near them may be wrong, mend the "
-                                  "part in the modeller");
-    }
-    if (holes > 0) {
-        mandrel.remarks.push_back(std::to_string(holes) +
-                                  " small holes in the wall are not rims: courses end at them");
-    }
-    if (crumbs > 0) {
-        mandrel.remarks.push_back(std::to_string(crumbs) +
-                                  " small pieces of the wall hang together with nothing of it and "
-                                  "are not wound; keep_regions names what is");
-    }
-    constexpr double kRoundShare = 0.02;  // of its radius: a rim further off is worth a word
-    for (const Rim& rim : mandrel.rims) {
-        if (!is_round(rim)) {
-            mandrel.remarks.push_back(off_circle_words(mandrel, rim) + "; the main job refuses it");
-        } else if (rim.circularity_mm > kRoundShare * rim.radius_mm) {
-            mandrel.remarks.push_back("rim " + std::to_string(rim.id) + " is no circle: up to " +
-                                      fixed(rim.circularity_mm, 2) + " mm off radius " +
-                                      fixed(rim.radius_mm, 2) + " mm");
-        }
-    }
-    for (const Rim& rim : mandrel.rims) {
-        if (rim.cut_off_mm > 0.0) {
-            mandrel.remarks.push_back(
-                "rim " + std::to_string(rim.id) + " is cut " + fixed(rim.cut_off_mm, 2) +
-                " mm before the part's end, where its leg of radius " + fixed(rim.radius_mm, 2) +
-                " mm ends; \"mandrel\": {\"cut_ends\": 0} in the job keeps what is beyond");
-        }
-    }
-    const WindingMeshReport& mesh = mandrel.winding_mesh;
-    if (mesh.details > 0) {
-        mandrel.remarks.push_back(
-            "lettering and the like is not wound: " + std::to_string(mesh.details) + " places, " +
-            fixed(mesh.details_mm2, 0) + " mm2, that stand up to " + fixed(mesh.details_mm, 2) +
-            " mm out of the wall or in it; \"mandrel\": {\"remove_details\": 0} in the job keeps "
-            "them");
-    }
-    if (mesh.blend_mm > 0.0) {
-        mandrel.remarks.push_back(mesh.blended_mm2 > 0.0
-                                      ? "the wall is blended by " + fixed(mesh.blend_mm, 2) +
-                                            " mm: " + fixed(mesh.blended_mm2, 0) +
-                                            " mm2 of it stand over the file's, with " +
-                                            fixed(mesh.filled_mm3 / 1000.0, 2) + " cm3 to fill in"
-                                      : "a ball of " + fixed(mesh.blend_mm, 2) +
-                                            " mm touches all of the wall: nothing is blended");
-    }
-    if (mesh.own) {
-        mandrel.remarks.push_back("the file's triangles are uneven: what is wound has " +
-                                  std::to_string(mesh.triangles) +
-                                  " even ones, from which no vertex of the file is more than " +
-                                  fixed(mesh.deviation_mm, 3) + " mm off");
-    } else if (!mesh.why_not.empty()) {
-        mandrel.remarks.push_back("the file's triangles are uneven and are wound as they are: " +
-                                  mesh.why_not);
-    }
-    if (mandrel.axis.rule == "principal") {
-        mandrel.remarks.push_back(
-            "no coaxial rims and no axis of revolution: the spindle is a principal axis of "
-            "inertia, give another with \"axis\"");
-    }
-}
-
-// Crumbs that hang together with nothing of the wall are none of it. Returns how many.
-int leave_crumbs(std::vector<WallPiece>& pieces, std::vector<Region>& regions) {
+// Crumbs that hang together with nothing of the wall are none of it. Returns where they are.
+std::vector<Eigen::Vector3d> leave_crumbs(std::vector<WallPiece>& pieces,
+                                          std::vector<Region>& regions) {
     constexpr double kCrumbShare = 0.01;  // of the largest piece
-    int crumbs = 0;
+    std::vector<Eigen::Vector3d> crumbs_mm;
     while (pieces.back().area_mm2 < kCrumbShare * pieces.front().area_mm2) {
-        ++crumbs;
+        crumbs_mm.push_back(pieces.back().middle_mm);
         for (const std::int32_t id : pieces.back().regions) {
             regions[static_cast<std::size_t>(id)].kept = false;
         }
         pieces.pop_back();
     }
-    return crumbs;
+    return crumbs_mm;
 }
 
 Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& name,
@@ -437,8 +372,10 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     keep_named_regions(segmentation, options.keep_regions, name);
     check_wall(segmentation.regions, name);
     mandrel.pieces = wall_pieces(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
-    const int crumbs =
-        options.keep_regions.empty() ? leave_crumbs(mandrel.pieces, segmentation.regions) : 0;
+    std::vector<Eigen::Vector3d> crumbs_mm;
+    if (options.keep_regions.empty()) {
+        crumbs_mm = leave_crumbs(mandrel.pieces, segmentation.regions);
+    }
     check_interrupt();
     std::optional<MandrelOptions::Axis> given = options.axis;
     if (given) {
@@ -460,6 +397,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     auto& [kept, rims, frame] = wall;
 
     move(mandrel.whole, frame.mandrel_from_file);
+    move(mandrel.details, frame.mandrel_from_file);
     move(kept.soup, frame.mandrel_from_file);
     const FreezeInput frozen{.feature = kept.feature, .region = kept.region, .rim = rims.of_edge};
     check_interrupt();
@@ -478,7 +416,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     for (WallPiece& piece : mandrel.pieces) {
         piece.middle_mm = frame.mandrel_from_file * piece.middle_mm;
     }
-    add_remarks(mandrel, rims.holes, crumbs);
+    move(rims.holes_mm, frame.mandrel_from_file);
+    move(crumbs_mm, frame.mandrel_from_file);
+    add_remarks(mandrel, rims.holes_mm, crumbs_mm);
     return mandrel;
 }
 

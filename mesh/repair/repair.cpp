@@ -398,7 +398,15 @@ void repair(TriangleSoup& soup, const std::string& name, RepairReport& report) {
     require_faces(soup, name);
     drop_unused_points(soup);
     check_interrupt();
-    report.self_intersecting_faces = count_self_intersecting_faces(soup);
+    report.crossings.clear();
+    for (const std::int32_t f : self_intersecting_faces(soup)) {
+        const auto& [a, b, c] = soup.faces[static_cast<std::size_t>(f)];
+        report.crossings.emplace_back((soup.points_mm[static_cast<std::size_t>(a)] +
+                                       soup.points_mm[static_cast<std::size_t>(b)] +
+                                       soup.points_mm[static_cast<std::size_t>(c)]) /
+                                      3.0);
+    }
+    report.self_intersecting_faces = static_cast<int>(report.crossings.size());
 }
 
 }  // namespace meshwind

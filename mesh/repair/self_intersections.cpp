@@ -1,6 +1,7 @@
 #include "mesh/repair/self_intersections.h"
 
-#include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
@@ -31,7 +32,7 @@ struct WatchedPoints {
 
 }  // namespace
 
-int count_self_intersecting_faces(const TriangleSoup& soup) {
+std::vector<std::int32_t> self_intersecting_faces(const TriangleSoup& soup) {
     using Face = Mesh::Face_index;
     Mesh mesh;
     mesh.reserve(static_cast<Mesh::size_type>(soup.points_mm.size()),
@@ -54,7 +55,13 @@ int count_self_intersecting_faces(const TriangleSoup& soup) {
         crossed[a] = 1;
         crossed[b] = 1;
     }
-    return static_cast<int>(std::count(crossed.begin(), crossed.end(), 1));
+    std::vector<std::int32_t> faces;
+    for (std::size_t f = 0; f < crossed.size(); ++f) {
+        if (crossed[f] != 0) {
+            faces.push_back(static_cast<std::int32_t>(f));
+        }
+    }
+    return faces;
 }
 
 }  // namespace meshwind

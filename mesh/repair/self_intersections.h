@@ -1,12 +1,15 @@
 /// Faces that cross others (CGAL).
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "mesh/triangle_soup.h"
 
 namespace meshwind {
 
-/// Number of faces that cross or overlap another beyond what they share. Exact decisions.
+/// Faces that cross or overlap another beyond what they share, ascending. Exact decisions.
 /// \pre soup is an oriented manifold
-[[nodiscard]] int count_self_intersecting_faces(const TriangleSoup& soup);
+[[nodiscard]] std::vector<std::int32_t> self_intersecting_faces(const TriangleSoup& soup);
 
 }  // namespace meshwind

@@ -217,7 +217,7 @@ Rims find_rims(const TriangleSoup& soup) {
     }
     for (std::size_t i = 0; i < loops.size(); ++i) {
         if (loops[i].vertices.size() < 3 || candidates[i].radius_mm < kRimRadiusShare * largest) {
-            ++result.holes;
+            result.holes_mm.push_back(candidates[i].centre_mm);
             continue;
         }
         candidates[i].id = static_cast<std::int32_t>(result.rims.size());

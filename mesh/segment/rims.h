@@ -16,7 +16,7 @@ inline constexpr double kRimRadiusShare = 0.1;
 struct Rims {
     std::vector<Rim> rims;                             ///< by their first face, id = index
     std::vector<std::array<std::int32_t, 3>> of_edge;  ///< rim id per face and edge, else -1
-    int holes = 0;                                     ///< loops too small to be rims
+    std::vector<Eigen::Vector3d> holes_mm;             ///< centres of loops too small to be rims
 };
 
 /// Loops run counter-clockwise seen along `Rim::axis` from outside. The circle is a least-squares

@@ -64,7 +64,7 @@ TEST(FindRims, SmallHolesInTheWallAreNotRims) {
     soup.faces.erase(soup.faces.begin() + 2000);
     const Rims rims = find_rims(soup);
     EXPECT_EQ(rims.rims.size(), 2U);
-    EXPECT_EQ(rims.holes, 1);
+    EXPECT_EQ(rims.holes_mm.size(), 1U);
 }
 
 }  // namespace
