@@ -24,7 +24,6 @@
 #include "core/text/text_file.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
-#include "core/version.h"
 #include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
 #include "mesh/io/export.h"
@@ -37,12 +36,11 @@
 #include "postproc/nc/dialect.h"
 #include "report/folder/output_files.h"
 #include "report/folder/run_files.h"
-#include "report/print_mandrel.h"
+#include "report/inspection.h"
 #include "report/report.h"
 #include "report/report_carry.h"
 #include "report/report_checks.h"
 #include "report/report_design.h"
-#include "report/report_mandrel.h"
 #include "report/report_study.h"
 #include "report/report_verify.h"
 #include "report/write_run.h"
@@ -279,39 +277,30 @@ int run_inspect(const InspectArguments& arguments, const Common& common) {
         throw InputError("cli.output", "inspect --refine",
                          "name the mesh file to write with -o FILE");
     }
+    check_part_page(arguments.page);
     Progress progress(!shows_bar(common));
     progress.show("mandrel", 0.0);
     const Job job = job_of(arguments.job, found_or_none(arguments.job.file), false);
-    const Mandrel mandrel =
+    Mandrel mandrel =
         load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units)));
-    std::size_t refined_faces = 0;
+    std::optional<RefinedFile> refined;
     if (arguments.refine_mm) {
         progress.show("refine", 0.0);
-        refined_faces = write_refined(mandrel, *arguments.refine_mm, arguments.out);
+        refined = {arguments.out, *arguments.refine_mm,
+                   write_refined(mandrel, *arguments.refine_mm, arguments.out)};
     }
     progress.show("accuracy", 0.0);
-    const PathAccuracy accuracy = estimate_path_accuracy(mandrel.surface);
-    const RevolutionFinding revolution = find_revolution(mandrel);
-    const TubeFinding tube = find_tube(mandrel);
+    Inspection found = inspect(std::move(mandrel), job.tow.width_mm);
+    found.refined = std::move(refined);
+    if (!arguments.page.empty()) {
+        found.page = arguments.page;
+        write_part_page(found, arguments.page);
+    }
     progress.clear();
     if (common.json) {
-        nlohmann::json report{{"meshwind", kVersion}, {"mandrel", mandrel_report(mandrel)}};
-        report["mandrel"]["revolution"] = revolution_report(revolution);
-        report["mandrel"]["tube"] = tube_report(tube);
-        report["mandrel"]["accuracy"] = accuracy_report(accuracy);
-        if (arguments.refine_mm) {
-            report["refined"] = {{"file", arguments.out},
-                                 {"longest_edge_mm", *arguments.refine_mm},
-                                 {"triangles", refined_faces}};
-        }
-        std::cout << json_text(report);
+        std::cout << json_text(inspection_report(found));
     } else {
-        print_mandrel(std::cout, mandrel, accuracy, revolution, tube);
-        if (arguments.refine_mm) {
-            std::cout << "refined       " << arguments.out << ": " << refined_faces
-                      << " triangles, edges of at most " << fixed(*arguments.refine_mm, 3)
-                      << " mm\n";
-        }
+        print_inspection(std::cout, found);
     }
     return kDone;
 }

@@ -68,7 +68,7 @@ struct InspectArguments {
     std::string mandrel;
     JobArguments job;  ///< its mandrel alone is read
     std::optional<double> refine_mm;
-    std::string out;
+    std::string out, page;
 };
 
 struct TraceArguments {

@@ -79,6 +79,7 @@ constexpr const char* kInspectHelp =
     "Examples:\n"
     "  meshwind inspect tee.stl\n"
     "  meshwind inspect part.stl --units in --json\n"
+    "  meshwind inspect part.stl --page part.html\n"
     "  meshwind inspect coarse.stl --refine 2 -o fine.stl";
 
 constexpr const char* kMakeHelp =

@@ -178,6 +178,8 @@ void add_inspect(CLI::App& app, InspectArguments& options) {
     app.add_option("-o,--out", options.out, "mesh file to write: .stl, .obj, .ply or .off")
         ->type_name("FILE")
         ->needs(refine);
+    app.add_option("--page", options.page, "page to write, .html: the part, by what it is")
+        ->type_name("FILE");
 }
 
 // What stands for a parameter's value in the help.

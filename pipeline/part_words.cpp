@@ -71,19 +71,27 @@ void require_sound_wall(const Mandrel& mandrel, bool turns_on_extensions) {
     }
 }
 
-void propose_blend(const Mandrel& mandrel, double tow_width_mm, std::vector<std::string>& remarks) {
+std::string sharp_words(const Mandrel& mandrel, double sharp_mm2, double tow_width_mm) {
     constexpr double kWorthAWord = 0.002;  // of the wall's area
+    const double all_mm2 = area_mm2({mandrel.surface.position_mm, mandrel.surface.face});
+    if (!(sharp_mm2 > kWorthAWord * all_mm2)) {
+        return "";
+    }
+    return "a ball as wide as the tow, " + fixed(tow_width_mm, 1) + " mm, cannot touch " +
+           percent(sharp_mm2 / all_mm2, 1) +
+           " of the wall, in crotches and at steps; --set mandrel.blend=" + fixed(tow_width_mm, 1) +
+           " would fill them up";
+}
+
+void propose_blend(const Mandrel& mandrel, double tow_width_mm, std::vector<std::string>& remarks) {
     if (mandrel.winding_mesh.blend_mm > 0.0) {
         return;
     }
     const double sharp_mm2 = out_of_reach_mm2(mandrel.surface, tow_width_mm);
-    const double all_mm2 = area_mm2({mandrel.surface.position_mm, mandrel.surface.face});
-    if (!(sharp_mm2 > kWorthAWord * all_mm2)) {
-        return;
+    const std::string words = sharp_words(mandrel, sharp_mm2, tow_width_mm);
+    if (!words.empty()) {
+        remarks.push_back(words);
     }
-    remarks.push_back("a ball as wide as the tow cannot touch " + percent(sharp_mm2 / all_mm2, 1) +
-                      " of the wall, in crotches and at steps; --set mandrel.blend=" +
-                      fixed(tow_width_mm, 1) + " would fill them up");
 }
 
 std::string unit_question(const Mandrel& mandrel) {

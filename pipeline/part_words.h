@@ -20,6 +20,11 @@ namespace meshwind {
 /// them. \throws InputError mesh.pieces, mesh.rim_not_round
 void require_sound_wall(const Mandrel& mandrel, bool turns_on_extensions);
 
+/// What of the wall is too sharp for the tow, and the key that fills it up; empty where hardly
+/// anything is. \param sharp_mm2 area that a ball as wide as the tow cannot touch
+[[nodiscard]] std::string sharp_words(const Mandrel& mandrel, double sharp_mm2,
+                                      double tow_width_mm);
+
 /// Adds what a tow's width of putty would fill up, and the key that does so; nothing where hardly
 /// anything is.
 void propose_blend(const Mandrel& mandrel, double tow_width_mm, std::vector<std::string>& remarks);

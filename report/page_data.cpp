@@ -1,12 +1,10 @@
 #include "report/page_data.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "machines/kinematics.h"
 #include "mesh/mandrel/extension.h"
 #include "report/folder/run_files.h"
+#include "report/page/page_arrays.h"
 #include "report/report_checks.h"
 #include "winding/laminate/wound_angle.h"
 
@@ -26,88 +25,12 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::json;
 
-static_assert(std::endian::native == std::endian::little);
-
 // A page is to stay below 30 MB, and a browser to draw it: of all fibres together so many stations
 // (60 bytes each, before they are packed) and blocks (some 80 bytes) are in it, and so much of the
 // programs' text.
 constexpr std::size_t kMostStations = 200'000;
 constexpr std::size_t kMostBlocks = 100'000;
 constexpr std::size_t kMostText = 2'000'000;
-
-// Arrays begin at multiples of so many bytes.
-constexpr std::size_t kAlignment = 8;
-
-template <typename T>
-constexpr const char* type_name() {
-    if constexpr (std::is_same_v<T, float>) {
-        return "f32";
-    } else if constexpr (std::is_same_v<T, double>) {
-        return "f64";
-    } else if constexpr (std::is_same_v<T, std::uint32_t>) {
-        return "u32";
-    } else if constexpr (std::is_same_v<T, std::int32_t>) {
-        return "i32";
-    } else {
-        static_assert(std::is_same_v<T, char>);
-        return "u8";
-    }
-}
-
-void pad(std::string& bytes, std::size_t ahead, char with) {
-    while ((bytes.size() + ahead) % kAlignment != 0) {
-        bytes += with;
-    }
-}
-
-// The arrays, one behind the other, and their table.
-class Arrays {
-public:
-    // \param width entries of a row
-    template <typename T>
-    void add(const std::string& name, std::size_t width, std::span<const T> entries) {
-        pad(bytes_, 0, '\0');
-        table_[name] = {{"type", type_name<T>()},
-                        {"width", width},
-                        {"count", entries.size() / width},
-                        {"offset", bytes_.size()}};
-        const auto raw = std::as_bytes(entries);
-        bytes_.append(reinterpret_cast<const char*>(raw.data()), raw.size());
-    }
-
-    void add_floats(const std::string& name, const std::vector<double>& values) {
-        const std::vector<float> entries(values.begin(), values.end());
-        add<float>(name, 1, entries);
-    }
-
-    void add_points(const std::string& name, const std::vector<Vector3d>& points) {
-        std::vector<float> entries;
-        entries.reserve(3 * points.size());
-        for (const Vector3d& p : points) {
-            entries.insert(entries.end(), {static_cast<float>(p.x()), static_cast<float>(p.y()),
-                                           static_cast<float>(p.z())});
-        }
-        add<float>(name, 3, entries);
-    }
-
-    void add_faces(const std::string& name, const std::vector<std::array<std::int32_t, 3>>& faces) {
-        std::vector<std::uint32_t> entries;
-        entries.reserve(3 * faces.size());
-        for (const auto& face : faces) {
-            for (const std::int32_t v : face) {
-                entries.push_back(static_cast<std::uint32_t>(v));
-            }
-        }
-        add<std::uint32_t>(name, 3, entries);
-    }
-
-    [[nodiscard]] const std::string& bytes() const { return bytes_; }
-    [[nodiscard]] const json& table() const { return table_; }
-
-private:
-    std::string bytes_;
-    json table_ = json::object();
-};
 
 json vector_json(const Vector3d& v) {
     return {v.x(), v.y(), v.z()};
@@ -220,12 +143,7 @@ public:
                          {"friction", first_.friction.holds()}}},
                        {"extension", extension_json()},
                        {"layers", layers}};
-        header["arrays"] = arrays_.table();
-        std::string head = header.dump(-1, ' ', false, json::error_handler_t::replace);
-        pad(head, sizeof(std::uint32_t), ' ');
-        const auto length =
-            std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(head.size()));
-        return std::string(length.data(), length.size()) + head + arrays_.bytes();
+        return arrays_.behind(std::move(header));
     }
 
 private:
@@ -510,7 +428,7 @@ private:
     const Run& run_;
     const Layup& layup_;
     const Setup& first_;
-    Arrays arrays_;
+    PageArrays arrays_;
     std::size_t station_every_ = 1;  // in the page
     std::size_t block_every_ = 1;
     std::size_t text_ = 0;  // of all programs

@@ -11,15 +11,9 @@
 namespace meshwind {
 
 /// Mandrel, fibre, motion, machine, programs and report of a run, for the page (viewer/src/data.ts
-/// reads it). A header in JSON says what the arrays behind it are:
-///
-///     u32           length of the header, which is padded so that the arrays begin at a multiple
-///                   of 8 bytes
-///     header        "report", "check_kinds" (report_checks.h), "machine", "tow", "extension",
-///                   "layers" with their "fibres" and these with their "pieces",
-///                   "arrays": name -> type, width, count, offset
-///     arrays        little endian, each at a multiple of 8 bytes from the first
-///
+/// reads it), as page_arrays.h lays it out. The header has "report", "check_kinds"
+/// (report_checks.h), "machine", "tow", "extension", and "layers" with their "fibres" and these
+/// with their "pieces".
 /// Positions are in the mandrel's frame, mm; angles deg. \param report report.json, whose
 /// timing_s is left out
 /// \pre run.planned()

@@ -15,10 +15,10 @@
 #include "core/version.h"
 #include "pipeline/part_words.h"
 #include "pipeline/run_names.h"
+#include "report/page/packed_page.h"
 #include "report/report_checks.h"
 #include "report/report_layers.h"
 #include "report/report_mandrel.h"
-#include "report/report_page.h"
 
 namespace meshwind {
 namespace {
@@ -549,7 +549,7 @@ void print_summary(std::ostream& out, const Run& run, const std::filesystem::pat
             }
         }
     }
-    if (run.planned() && !page_template().empty()) {
+    if (run.planned() && !report_page_template().empty()) {
         out << "page:    " << (folder / "report.html").string() << '\n';
     }
     out << "report:  " << (folder / "report.json").string() << '\n';

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -13,10 +14,10 @@
 #include "postproc/tables/path_csv.h"
 #include "report/layup.h"
 #include "report/layup_files.h"
+#include "report/page/packed_page.h"
 #include "report/page_data.h"
 #include "report/report.h"
 #include "report/report_checks.h"
-#include "report/report_page.h"
 
 namespace meshwind {
 namespace {
@@ -64,8 +65,9 @@ std::string write_run(const Run& run, OutputFolder& folder) {
     nlohmann::json report = report_of(run, timing_s);
     std::string text = json_text(report);
     folder.add("report.json", text);
-    if (layup && !page_template().empty()) {
-        folder.add("report.html", report_page(page_data(run, *layup, std::move(report))));
+    const std::string_view page = report_page_template();
+    if (layup && !page.empty()) {
+        folder.add("report.html", packed_page(page, page_data(run, *layup, std::move(report))));
     }
     folder.publish();
     return text;

@@ -1,4 +1,5 @@
-// Bundles the page into one HTML file: node build.mjs OUT.html
+// Bundles a page into one HTML file: node build.mjs OUT.html [part]
+// The page of report.html, or that of a part.
 // The program puts its data in the place of <!--MESHWIND-DATA-->.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -6,15 +7,16 @@ import { fileURLToPath } from 'node:url';
 import { build, transform } from 'esbuild';
 
 const here = dirname(fileURLToPath(import.meta.url));
-const output = process.argv[2];
-if (!output || process.argv.length > 3) {
-    console.error('usage: node build.mjs OUT.html');
+const [output, which] = process.argv.slice(2);
+if (!output || process.argv.length > 4 || (which && which !== 'part')) {
+    console.error('usage: node build.mjs OUT.html [part]');
     process.exit(2);
 }
+const source = join(here, 'src', which ?? '');
 
 const marker = '<!--MESHWIND-DATA-->';
 const bundle = await build({
-    entryPoints: [join(here, 'src', 'main.ts')],
+    entryPoints: [join(source, 'main.ts')],
     bundle: true,
     minify: true,
     write: false,
@@ -23,7 +25,8 @@ const bundle = await build({
     charset: 'ascii',
     legalComments: 'none',
 });
-const style = await transform(readFileSync(join(here, 'src', 'style.css'), 'utf8'), {
+const sheets = [join(here, 'src', 'style.css'), ...(which ? [join(source, 'style.css')] : [])];
+const style = await transform(sheets.map((sheet) => readFileSync(sheet, 'utf8')).join('\n'), {
     loader: 'css',
     minify: true,
 });
@@ -35,7 +38,7 @@ const script = bundle.outputFiles[0].text
     .replace(/<\/(script)/gi, '<\\/$1')
     .replace(/<!--/g, '\\x3C!--')
     .trim();
-const page = readFileSync(join(here, 'src', 'index.html'), 'utf8')
+const page = readFileSync(join(source, 'index.html'), 'utf8')
     .replace('/*STYLE*/', () => style.code.trim())
     .replace('/*SCRIPT*/', () => script)
     .replace('<!--LICENCE-->', () => `<!--\nthree.js: ${licence}\n-->`);

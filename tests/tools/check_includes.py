@@ -37,7 +37,7 @@ ALLOWED = [
     ("CLI/", "cli/main.cpp"),
     ("tbb/", "core/parallel.cpp"),
     ("nettle/", "core/text/digest.cpp"),
-    ("nettle/", "report/report_page.cpp"),
+    ("nettle/", "report/page/packed_page.cpp"),
     ("sys/", "*.cpp"),
 ]
 

@@ -9,6 +9,9 @@ node tests/viewer/page_test.mjs "$work/tee/report.html" "$work/page"
 mv "$work/tee.png" docs/images/tee.png
 ./meshwind data/meshes/cad/lettered_elbow.stl --units m --machine six_axis.json --set tow.width=4 --set tow.friction=0.3 \
     -o "$work/part" --png docs/images/part.png --quiet
+./meshwind inspect data/meshes/cad/lettered_elbow.stl --units m --page "$work/part.html"
+node tests/viewer/part_test.mjs "$work/part.html" "$work/page"
+mv "$work/page/part_light.png" docs/images/inspect.png
 mv "$work/page/program.png" docs/images/report.png
 mv "$work/page/failed_check.png" docs/images/failed_check.png
 mv "$work/page/dark.png" docs/images/dark.png

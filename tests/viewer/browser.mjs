@@ -66,6 +66,21 @@ function isDriverRemark(text) {
     return /GPU stall due to ReadPixels|Automatic fallback to software WebGL/.test(text);
 }
 
+/** Script to run first in a browser that is to have no WebGL. */
+export function withoutWebGl() {
+    const original = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function context(kind, ...rest) {
+        return /webgl/.test(kind) ? null : original.call(this, kind, ...rest);
+    };
+}
+
+/** Of the page's ground, 0..255. */
+export const luminance = (page) =>
+    page.evaluate(() => {
+        const [r, g, b] = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number);
+        return (r + g + b) / 3;
+    });
+
 export const state = (page) => page.evaluate(() => window.meshwind.state());
 export const seek = (page, time) => page.evaluate((t) => window.meshwind.seek(t), time);
 
@@ -92,4 +107,24 @@ export function look(page, selector) {
         const seen = [...colours.values()].filter((n) => n > 20).length;
         return { colours: seen, share: (4 * off) / data.length, sum };
     }, selector);
+}
+
+/** Runs tests of {name, body} one after the other, and ends the process: 1 where one failed. */
+export async function runTests(tests, tidy) {
+    const browser = await launch();
+    let failures = 0;
+    for (const { name, body } of tests) {
+        try {
+            const skipped = await body(browser);
+            console.log(`${skipped ? 'skip' : 'ok  '} ${name}${skipped ? ` (${skipped})` : ''}`);
+        } catch (error) {
+            ++failures;
+            console.log(`FAIL ${name}\n     ${error.stack.split('\n').slice(0, 4).join('\n     ')}`);
+        }
+        await Promise.all(browser.contexts().map((context) => context.close()));
+    }
+    await browser.close();
+    tidy();
+    console.log(`${tests.length - failures} of ${tests.length} passed`);
+    process.exit(failures ? 1 : 0);
 }

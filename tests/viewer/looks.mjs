@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { look, open, seek, state } from './browser.mjs';
+import { look, luminance, open, seek, state, withoutWebGl } from './browser.mjs';
 import { file, html, picture, pictures, programs, scratch, test, variant } from './run.mjs';
 
 test('opens without a complaint and shows a picture', async (browser) => {
@@ -21,12 +21,7 @@ test('opens without a complaint and shows a picture', async (browser) => {
 
 test('without WebGL the page says so and keeps its tables', async (browser) => {
     const page = await open(browser, file, {
-        before: () => {
-            const original = HTMLCanvasElement.prototype.getContext;
-            HTMLCanvasElement.prototype.getContext = function context(kind, ...rest) {
-                return /webgl/.test(kind) ? null : original.call(this, kind, ...rest);
-            };
-        },
+        before: withoutWebGl,
     });
     assert.match(await page.textContent('#notice'), /no WebGL/);
     assert.ok((await page.locator('.check').count()) > 0);
@@ -68,11 +63,6 @@ test('the empty template says that it has no data', async (browser) => {
 
 test('dark, narrow and on paper', async (browser) => {
     const dark = await open(browser, file, { scheme: 'dark' });
-    const luminance = (page) =>
-        page.evaluate(() => {
-            const [r, g, b] = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number);
-            return (r + g + b) / 3;
-        });
     assert.ok((await luminance(dark)) < 60);
     await picture(dark, 'dark');
     await dark.click('#theme');

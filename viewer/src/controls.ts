@@ -1,23 +1,12 @@
 /** Ties buttons, boxes, slider, pointer and keys to the page's state. */
-import { Vector2 } from 'three';
 import type { App } from './app';
 import type { ColouringId } from './colour';
 import type { CourseRow } from './courses';
+import { element, followPointer, option } from './dom';
 import { clock, fixed, number, withUnit } from './format';
 import { helpHtml, listenToKeys } from './keyboard';
 
 const kSpeeds = [0.1, 0.3, 1, 3, 10, 30, 100];
-
-function element<T extends HTMLElement = HTMLElement>(id: string): T {
-    return document.getElementById(id) as T;
-}
-
-function option(value: string, label: string): HTMLOptionElement {
-    const result = document.createElement('option');
-    result.value = value;
-    result.textContent = label;
-    return result;
-}
 
 export interface Controls {
     /** Shows the present state. */
@@ -32,7 +21,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
     connectCamera(app);
     connectPlayback(app);
     const plotValues = connectPlots(app);
-    const hoverAgain = connectPointer(app);
+    const hoverAgain = followPointer(element('scene'), (at) => app.hover(at));
     connectKeys(app, rows);
 
     const slider = element<HTMLInputElement>('slider');
@@ -137,39 +126,6 @@ function connectPlots(app: App): () => void {
         app.seek(time);
     };
     return values;
-}
-
-/** \return looks again at what is under the pointer */
-function connectPointer(app: App): () => void {
-    const canvas = element('scene');
-    let next: Vector2 | null = null;
-    let waiting = false;
-    const look = (): void => {
-        waiting = false;
-        app.hover(next);
-    };
-    const lookSoon = (): void => {
-        if (waiting) return;
-        waiting = true;
-        requestAnimationFrame(look);
-    };
-    canvas.addEventListener('pointermove', (event) => {
-        const box = canvas.getBoundingClientRect();
-        next = event.buttons
-            ? null
-            : new Vector2(
-                  ((event.clientX - box.left) / box.width) * 2 - 1,
-                  1 - ((event.clientY - box.top) / box.height) * 2,
-              );
-        lookSoon();
-    });
-    canvas.addEventListener('pointerleave', () => {
-        next = null;
-        app.hover(null);
-    });
-    return () => {
-        if (next) lookSoon();
-    };
 }
 
 function connectKeys(app: App, rows: CourseRow[]): void {

@@ -5,7 +5,7 @@ import { escapeHtml, number, withUnit } from './format';
 
 const kMostCategories = 8;
 
-function swatch(colour: string, words: string, hatched = false): string {
+export function swatch(colour: string, words: string, hatched = false): string {
     const style = hatched
         ? `background:repeating-linear-gradient(-45deg, ${colour} 0 3px, #f6d5bd 3px 6px)`
         : `background:${colour}`;

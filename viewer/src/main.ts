@@ -5,6 +5,7 @@ import { connectControls } from './controls';
 import { courseRows, Courses } from './courses';
 import { readPage } from './data';
 import type { Page } from './data';
+import { canDraw, element, notice } from './dom';
 import { escapeHtml } from './format';
 import { Kinematics } from './kinematics';
 import { followLink, LinkKeeper, stateOf } from './link';
@@ -17,26 +18,13 @@ import { Tabs } from './tabs';
 import { ThemeSwitch } from './theme';
 import { Timeline } from './timeline';
 
-function element<T extends HTMLElement = HTMLElement>(id: string): T {
-    return document.getElementById(id) as T;
-}
-
-function notice(text: string): void {
-    const line = element('notice');
-    line.hidden = false;
-    line.textContent = text;
-}
-
 /** The picture, or null with one line that says why there is none. */
 function openStage(page: Page, kinematics: Kinematics, timeline: Timeline): Stage | null {
     const canvas = element<HTMLCanvasElement>('scene');
-    const probe = document.createElement('canvas').getContext('webgl2');
-    probe?.getExtension('WEBGL_lose_context')?.loseContext();
-    if (probe) return new Stage(page, kinematics, timeline, canvas);
+    if (canDraw()) return new Stage(page, kinematics, timeline, canvas);
     notice(
         'This browser has no WebGL 2, so the picture is left out; checks, tables, plots and program are complete.',
     );
-    document.body.classList.add('no-picture');
     return null;
 }
 

@@ -1,4 +1,4 @@
-#include "report/report_page.h"
+#include "report/page/packed_page.h"
 
 #include <nettle/base64.h>
 #include <zlib.h>
@@ -42,8 +42,7 @@ std::string base64(std::string_view bytes) {
 
 }  // namespace
 
-std::string report_page(std::string_view data) {
-    const std::string_view page = page_template();
+std::string packed_page(std::string_view page, std::string_view data) {
     const std::size_t mark = page.find(kDataMark);
     if (mark == std::string_view::npos) {
         throw std::logic_error("the page has no place for data");
