@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/files/write_file.h"
 #include "core/text/text_number.h"
+#include "core/units.h"
 #include "core/version.h"
 #include "mesh/even/rolling_ball.h"
 #include "mesh/mandrel/remarks.h"
@@ -21,6 +22,11 @@ namespace {
 
 using Eigen::Vector3d;
 using nlohmann::json;
+
+json json_of(const Vector3d& v) {
+    // Adding zero turns -0 into 0.
+    return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};
+}
 
 // What the main job would say of the wall before it plans.
 void add_wall_remarks(Inspection& found) {
@@ -67,6 +73,7 @@ Inspection inspect(Mandrel mandrel, double tow_width_mm) {
     found.accuracy = estimate_path_accuracy(found.mandrel.surface);
     found.revolution = find_revolution(found.mandrel);
     found.tube = find_tube(found.mandrel);
+    found.axes = axis_candidates(found.mandrel);
     add_wall_remarks(found);
     try {
         require_sound_wall(found.mandrel, true);
@@ -82,12 +89,22 @@ json inspection_report(const Inspection& found) {
     mandrel["revolution"] = revolution_report(found.revolution);
     mandrel["tube"] = tube_report(found.tube);
     mandrel["accuracy"] = accuracy_report(found.accuracy);
+    mandrel["axis"]["candidates"] = json::array();
+    for (const AxisCandidate& axis : found.axes) {
+        mandrel["axis"]["candidates"].push_back({{"rule", axis.rule},
+                                                 {"through", json_of(axis.through_mm)},
+                                                 {"direction", json_of(axis.direction)},
+                                                 {"residual_mm", axis.residual_mm},
+                                                 {"swing_mm", axis.swing_mm},
+                                                 {"rims", axis.rims},
+                                                 {"gap_deg", deg_from_rad(axis.gap_rad)},
+                                                 {"angle_deg", deg_from_rad(axis.angle_rad)},
+                                                 {"off_mm", axis.off_mm},
+                                                 {"why", axis.why}});
+    }
     mandrel["places"] = json::array();
     for (const RemarkPlace& place : found.mandrel.places) {
-        // Adding zero turns -0 into 0.
-        mandrel["places"].push_back(
-            {{"remark", place.remark},
-             {"at", {place.at_mm.x() + 0.0, place.at_mm.y() + 0.0, place.at_mm.z() + 0.0}}});
+        mandrel["places"].push_back({{"remark", place.remark}, {"at", json_of(place.at_mm)}});
     }
     if (found.refined) {
         report["refined"] = {{"file", found.refined->file},
@@ -101,7 +118,7 @@ json inspection_report(const Inspection& found) {
 }
 
 void print_inspection(std::ostream& out, const Inspection& found) {
-    print_mandrel(out, found.mandrel, found.accuracy, found.revolution, found.tube);
+    print_mandrel(out, found);
     if (found.refined) {
         out << "refined       " << found.refined->file << ": " << found.refined->triangles
             << " triangles, edges of at most " << fixed(found.refined->longest_edge_mm, 3)

@@ -12,6 +12,7 @@
 #include "geodesic/path_accuracy.h"
 #include "mesh/mandrel.h"
 #include "mesh/revolution/revolution.h"
+#include "mesh/segment/axis_candidates.h"
 #include "mesh/tube/tube.h"
 
 namespace meshwind {
@@ -28,6 +29,7 @@ struct Inspection {
     PathAccuracy accuracy;
     RevolutionFinding revolution;
     TubeFinding tube;
+    std::vector<AxisCandidate> axes;  ///< of the spindle, the chosen one first
     double tow_width_mm = 0.0;
     /// Per face of the winding surface 1 where a ball as wide as the tow cannot touch its middle;
     /// empty where hardly any is so
@@ -40,8 +42,8 @@ struct Inspection {
 /// \param mandrel as it was loaded
 [[nodiscard]] Inspection inspect(Mandrel mandrel, double tow_width_mm);
 
-/// "meshwind" (version), "mandrel" (mandrel_report with "revolution", "tube", "accuracy",
-/// "places"), and of what was written "refined" and "page".
+/// "meshwind" (version), "mandrel" (mandrel_report with "revolution", "tube", "accuracy", "places",
+/// and "candidates" of its "axis"), and of what was written "refined" and "page".
 [[nodiscard]] nlohmann::json inspection_report(const Inspection& found);
 
 /// The same for people.

@@ -99,6 +99,21 @@ void print_accuracy(std::ostream& out, const PathAccuracy& accuracy) {
         << " geodesics of up to " << fixed(accuracy.length_mm, 0) << " mm\n";
 }
 
+// A line for each, the chosen one first.
+void print_axes(std::ostream& out, const std::vector<AxisCandidate>& axes) {
+    out << "axes              swing mm  rims on it  open deg  tilt deg    off mm\n";
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const AxisCandidate& axis = axes[i];
+        std::string rule = axis.rule;
+        rule.resize(12, ' ');
+        out << (i == 0 ? "  * " : "    ") << rule << padded(fixed(axis.swing_mm, 2), 10)
+            << padded(std::to_string(axis.rims), 12)
+            << padded(fixed(deg_from_rad(axis.gap_rad), 0), 10)
+            << padded(fixed(deg_from_rad(axis.angle_rad), 2), 10)
+            << padded(fixed(axis.off_mm, 2), 10) << "  " << axis.why << "\n";
+    }
+}
+
 std::string words_of(const MeridianPart& part, const Meridian& meridian) {
     std::string words(name_of(part.kind));
     words += " " + fixed(part.to_mm - part.from_mm, 2) + " mm R ";
@@ -159,8 +174,8 @@ void print_tube(std::ostream& out, const TubeFinding& finding) {
 
 }  // namespace
 
-void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy& accuracy,
-                   const RevolutionFinding& revolution, const TubeFinding& tube) {
+void print_mandrel(std::ostream& out, const Inspection& found) {
+    const Mandrel& mandrel = found.mandrel;
     print_size(out, mandrel);
     print_repairs(out, mandrel.repairs);
     print_regions(out, mandrel);
@@ -170,14 +185,15 @@ void print_mandrel(std::ostream& out, const Mandrel& mandrel, const PathAccuracy
             << "  axis " << triple(rim.axis, 4) << "  radius " << fixed(rim.radius_mm, 3)
             << "  off circle " << fixed(rim.circularity_mm, 3) << "\n";
     }
+    print_axes(out, found.axes);
     const FitReport& fit = mandrel.surface.fit;
     out << "surface       " << mandrel.surface.face.size() << " triangles, mean edge "
         << fixed(mandrel.surface.mean_edge_mm, 3) << " mm; smooth fit at " << fit.quartic
         << " corners quartic, " << fit.cubic << " cubic, " << fit.quadratic << " quadratic, "
         << fit.reduced << " reduced, " << fit.averaged << " averaged\n";
-    print_revolution(out, revolution);
-    print_tube(out, tube);
-    print_accuracy(out, accuracy);
+    print_revolution(out, found.revolution);
+    print_tube(out, found.tube);
+    print_accuracy(out, found.accuracy);
     for (const std::string& remark : mandrel.remarks) {
         out << "remark        " << remark << "\n";
     }

@@ -61,6 +61,21 @@ class InspectPage(program.ProgramTest):
         narrow, _ = self.inspect(tee, "--set", "tow.width=0.6")
         self.assertFalse(any(narrow["part/sharp"]))
 
+    def test_axes_are_told_in_words_and_as_json(self):
+        """A tee swings about its run by the corner of the branch's rim, hypot(236, 40) mm."""
+        tee = self.make("tee", "--edge", "10")
+        page, printed = self.inspect(tee)
+        axes = page.header["inspection"]["mandrel"]["axis"]["candidates"]
+        self.assertEqual((axes[0]["rule"], axes[0]["rims"]), ("coaxial-rims", 2))
+        self.assertAlmostEqual(axes[0]["swing_mm"], math.hypot(236, 40), delta=0.2)
+        self.assertEqual((axes[0]["angle_deg"], axes[0]["off_mm"]), (0, 0))
+        lines = printed.split("\naxes ")[1].split("\nsurface ")[0].splitlines()[1:]
+        self.assertEqual(len(lines), len(axes))
+        for line, axis in zip(lines, axes):
+            self.assertIn(axis["rule"], line)
+            self.assertTrue(line.endswith(axis["why"]), line)
+        self.assertTrue(lines[0].startswith("  * "))
+
     def test_a_part_that_the_main_job_refuses_has_a_page(self):
         """Half of a pipe: its rim goes along both cuts."""
         pipe = self.make("cylinder", "--radius", "30", "--length", "120", "--edge", "8")

@@ -129,6 +129,28 @@ test('a rim and a remark lead to their places', async (browser) => {
     assert.deepEqual(page.complaints, []);
 });
 
+test('each line that might be the spindle is told, and drawn under the pointer', async (browser) => {
+    const page = await open(browser, file);
+    const { candidates } = mandrel.axis;
+    assert.equal(await page.locator('.axes tbody tr:not(.note)').count(), candidates.length);
+    for (const [i, axis] of candidates.entries()) {
+        const rows = page.locator(`[data-axis="${i}"]`);
+        assert.ok((await rows.nth(0).textContent()).includes(axis.rule));
+        assert.equal((await rows.nth(1).textContent()).slice(1), axis.why.slice(1));
+    }
+    const before = (await look(page, '#scene')).sum;
+    const last = page.locator(`[data-axis="${candidates.length - 1}"] >> nth=0`);
+    await last.scrollIntoViewIfNeeded();
+    await last.hover();
+    await page.waitForTimeout(250);
+    assert.notEqual((await look(page, '#scene')).sum, before);
+    await picture(page, 'part_axes');
+    await page.locator('h3 >> nth=0').hover();
+    await page.waitForTimeout(250);
+    assert.equal((await look(page, '#scene')).sum, before);
+    assert.deepEqual(page.complaints, []);
+});
+
 test('cut open the inside is seen; triangles, marks and colours change the picture', async (browser) => {
     const page = await open(browser, file);
     const drawn = async () => {

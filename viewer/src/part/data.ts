@@ -23,6 +23,19 @@ export interface Rim {
     cut_off_mm: number;
 }
 
+/** A line that the part might turn about; the first is the one that was chosen. */
+export interface AxisCandidate {
+    rule: string;
+    through: Vec3;
+    direction: Vec3;
+    swing_mm: number;
+    rims: number;
+    gap_deg: number;
+    angle_deg: number;
+    off_mm: number;
+    why: string;
+}
+
 export interface Inspected {
     file: string;
     unit_mm: number;
@@ -32,6 +45,7 @@ export interface Inspected {
     regions: Region[];
     rims: Rim[];
     area_mm2: number;
+    axis: { rule: string; candidates: AxisCandidate[] };
     remarks: string[];
     places: { remark: number; at: Vec3 }[];
     winding_mesh: { own: boolean; details: number; details_mm2: number };

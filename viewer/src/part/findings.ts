@@ -104,6 +104,27 @@ function rimsHtml(part: Part): string {
     return table('rims', heads, rows.join(''));
 }
 
+function axesHtml(part: Part): string {
+    const { candidates } = part.inspected.axis;
+    const rows = candidates.map(
+        (axis, i) =>
+            `<tr data-axis="${i}"${i ? '' : ' class="chosen"'}><th scope="row">${i ? '' : '\u2713 '}${escapeHtml(axis.rule)}</th>` +
+            `<td class="num">${fixed(axis.swing_mm, 1)}</td><td class="num">${axis.rims}</td>` +
+            `<td class="num">${fixed(axis.gap_deg, 0)}°</td><td class="num">${fixed(axis.angle_deg, 1)}°</td>` +
+            `<td class="num">${fixed(axis.off_mm, 1)}</td></tr>` +
+            `<tr class="note" data-axis="${i}"><td colspan="6">${escapeHtml(sentence(axis.why))}</td></tr>`,
+    );
+    const heads: [string, boolean][] = [
+        ['Axis', false],
+        ['Swing mm', true],
+        ['Rims', true],
+        ['Open', true],
+        ['Tilt', true],
+        ['Off mm', true],
+    ];
+    return table('axes', heads, rows.join(''));
+}
+
 /** Lines of what is printed, by the word they begin with. */
 function shapeHtml(text: string): string {
     const shown = ['file', 'unit', 'size', 'spindle axis', 'file frame', 'revolution', 'tube', 'surface', 'accuracy'];
@@ -134,8 +155,11 @@ export function findingsHtml(part: Part): string {
         `<h3>Regions</h3>${table('regions', heads, regionRowsHtml(part, 'kind'))}` +
         '<p class="hint">Others are wound by <code>"mandrel": {"keep_regions": [..]}</code> in the job.</p>' +
         `<h3>Rims</h3>${rimsHtml(part)}` +
+        `<h3>Spindle</h3>${axesHtml(part)}` +
+        '<p class="hint">Another is given by <code>"mandrel": {"axis": ..}</code> in the job. Swing: how far the part reaches from it; ' +
+        'rims that lie around it; the widest angle about it without wall; tilt and distance from the chosen one.</p>' +
         `<h3>Shape</h3>${shapeHtml(text)}` +
-        '<p class="hint">Another spindle is given by <code>"mandrel": {"axis": ..}</code> in the job, another unit by <code>--units</code>.</p>'
+        '<p class="hint">Another unit is given by <code>--units</code>.</p>'
     );
 }
 

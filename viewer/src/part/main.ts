@@ -81,8 +81,13 @@ function connectLists(panel: HTMLElement, stage: PartStage | null): void {
     panel.addEventListener('pointerover', (event) => {
         const row = (event.target as HTMLElement).closest<HTMLElement>('[data-region]');
         stage.choose(row ? Number(row.dataset.region) : null);
+        const axis = (event.target as HTMLElement).closest<HTMLElement>('[data-axis]');
+        stage.showAxis(axis ? Number(axis.dataset.axis) : null);
     });
-    panel.addEventListener('pointerleave', () => stage.choose(null));
+    panel.addEventListener('pointerleave', () => {
+        stage.choose(null);
+        stage.showAxis(null);
+    });
 }
 
 async function open(): Promise<void> {

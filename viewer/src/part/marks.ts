@@ -16,6 +16,7 @@ import {
 } from 'three';
 import { kBare } from '../colour';
 import { cssVariable } from '../theme';
+import type { Vec3 } from '../types';
 import type { Part, Rim } from './data';
 
 const kThick = 0.004; // of the part's diagonal
@@ -30,9 +31,18 @@ export class Marks {
     readonly spindleTip: Vector3;
     private readonly rimMaterials = pair();
     private readonly spindleMaterials = pair();
+    private readonly candidateMaterials = pair();
+    private candidate: Mesh[] = [];
+    private readonly thick: number;
 
-    constructor(part: Part, size: number, low: number, high: number) {
+    constructor(
+        part: Part,
+        private readonly size: number,
+        low: number,
+        high: number,
+    ) {
         const thick = kThick * size;
+        this.thick = thick;
         part.inspected.rims.forEach((rim, i) => {
             this.addRim(rim, thick, size);
             if (rim.circularity_mm > kOffShare * rim.radius) this.addLoop(part.loops[i]);
@@ -45,7 +55,20 @@ export class Marks {
 
     setTheme(): void {
         for (const m of this.rimMaterials) m.color = new Color().setStyle(cssVariable('--text'), '');
+        for (const m of this.candidateMaterials) m.color = new Color().setStyle(cssVariable('--fibre'), '');
         for (const m of this.spindleMaterials) m.color = new Color().setStyle(cssVariable('--accent'), '');
+    }
+
+    /** Draws a line that the part might turn about, through a place; null: none. */
+    showCandidate(axis: { through: Vec3; direction: Vec3 } | null): void {
+        this.group.remove(...this.candidate);
+        for (const mesh of this.candidate) mesh.geometry.dispose();
+        this.candidate = [];
+        if (!axis) return;
+        const through = new Vector3(...axis.through);
+        const along = new Vector3(...axis.direction).multiplyScalar(0.65 * this.size);
+        const from = through.clone().sub(along);
+        this.candidate = this.addArrow(from, through.add(along), 0.6 * this.thick, this.candidateMaterials);
     }
 
     private addRim(rim: Rim, thick: number, size: number): void {
@@ -76,7 +99,8 @@ export class Marks {
         this.group.add(line);
     }
 
-    private addArrow(from: Vector3, to: Vector3, radius: number, materials: Basic[]): void {
+    private addArrow(from: Vector3, to: Vector3, radius: number, materials: Basic[]): Mesh[] {
+        const added: Mesh[] = [];
         const along = to.clone().sub(from);
         const length = along.length();
         const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), along.normalize());
@@ -89,8 +113,10 @@ export class Marks {
             for (const mesh of [shaft, cone]) {
                 mesh.quaternion.copy(turn);
                 this.addMesh(mesh);
+                added.push(mesh);
             }
         }
+        return added;
     }
 
     private addMesh(mesh: Mesh): void {

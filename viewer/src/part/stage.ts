@@ -81,6 +81,12 @@ export class PartStage {
         this.view.request();
     }
 
+    /** Draws one of the lines that the part might turn about; null: none. */
+    showAxis(number: number | null): void {
+        this.marks.showCandidate(number === null ? null : this.part.inspected.axis.candidates[number]);
+        this.view.request();
+    }
+
     fit(): void {
         this.view.resize();
         const { points } = this.part;
