@@ -48,7 +48,9 @@ public:
         EXPECT_EQ(at % 8, 0U);
         std::vector<T> values(table.at("count").get<std::size_t>() *
                               table.at("width").get<std::size_t>());
-        std::memcpy(values.data(), bytes_.data() + at, values.size() * sizeof(T));
+        if (!values.empty()) {
+            std::memcpy(values.data(), bytes_.data() + at, values.size() * sizeof(T));
+        }
         return values;
     }
 
