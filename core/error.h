@@ -18,14 +18,17 @@ public:
     Error(std::string code, std::string place, const std::string& message)
         : std::runtime_error(place.empty() ? message : place + ": " + message),
           code_(std::move(code)),
-          place_(std::move(place)) {}
+          place_(std::move(place)),
+          words_(message) {}
 
     [[nodiscard]] const std::string& code() const { return code_; }
     [[nodiscard]] const std::string& place() const { return place_; }
+    [[nodiscard]] const std::string& words() const { return words_; }  ///< what() without place
 
 private:
     std::string code_;
     std::string place_;
+    std::string words_;
 };
 
 /// The user's data or request is unusable (exit code 2).

@@ -12,6 +12,14 @@ double area_mm2(const std::vector<Eigen::Vector3d>& points_mm,
                      .norm();
 }
 
+Eigen::Vector3d middle_mm(const std::vector<Eigen::Vector3d>& points_mm,
+                          const std::array<std::int32_t, 3>& face) {
+    const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
+        return points_mm[static_cast<std::size_t>(face[i])];
+    };
+    return (corner(0) + corner(1) + corner(2)) / 3.0;
+}
+
 double area_mm2(const TriangleSoup& soup) {
     double area = 0.0;
     for (const auto& face : soup.faces) {

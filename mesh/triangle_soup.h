@@ -21,6 +21,10 @@ struct TriangleSoup {
 [[nodiscard]] double area_mm2(const std::vector<Eigen::Vector3d>& points_mm,
                               const std::array<std::int32_t, 3>& face);
 
+/// Middle of one face.
+[[nodiscard]] Eigen::Vector3d middle_mm(const std::vector<Eigen::Vector3d>& points_mm,
+                                        const std::array<std::int32_t, 3>& face);
+
 /// Area in mm^2 of all faces.
 [[nodiscard]] double area_mm2(const TriangleSoup& soup);
 

@@ -7,9 +7,8 @@
 #include "core/error.h"
 #include "core/files/write_file.h"
 #include "core/text/text_number.h"
-#include "core/units.h"
 #include "core/version.h"
-#include "mesh/even/rolling_ball.h"
+#include "mesh/even/blend.h"
 #include "mesh/mandrel/remarks.h"
 #include "pipeline/part_words.h"
 #include "report/page/packed_page.h"
@@ -22,11 +21,6 @@ namespace {
 
 using Eigen::Vector3d;
 using nlohmann::json;
-
-json json_of(const Vector3d& v) {
-    // Adding zero turns -0 into 0.
-    return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};
-}
 
 // What the main job would say of the wall before it plans.
 void add_wall_remarks(Inspection& found) {
@@ -42,18 +36,13 @@ void add_wall_remarks(Inspection& found) {
         return;
     }
     const Surface& wall = mandrel.surface;
-    found.sharp =
-        out_of_reach({wall.position_mm, wall.face}, found.tow_width_mm, WallSide::Outside);
+    found.sharp = out_of_reach(wall, found.tow_width_mm);
     double area = 0.0;
     std::vector<Vector3d> sharp_mm;
     for (std::size_t f = 0; f < found.sharp.size(); ++f) {
         if (found.sharp[f] != 0) {
-            const auto& [a, b, c] = wall.face[f];
             area += area_mm2(wall.position_mm, wall.face[f]);
-            sharp_mm.emplace_back((wall.position_mm[static_cast<std::size_t>(a)] +
-                                   wall.position_mm[static_cast<std::size_t>(b)] +
-                                   wall.position_mm[static_cast<std::size_t>(c)]) /
-                                  3.0);
+            sharp_mm.push_back(middle_mm(wall.position_mm, wall.face[f]));
         }
     }
     const std::string words = sharp_words(mandrel, area, found.tow_width_mm);
@@ -78,7 +67,7 @@ Inspection inspect(Mandrel mandrel, double tow_width_mm) {
     try {
         require_sound_wall(found.mandrel, true);
     } catch (const InputError& error) {
-        found.refused = std::string(error.what()).substr(error.place().size() + 2);
+        found.refused = error.words();
     }
     return found;
 }
@@ -89,23 +78,8 @@ json inspection_report(const Inspection& found) {
     mandrel["revolution"] = revolution_report(found.revolution);
     mandrel["tube"] = tube_report(found.tube);
     mandrel["accuracy"] = accuracy_report(found.accuracy);
-    mandrel["axis"]["candidates"] = json::array();
-    for (const AxisCandidate& axis : found.axes) {
-        mandrel["axis"]["candidates"].push_back({{"rule", axis.rule},
-                                                 {"through", json_of(axis.through_mm)},
-                                                 {"direction", json_of(axis.direction)},
-                                                 {"residual_mm", axis.residual_mm},
-                                                 {"swing_mm", axis.swing_mm},
-                                                 {"rims", axis.rims},
-                                                 {"gap_deg", deg_from_rad(axis.gap_rad)},
-                                                 {"angle_deg", deg_from_rad(axis.angle_rad)},
-                                                 {"off_mm", axis.off_mm},
-                                                 {"why", axis.why}});
-    }
-    mandrel["places"] = json::array();
-    for (const RemarkPlace& place : found.mandrel.places) {
-        mandrel["places"].push_back({{"remark", place.remark}, {"at", json_of(place.at_mm)}});
-    }
+    mandrel["axis"]["candidates"] = axes_report(found.axes);
+    mandrel["places"] = places_report(found.mandrel.places);
     if (found.refined) {
         report["refined"] = {{"file", found.refined->file},
                              {"longest_edge_mm", found.refined->longest_edge_mm},

@@ -154,4 +154,29 @@ json accuracy_report(const PathAccuracy& accuracy) {
             {"patches_mm_per_m", accuracy.patches_mm_per_m}};
 }
 
+json axes_report(const std::vector<AxisCandidate>& axes) {
+    json rows = json::array();
+    for (const AxisCandidate& axis : axes) {
+        rows.push_back({{"rule", axis.rule},
+                        {"through", json_of(axis.through_mm)},
+                        {"direction", json_of(axis.direction)},
+                        {"residual_mm", axis.residual_mm},
+                        {"swing_mm", axis.swing_mm},
+                        {"rims", axis.rims},
+                        {"gap_deg", deg_from_rad(axis.gap_rad)},
+                        {"angle_deg", deg_from_rad(axis.angle_rad)},
+                        {"off_mm", axis.off_mm},
+                        {"why", axis.why}});
+    }
+    return rows;
+}
+
+json places_report(const std::vector<RemarkPlace>& places) {
+    json rows = json::array();
+    for (const RemarkPlace& place : places) {
+        rows.push_back({{"remark", place.remark}, {"at", json_of(place.at_mm)}});
+    }
+    return rows;
+}
+
 }  // namespace meshwind

@@ -1,11 +1,14 @@
 /// The "mandrel" object of report.json.
 #pragma once
 
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "geodesic/path_accuracy.h"
 #include "mesh/mandrel.h"
 #include "mesh/revolution/revolution.h"
+#include "mesh/segment/axis_candidates.h"
 #include "mesh/tube/tube.h"
 
 namespace meshwind {
@@ -23,5 +26,12 @@ namespace meshwind {
 
 /// The object "accuracy": paths, length_mm, walk_mm_per_m, patches_mm_per_m; null without paths.
 [[nodiscard]] nlohmann::json accuracy_report(const PathAccuracy& accuracy);
+
+/// The array "candidates" of "axis": rule, through, direction, residual_mm, swing_mm, rims,
+/// gap_deg, angle_deg, off_mm, why.
+[[nodiscard]] nlohmann::json axes_report(const std::vector<AxisCandidate>& axes);
+
+/// The array "places": remark (its index in "remarks"), at.
+[[nodiscard]] nlohmann::json places_report(const std::vector<RemarkPlace>& places);
 
 }  // namespace meshwind

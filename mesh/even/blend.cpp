@@ -37,10 +37,6 @@ std::size_t at_index(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-std::vector<char> out_of_reach(const Surface& wall, double radius_mm) {
-    return out_of_reach({wall.position_mm, wall.face}, radius_mm, WallSide::Outside);
-}
-
 // Faces of the part that are wall, in their order: the faces of its frozen wall.
 std::vector<std::int32_t> wall_faces(const LabelledMesh& part, const std::vector<char>& kept) {
     std::vector<std::int32_t> faces;
@@ -162,6 +158,10 @@ LabelledMesh fine_near(const LabelledMesh& part, const std::vector<char>& kept, 
 }
 
 }  // namespace
+
+std::vector<char> out_of_reach(const Surface& wall, double radius_mm) {
+    return out_of_reach({wall.position_mm, wall.face}, radius_mm, WallSide::Outside);
+}
 
 double out_of_reach_mm2(const Surface& wall, double radius_mm) {
     const std::vector<char> out = out_of_reach(wall, radius_mm);

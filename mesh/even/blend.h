@@ -16,6 +16,9 @@ struct Blend {
     std::string why_not;      ///< where something would be blended and cannot be; in words
 };
 
+/// Per face 1 where a ball of the radius cannot touch its middle from outside (rolling_ball.h).
+[[nodiscard]] std::vector<char> out_of_reach(const Surface& wall, double radius_mm);
+
 /// Area of the wall, mm2, that a ball of the radius cannot touch from outside: what a blend would
 /// fill up.
 [[nodiscard]] double out_of_reach_mm2(const Surface& wall, double radius_mm);

@@ -22,11 +22,8 @@ constexpr std::size_t kMostPlaces = 8;
 std::vector<Vector3d> middles_of_faces(const TriangleSoup& soup) {
     std::vector<Vector3d> middles;
     middles.reserve(soup.faces.size());
-    for (const auto& [a, b, c] : soup.faces) {
-        middles.emplace_back((soup.points_mm[static_cast<std::size_t>(a)] +
-                              soup.points_mm[static_cast<std::size_t>(b)] +
-                              soup.points_mm[static_cast<std::size_t>(c)]) /
-                             3.0);
+    for (const auto& face : soup.faces) {
+        middles.push_back(middle_mm(soup.points_mm, face));
     }
     return middles;
 }

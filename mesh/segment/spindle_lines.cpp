@@ -13,6 +13,18 @@ namespace meshwind {
 
 using Eigen::Vector3d;
 
+namespace {
+
+double area_of(const std::vector<WeighedPoint>& points) {
+    double area = 0.0;
+    for (const WeighedPoint& p : points) {
+        area += p.area;
+    }
+    return area;
+}
+
+}  // namespace
+
 std::vector<WeighedPoint> weighed_points(const TriangleSoup& surface) {
     std::vector<WeighedPoint> points(surface.points_mm.size());
     for (std::size_t v = 0; v < points.size(); ++v) {
@@ -54,10 +66,7 @@ double distance_from(const SpindleLine& line, const Vector3d& point) {
 }
 
 double mean_distance_from(const SpindleLine& line, const std::vector<WeighedPoint>& points) {
-    double area = 0.0;
-    for (const WeighedPoint& p : points) {
-        area += p.area;
-    }
+    const double area = area_of(points);
     double radius = 0.0;
     for (const WeighedPoint& p : points) {
         radius += p.area * distance_from(line, p.point) / area;
@@ -66,15 +75,11 @@ double mean_distance_from(const SpindleLine& line, const std::vector<WeighedPoin
 }
 
 double scatter_about(const SpindleLine& line, const std::vector<WeighedPoint>& points) {
-    double area = 0.0;
-    for (const WeighedPoint& p : points) {
-        area += p.area;
-    }
-    double mean = 0.0;
+    const double area = area_of(points);
+    const double mean = mean_distance_from(line, points);
     double square = 0.0;
     for (const WeighedPoint& p : points) {
         const double distance = distance_from(line, p.point);
-        mean += p.area * distance / area;
         square += p.area * distance * distance / area;
     }
     return std::sqrt(std::max(0.0, square - mean * mean));

@@ -477,7 +477,7 @@ void check_own_line(const NcFlavour& flavour, const Machine& machine, const std:
             trouble = reader.moved() ? "it moves, ends the program or ties the fibre on" : "";
         } catch (const InputError& error) {
             // The place is that of the line in no file.
-            trouble = std::string(error.what()).substr(error.place().size() + 2);
+            trouble = error.words();
         }
     }
     if (!trouble.empty()) {

@@ -315,9 +315,9 @@ private:
             try {
                 Reader(machine_.name, machine_).comment_only(line);
             } catch (const InputError& error) {
-                throw InputError("dialect.header_line", machine_.name,
-                                 "controller line \"" + line + "\" cannot be used: " +
-                                     std::string(error.what()).substr(error.place().size() + 2));
+                throw InputError(
+                    "dialect.header_line", machine_.name,
+                    "controller line \"" + line + "\" cannot be used: " + error.words());
             }
             text_ += line + '\n';
         }

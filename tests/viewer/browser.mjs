@@ -1,4 +1,5 @@
 // A browser without network and with software WebGL, and a page that notes whatever goes wrong.
+import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';
@@ -75,7 +76,7 @@ export function withoutWebGl() {
 }
 
 /** Of the page's ground, 0..255. */
-export const luminance = (page) =>
+const luminance = (page) =>
     page.evaluate(() => {
         const [r, g, b] = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number);
         return (r + g + b) / 3;
@@ -84,9 +85,12 @@ export const luminance = (page) =>
 export const state = (page) => page.evaluate(() => window.meshwind.state());
 export const seek = (page, time) => page.evaluate((t) => window.meshwind.seek(t), time);
 
-/** {colours, share}: how many colours a canvas shows (5 bits each), and the share off its corner's. */
-export function look(page, selector) {
-    return page.evaluate((s) => {
+/**
+ * {colours, share, sum, near}: how many colours a canvas shows (5 bits each), the share off its corner's, a sum
+ * that tells two pictures apart, and for each of the hues given the share of the picture that has it, whatever its shade.
+ */
+export function look(page, selector, hues = []) {
+    return page.evaluate(([s, wanted]) => {
         const canvas = document.querySelector(s);
         const copy = document.createElement('canvas');
         copy.width = canvas.width;
@@ -99,14 +103,43 @@ export function look(page, selector) {
         const colours = new Map();
         let off = 0;
         let sum = 0;
+        const near = wanted.map(() => 0);
         for (let i = 0; i < data.length; i += 4) {
             colours.set(key(i), (colours.get(key(i)) ?? 0) + 1);
             if (key(i) !== ground) ++off;
             sum = (sum * 31 + key(i) + data[i + 3]) % 1000000007;
+            const size = Math.hypot(data[i], data[i + 1], data[i + 2]) || 1;
+            wanted.forEach((hue, k) => {
+                const dot = hue[0] * data[i] + hue[1] * data[i + 1] + hue[2] * data[i + 2];
+                if (dot > 0.995 * size * Math.hypot(...hue)) ++near[k];
+            });
         }
         const seen = [...colours.values()].filter((n) => n > 20).length;
-        return { colours: seen, share: (4 * off) / data.length, sum };
-    }, selector);
+        const share = (n) => (4 * n) / data.length;
+        return { colours: seen, share: share(off), sum, near: near.map(share) };
+    }, [selector, hues]);
+}
+
+/** Follows the system's scheme and the page's own switch, and is light on paper. Returns the page as it is for paper. */
+export async function darkAndOnPaper(browser, file, picture) {
+    const page = await open(browser, file, { scheme: 'dark' });
+    assert.ok((await luminance(page)) < 60);
+    await picture(page);
+    await page.click('#theme');
+    assert.ok((await luminance(page)) > 200);
+    await page.click('#theme');
+    await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+    await page.waitForTimeout(200);
+    assert.ok((await luminance(page)) > 200, 'paper is light');
+    return page;
+}
+
+/** Fits a phone's width. Returns the page. */
+export async function narrowPage(browser, file) {
+    const page = await open(browser, file, { viewport: { width: 420, height: 900 } });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= 420, `${wide} px wide`);
+    return page;
 }
 
 /** Runs tests of {name, body} one after the other, and ends the process: 1 where one failed. */

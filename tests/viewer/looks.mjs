@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { look, luminance, open, seek, state, withoutWebGl } from './browser.mjs';
+import { darkAndOnPaper, look, narrowPage, open, seek, state, withoutWebGl } from './browser.mjs';
 import { file, html, picture, pictures, programs, scratch, test, variant } from './run.mjs';
 
 test('opens without a complaint and shows a picture', async (browser) => {
@@ -62,21 +62,11 @@ test('the empty template says that it has no data', async (browser) => {
 });
 
 test('dark, narrow and on paper', async (browser) => {
-    const dark = await open(browser, file, { scheme: 'dark' });
-    assert.ok((await luminance(dark)) < 60);
-    await picture(dark, 'dark');
-    await dark.click('#theme');
-    assert.ok((await luminance(dark)) > 200);
-    await dark.click('#theme');
-    await dark.emulateMedia({ media: 'print', colorScheme: 'dark' });
-    await dark.waitForTimeout(200);
-    assert.ok((await luminance(dark)) > 200, 'paper is light');
+    const dark = await darkAndOnPaper(browser, file, (page) => picture(page, 'dark'));
     assert.ok(await dark.locator('#panel-courses').isVisible());
     assert.ok(!(await dark.locator('.transport').isVisible()));
     if (pictures) await dark.pdf({ path: join(pictures, 'paper.pdf'), format: 'A4' });
-    const narrow = await open(browser, file, { viewport: { width: 420, height: 900 } });
-    const wide = await narrow.evaluate(() => document.documentElement.scrollWidth);
-    assert.ok(wide <= 420, `${wide} px wide`);
+    const narrow = await narrowPage(browser, file);
     if (pictures) await narrow.screenshot({ path: join(pictures, 'narrow.png'), fullPage: true });
     assert.deepEqual([...dark.complaints, ...narrow.complaints], []);
 });

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
-import { look, luminance, open, runTests, withoutWebGl } from './browser.mjs';
+import { darkAndOnPaper, look, narrowPage, open, runTests, withoutWebGl } from './browser.mjs';
 import { arrayOf, readPayload, withPayload } from './payload.mjs';
 
 const file = resolve(process.argv[2] ?? '');
@@ -29,37 +29,15 @@ const test = (name, body) => tests.push({ name, body });
 const words = async (page, selector) =>
     (await page.locator(selector).textContent()).replace(/\s+/g, ' ').trim();
 
-/** Shares of the picture by the nearest of the colours given, whatever their shade. */
-function hues(page, colours) {
-    return page.evaluate((wanted) => {
-        const canvas = document.querySelector('#scene');
-        const copy = document.createElement('canvas');
-        copy.width = canvas.width;
-        copy.height = canvas.height;
-        const paint = copy.getContext('2d');
-        paint.drawImage(canvas, 0, 0);
-        const { data } = paint.getImageData(0, 0, copy.width, copy.height);
-        const found = wanted.map(() => 0);
-        for (let i = 0; i < data.length; i += 4) {
-            const size = Math.hypot(data[i], data[i + 1], data[i + 2]) || 1;
-            wanted.forEach((c, k) => {
-                const length = Math.hypot(...c);
-                const dot = c.reduce((sum, x, j) => sum + (x * data[i + j]) / size / length, 0);
-                if (dot > 0.995) ++found[k];
-            });
-        }
-        return found.map((n) => (4 * n) / data.length);
-    }, colours);
-}
 const kWound = [0x56, 0xb4, 0xe9];
 const kBore = [0x00, 0x9e, 0x73];
 
 test('opens without a complaint and shows the part in its colours', async (browser) => {
     const page = await open(browser, file);
     assert.deepEqual(page.complaints, []);
-    const seen = await look(page, '#scene');
+    const seen = await look(page, '#scene', [kWound]);
     assert.ok(seen.colours >= 20, `only ${seen.colours} colours`);
-    const [wound] = await hues(page, [kWound]);
+    const [wound] = seen.near;
     assert.ok(wound > 0.03, `only ${wound} of the picture is wound wall`);
     const box = await page.evaluate(() => {
         const { scrollWidth, scrollHeight } = document.documentElement;
@@ -81,6 +59,11 @@ test('the lists are those of inspect', async (browser) => {
     }
     for (const rim of mandrel.rims) {
         assert.ok((await words(page, `[data-rim="${rim.id}"]`)).includes(rim.radius.toFixed(3)));
+    }
+    for (const key of ['Unit', 'Size', 'Spindle axis', 'Surface', 'Accuracy']) {
+        const line = payload.header.text.split('\n').find((l) => l.startsWith(key.toLowerCase()));
+        const row = page.locator(`.shape dt:text-is("${key}") + dd`);
+        assert.equal((await row.textContent()).trim(), line.slice(14).trim(), key);
     }
     await page.click('#tab-printed');
     assert.equal(await page.locator('.printed').textContent(), payload.header.text);
@@ -158,11 +141,12 @@ test('cut open the inside is seen; triangles, marks and colours change the pictu
         return (await look(page, '#scene')).sum;
     };
     const first = await drawn();
-    const [closed] = await hues(page, [kBore]);
+    const bore = async () => (await look(page, '#scene', [kBore])).near[0];
+    const closed = await bore();
     await page.click('#cut');
     assert.notEqual(await drawn(), first);
     assert.equal((await state(page)).cut, true);
-    const [opened] = await hues(page, [kBore]);
+    const opened = await bore();
     if (mandrel.regions.some((r) => r.kind === 'bore')) {
         assert.ok(opened > closed + 0.005, `${opened} of the picture is bore, ${closed} before`);
     }
@@ -231,19 +215,9 @@ test('without WebGL the page says so and keeps its lists', async (browser) => {
 });
 
 test('dark, narrow and on paper', async (browser) => {
-    const dark = await open(browser, file, { scheme: 'dark' });
-    assert.ok((await luminance(dark)) < 60);
-    await picture(dark, 'part_dark');
-    await dark.click('#theme');
-    assert.ok((await luminance(dark)) > 200);
-    await dark.click('#theme');
-    await dark.emulateMedia({ media: 'print', colorScheme: 'dark' });
-    await dark.waitForTimeout(200);
-    assert.ok((await luminance(dark)) > 200, 'paper is light');
+    const dark = await darkAndOnPaper(browser, file, (page) => picture(page, 'part_dark'));
     assert.ok(await dark.locator('#panel-printed').isVisible());
-    const narrow = await open(browser, file, { viewport: { width: 420, height: 900 } });
-    const wide = await narrow.evaluate(() => document.documentElement.scrollWidth);
-    assert.ok(wide <= 420, `${wide} px wide`);
+    const narrow = await narrowPage(browser, file);
     if (pictures) await narrow.screenshot({ path: join(pictures, 'part_narrow.png'), fullPage: true });
     assert.deepEqual([...dark.complaints, ...narrow.complaints], []);
 });

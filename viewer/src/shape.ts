@@ -1,5 +1,5 @@
 /** A surface of triangles to be drawn: smooth between its feature edges. */
-import { BufferAttribute, BufferGeometry } from 'three';
+import { BufferAttribute, BufferGeometry, Vector3 } from 'three';
 
 /** Edges that turn by more are features: lines are drawn there and shading breaks. */
 const kFeatureCosine = Math.cos((30 * Math.PI) / 180);
@@ -90,4 +90,27 @@ function featureEdges(normals: Float32Array, points: Float32Array, faces: Uint32
     }
     for (const key of open.keys()) keep(Math.floor(key / count), key % count);
     return new Float32Array(pairs);
+}
+
+/** The normal of the face whose middle is nearest to a place. */
+export function nearestNormal(
+    { points, faces }: { points: Float32Array; faces: Uint32Array },
+    place: Vector3,
+): Vector3 {
+    let best = Infinity;
+    let first = 0;
+    for (let f = 0; f < faces.length; f += 3) {
+        let distance = 0;
+        for (let c = 0; c < 3; ++c) {
+            const sum = points[3 * faces[f] + c] + points[3 * faces[f + 1] + c] + points[3 * faces[f + 2] + c];
+            distance += (sum / 3 - place.getComponent(c)) ** 2;
+        }
+        if (distance < best) {
+            best = distance;
+            first = f;
+        }
+    }
+    const corner = (i: number) => new Vector3().fromArray(points, 3 * faces[first + i]);
+    const a = corner(0);
+    return corner(1).sub(a).cross(corner(2).sub(a)).normalize();
 }

@@ -21,6 +21,7 @@ import { Mandrel } from './mandrel';
 import { Picker } from './picking';
 import type { Hit } from './picking';
 import { View } from './scene';
+import { nearestNormal } from './shape';
 import { cssVariable } from './theme';
 import type { Landing, Moment, Timeline } from './timeline';
 
@@ -164,7 +165,7 @@ export class Stage {
 
     /** Flies to a place of the mandrel frame and marks it. */
     flyTo(place: Vector3): void {
-        const normal = this.nearestNormal(place);
+        const normal = nearestNormal(this.page, place);
         const width = this.page.header.tow.width_mm;
         this.marker.visible = true;
         this.marker.position.copy(place).addScaledVector(normal, 0.15 * width);
@@ -196,28 +197,6 @@ export class Stage {
         const zero = this.kinematics.pose(this.kinematics.axes.map(() => 0)).baseFromMandrel;
         const turned = zero.clone().invert().multiply(this.onMandrel.matrix).elements;
         return (Math.atan2(turned[1], turned[0]) * 180) / Math.PI;
-    }
-
-    private nearestNormal(place: Vector3): Vector3 {
-        const { points, faces } = this.page;
-        let best = Infinity;
-        let first = 0;
-        for (let f = 0; f < faces.length; f += 3) {
-            let distance = 0;
-            for (let c = 0; c < 3; ++c) {
-                const mean =
-                    (points[3 * faces[f] + c] + points[3 * faces[f + 1] + c] + points[3 * faces[f + 2] + c]) /
-                    3;
-                distance += (mean - place.getComponent(c)) ** 2;
-            }
-            if (distance < best) {
-                best = distance;
-                first = f;
-            }
-        }
-        const corner = (i: number) => new Vector3().fromArray(points, 3 * faces[first + i]);
-        const a = corner(0);
-        return corner(1).sub(a).cross(corner(2).sub(a)).normalize();
     }
 
     private makeMarker(width: number): Mesh {

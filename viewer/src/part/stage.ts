@@ -1,6 +1,7 @@
 /** The picture of a part: its body, marks and labels. */
 import { Raycaster, Vector2, Vector3 } from 'three';
 import { View } from '../scene';
+import { nearestNormal } from '../shape';
 import { cssVariable } from '../theme';
 import { Body } from './body';
 import type { Part } from './data';
@@ -125,7 +126,7 @@ export class PartStage {
             words: String(remark + 1),
             title: remarks[remark],
             at: new Vector3(...at),
-            normal: this.nearestNormal(new Vector3(...at)),
+            normal: nearestNormal(this.part, new Vector3(...at)),
         }));
         rims.forEach((rim, i) =>
             labels.push({
@@ -146,25 +147,5 @@ export class PartStage {
             normal: null,
         });
         return labels;
-    }
-
-    private nearestNormal(place: Vector3): Vector3 {
-        const { points, faces } = this.part;
-        let best = Infinity;
-        let first = 0;
-        for (let f = 0; f < faces.length; f += 3) {
-            let distance = 0;
-            for (let c = 0; c < 3; ++c) {
-                const sum = points[3 * faces[f] + c] + points[3 * faces[f + 1] + c] + points[3 * faces[f + 2] + c];
-                distance += (sum / 3 - place.getComponent(c)) ** 2;
-            }
-            if (distance < best) {
-                best = distance;
-                first = f;
-            }
-        }
-        const corner = (i: number) => new Vector3().fromArray(points, 3 * faces[first + i]);
-        const a = corner(0);
-        return corner(1).sub(a).cross(corner(2).sub(a)).normalize();
     }
 }
