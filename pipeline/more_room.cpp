@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "pipeline/plan_layer.h"
+
 namespace meshwind {
 namespace {
 
@@ -20,8 +22,10 @@ int fibres_enough(const std::vector<double>& reach) {
 
 std::optional<Job> more_room(const Job& job, const Plan& plan) {
     Job more = job;
-    if (!job.fibres_given && !plan.reach_of_fibres.empty()) {
-        more.fibres = std::max(job.fibres, fibres_enough(plan.reach_of_fibres));
+    const bool fibres_free = !job.fibres_given && !plan.reach_of_fibres.empty();
+    const int enough = fibres_free ? fibres_enough(plan.reach_of_fibres) : 1;
+    if (fibres_free) {
+        more.fibres = std::max(job.fibres, enough);
     }
     for (const WhatIf& what_if : plan.what_if) {
         if (what_if.rule == WhatIf::Rule::Extension && !job.mandrel.extension_given &&
@@ -29,9 +33,17 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
             more.mandrel.extension_mm *= what_if.factor;
         }
     }
-    const bool same =
-        more.fibres == job.fibres && more.mandrel.extension_mm == job.mandrel.extension_mm;
-    return same ? std::nullopt : std::optional(std::move(more));
+    const auto same = [&] {
+        return more.fibres == job.fibres && more.mandrel.extension_mm == job.mandrel.extension_mm;
+    };
+    // What covers and fails has turns that do not hold. A fibre to spare need not take them, and
+    // one is tried: each more is a run of the whole job.
+    const bool covers =
+        plan.failure.empty() && plan.coverage.fraction >= kCoveredShare * plan.coverage.reachable;
+    if (same() && fibres_free && covers && job.fibres <= enough) {
+        more.fibres = job.fibres + 1;
+    }
+    return same() ? std::nullopt : std::optional(std::move(more));
 }
 
 }  // namespace meshwind

@@ -32,6 +32,20 @@ TEST(MoreRoom, IsLongerExtensionsWhereTheyReachMore) {
     EXPECT_FALSE(more_room(Job(), plan_that_reaches({}, 0.9)));
 }
 
+// What covers and yet fails has turns that do not hold.
+TEST(MoreRoom, IsOneFibreToSpareWhereThePlanCovers) {
+    Plan plan = plan_that_reaches({0.9, 0.9}, 0.9);
+    EXPECT_FALSE(more_room(Job(), plan)) << "nothing is covered";
+    plan.coverage.fraction = 0.89;
+    const auto more = more_room(Job(), plan);
+    ASSERT_TRUE(more);
+    EXPECT_EQ(more->fibres, 2);
+    EXPECT_FALSE(more_room(*more, plan)) << "one is tried";
+    EXPECT_FALSE(more_room(parse_job(R"({"fibres": 1})", "job"), plan));
+    plan.failure = "every course was refused";
+    EXPECT_FALSE(more_room(Job(), plan));
+}
+
 TEST(MoreRoom, LeavesWhatTheJobGives) {
     const Plan plan = plan_that_reaches({0.6, 0.9}, 0.95);
     const Job all = parse_job(R"({"fibres": 1, "mandrel": {"extension": 100}})", "job");
