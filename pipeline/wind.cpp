@@ -287,7 +287,8 @@ bool is_better(const Run& run, const Run& than) {
 }
 
 // "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
-std::string tried_words(const Job& job, const Run& run) {
+std::string tried_words(const Run& run) {
+    const Job& job = run.layers.front().setup.job;
     const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
                                       [](const Check& check) { return !check.ok; });
     return "with " + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
@@ -316,22 +317,27 @@ public:
 
     /// \throws as wind() does for the first job
     void run(const Job& job) {
-        next_ = job;
-        for (int mend = 0; mend <= kMostMends && next_; ++mend) {
-            const Job next = *std::exchange(next_, std::nullopt);
-            if (!best_) {
-                take(next, once(next));
-                continue;
-            }
-            try {
-                take(next, once(next));
-            } catch (const InputError& error) {  // of no use for what stands
-                tried_.push_back(settings_words(next) + " cannot be wound: " + error.what());
-            }
+        next_.reset();
+        if (!best_) {
+            take(once(job));
+            return;
+        }
+        try {
+            take(once(job));
+        } catch (const InputError& error) {  // of no use for what stands
+            tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
         }
     }
 
-    [[nodiscard]] bool done() const { return best_ && stands(*best_); }
+    // More room for the best run, and for what comes of it.
+    void mend() {
+        next_ = room_for(*best_);
+        for (int mend = 0; mend < kMostMends && next_; ++mend) {
+            run(Job(*next_));
+        }
+    }
+
+    [[nodiscard]] bool done() const { return stands(*best_); }
 
     [[nodiscard]] Run best() && {
         if (tried_.size() > 1) {
@@ -345,9 +351,14 @@ public:
     }
 
 private:
-    void take(const Job& job, Run&& run) {
-        tried_.push_back(tried_words(job, run));
-        next_ = stands(run) ? std::nullopt : more_room(job, first_plan(run));
+    static std::optional<Job> room_for(const Run& run) {
+        return stands(run) ? std::nullopt
+                           : more_room(run.layers.front().setup.job, first_plan(run));
+    }
+
+    void take(Run&& run) {
+        tried_.push_back(tried_words(run));
+        next_ = room_for(run);
         if (!best_ || is_better(run, *best_)) {
             best_ = std::move(run);
         }
@@ -374,7 +385,7 @@ private:
     const Machine& machine_;
     const WindOptions& options_;
     std::optional<Run> best_;
-    std::optional<Job> next_;  // that may mend the last run
+    std::optional<Job> next_;  // that may mend the last run that was wound
     std::set<std::string> said_;
     std::vector<std::string> tried_;
 };
@@ -386,16 +397,18 @@ Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
     Trials trials(mandrel, machine, options);
     if (job.mandrel.blend_mm || options.import) {
         trials.run(job);
-        return std::move(trials).best();
-    }
-    for (const double widths : kBlendsInTows) {
-        Job asked = job;
-        asked.mandrel.blend_mm = widths * job.tow.width_mm;
-        trials.run(asked);
-        if (trials.done()) {
-            break;
+    } else {
+        // A blend does more than fibres and extensions do, and takes no longer: all of them before.
+        for (const double widths : kBlendsInTows) {
+            Job asked = job;
+            asked.mandrel.blend_mm = widths * job.tow.width_mm;
+            trials.run(asked);
+            if (trials.done()) {
+                break;
+            }
         }
     }
+    trials.mend();
     return std::move(trials).best();
 }
 

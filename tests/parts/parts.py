@@ -168,7 +168,7 @@ class Asker:
         name = f"part_{truth['seed']}"
         job = self.folder / f"{name}.job.json"
         width = round(0.1 * truth["smallest_diameter_mm"], 2)
-        job.write_text(json.dumps({"tow": {"width": width, "friction": 0.3}}), encoding="utf-8")
+        job.write_text(json.dumps({"tow": {"width": width, "friction": 0.3}, "mandrel": {"blend": "auto"}}), encoding="utf-8")
         code, _, errors, seconds = run(
             [self.options.program, self.folder / truth["file"], "--machine", self.options.machine, "--job", job,
              "--quiet", "-o", self.folder / f"{name}.out", *truth["options"]], self.options.timeout)
