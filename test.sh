@@ -85,6 +85,9 @@ build)
 sanitize)
     with_lock build_instrumented 'fast_tests consumer'
     run_tests asan/meshwind -L '^fast$'
+    # Many of GoogleTest's are one test of CTest there.
+    awk '/^\[  PASSED  \]/ { tests += $4 } END { print tests " tests of GoogleTest passed in them" }' \
+        "$root/build/asan/meshwind/Testing/Temporary/LastTest.log"
     ;;
 fuzz)
     with_lock build_instrumented fuzz_harnesses

@@ -30,7 +30,7 @@ def table(points, header="x,y,z", course=None):
 
 class Post(program.ProgramTest):
     def cylinder(self):
-        return self.make("cylinder", "--radius", "50", "--length", "400", "--edge", "6")
+        return self.make("cylinder", "--radius", "50", "--length", "400", "--edge", "12")
 
     def post(self, points, mandrel, *options, job=None, code=0, out="out"):
         arguments = ["post", points, "--mandrel", mandrel, "--machine", MACHINE, "-o", out]
