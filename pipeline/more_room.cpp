@@ -31,7 +31,6 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
         if (what_if.rule == WhatIf::Rule::Extension && !job.mandrel.extension_given &&
             what_if.reachable > plan.coverage.reachable + kWorthIt) {
             more.mandrel.extension_mm *= what_if.factor;
-            more.mandrel.extension_lengthened = true;
         }
     }
     const auto same = [&] {

@@ -31,12 +31,6 @@ constexpr double kTableReach_mm = 60.0;
 // Reports tell clearances up to so much more than is kept; to measure larger ones takes time.
 constexpr double kToldClearance_mm = 20.0;
 
-// A rim whose axis has less along the spindle, 8 degrees off it, leans.
-constexpr double kAlongSpindle = 0.99;
-
-// Radii of a rim that its longest turns by friction take of an extension.
-constexpr double kTurnsInRadii = 6.0;
-
 // A distance is written with so many digits at least.
 constexpr double kSameDistance_mm = 1e-3;
 
@@ -159,18 +153,6 @@ bool take_rule_of_machine(const Machine& machine, EyeLaw& eye) {
     return true;
 }
 
-// Room for turns, where the job leaves it open. The extension of a leg that leans from the spindle
-// swings about it and comes between head and part: it is no longer there than turns need.
-double usual_extension_mm(double longest_mm, std::span<const Rim> rims) {
-    double widest_mm = 0.0;
-    bool leans = false;
-    for (const Rim& rim : rims) {
-        widest_mm = std::max(widest_mm, rim.radius_mm);
-        leans = leans || std::abs(rim.axis.z()) < kAlongSpindle;
-    }
-    return leans ? std::min(longest_mm, kTurnsInRadii * widest_mm) : longest_mm;
-}
-
 // What follows from machine, job and mandrel.
 void complete(Setup& setup, const fs::path& job_file) {
     setup.rule = collision_rule(setup, job_file);
@@ -229,10 +211,6 @@ Setup make_setup(Mandrel mandrel, const Machine& machine, const Job& job, const 
     setup.dialect = dialect_of(setup.machine, files.machine);
     setup.envelope = head_envelope(setup.machine);
     setup.mandrel = std::move(mandrel);
-    Job::MandrelJob& room = setup.job.mandrel;
-    if (!room.extension_given && !room.extension_lengthened) {
-        room.extension_mm = usual_extension_mm(room.extension_mm, setup.mandrel.rims);
-    }
     if (look_ahead) {
         look_ahead(setup);
     }

@@ -301,10 +301,11 @@ std::string tried_words(const Run& run) {
 
 // What the job has to say for the same run.
 std::string settings_words(const Job& job) {
-    std::string words = "--set fibres=" + std::to_string(job.fibres) +
-                        " --set mandrel.extension=" + fixed(job.mandrel.extension_mm, 0);
+    std::string words = "--set fibres=" + std::to_string(job.fibres) + " --set mandrel.extension=";
+    append_shortest(words, job.mandrel.extension_mm);
     if (job.mandrel.blend_mm > 0.0) {
-        words += " --set mandrel.blend=" + fixed(*job.mandrel.blend_mm, 1);
+        words += " --set mandrel.blend=";
+        append_shortest(words, *job.mandrel.blend_mm);
     }
     return words;
 }
@@ -317,7 +318,6 @@ public:
 
     /// \throws as wind() does for the first job
     void run(const Job& job) {
-        next_.reset();
         if (!best_) {
             take(once(job));
             return;
@@ -333,7 +333,7 @@ public:
     void mend() {
         next_ = room_for(*best_);
         for (int mend = 0; mend < kMostMends && next_; ++mend) {
-            run(Job(*next_));
+            run(*std::exchange(next_, std::nullopt));
         }
     }
 

@@ -73,9 +73,8 @@ struct Job {
         std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
         std::optional<double> blend_mm = 0.0;  ///< 0: crotches and steps stay sharp; none: by trial
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;
-        double extension_mm = 100.0;        ///< >= 0; room for turns beyond each rim
-        bool extension_given = false;       ///< by the job's author; else it is fitted to the part
-        bool extension_lengthened = false;  ///< where it was not given, as a mend
+        double extension_mm = 100.0;   ///< >= 0; room for turns beyond each rim
+        bool extension_given = false;  ///< by the job's author; else it may be made longer
         TurnKind turn = TurnKind::Friction;
         PinWish pins{};  ///< read where the kind of turn does (turn_kinds.h)
     };

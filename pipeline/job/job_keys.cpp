@@ -162,9 +162,8 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
         blend_key(),
         mesh_key(),
         told(number("extension", &Owner::extension_mm, kExtensionRange,
-                    "mm of room beyond each rim where the fibre turns; where it is not given, six "
-                    "radii of the widest rim at most if a rim leans from the spindle, and longer "
-                    "ones are tried where checks fail"),
+                    "mm of room beyond each rim where the fibre turns; where it is not given, and "
+                    "checks fail, longer ones are tried"),
              &Owner::extension_given),
         turn_key(),
         only_if<Owner>([](const Owner& mandrel) { return traits_of(mandrel.turn).reads_pins; },

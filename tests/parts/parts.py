@@ -6,7 +6,7 @@
 GENERATOR is the program of cad_part.cpp; part SEED, SEED + 1 ... are made. `inspect` understands a part if it finds the
 unit, a rim on each end (radius within 1 %, centre within 2 % of the radius from the leg's axis, direction within a
 degree, where the end is) and the spindle axis, where the truth names one. A part with a cause must be refused in one line
-with exit code 2, by `inspect` or by the main job. With --wind the main job runs on the first N parts.
+with exit code 2, by `inspect` or by the main job. With --wind the main job runs on the first N parts, and chooses a blend.
 
 Prints a table, one line for each part, and sums. Exit code 0 if 98 % of the parts without a cause are understood and 80 %
 of those that were to be wound are, else 1; 2 if a part cannot be made.

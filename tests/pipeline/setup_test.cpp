@@ -2,7 +2,6 @@
 #include "pipeline/setup.h"
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -247,26 +246,6 @@ TEST(Setup, ForAnotherMandrelMachineAndJobAreKept) {
     for (const double z_mm : {0.0, rim_mm + 19.0}) {
         EXPECT_NEAR(inward_hit_mm(*next.obstacles, z_mm), 45.0, kHit_mm);
     }
-}
-
-// The extension of a leg that leans swings about the spindle.
-TEST(Setup, ExtensionsOfLeaningLegsAreNoLongerThanTheirTurnsNeed) {
-    const auto extension_mm = [](Mandrel mandrel, const Job& job) {
-        return make_setup(std::move(mandrel), shipped("six_axis"), job).job.mandrel.extension_mm;
-    };
-    const auto thin = [] {
-        return test::made(
-            "elbow", {{"pipe-radius", 8.0}, {"bend-radius", 24.0}, {"leg1", 30.0}, {"leg2", 30.0}},
-            3.0);
-    };
-    EXPECT_NEAR(extension_mm(thin(), Job()), 48.0, 0.01);
-    EXPECT_EQ(extension_mm(small_pipe(), Job()), 100.0) << "along the spindle";
-    EXPECT_EQ(extension_mm(test::small_tee(10.0), Job()), 100.0) << "wide legs";
-    EXPECT_EQ(extension_mm(thin(), parse_job(R"({"mandrel": {"extension": 90}})", "job")), 90.0);
-    Job mended;
-    mended.mandrel.extension_mm = 72.0;
-    mended.mandrel.extension_lengthened = true;
-    EXPECT_EQ(extension_mm(thin(), mended), 72.0);
 }
 
 }  // namespace
