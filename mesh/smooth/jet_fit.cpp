@@ -20,6 +20,13 @@ constexpr std::size_t kMaxNeighbours =
 // its coefficient would be amplified a hundredfold and is not determined.
 constexpr double kDetermined = 1e-2;
 
+// Below this share a column is badly determined, as at the end of a wall, to one side of which
+// there is nothing: what a polynomial of its degree misses by comes out tenfold or more. Such a
+// degree is kept where it makes the slope so many times better than the degree below it, by
+// standard errors.
+constexpr double kWellDetermined = 1e-1;
+constexpr double kClearlyBetter = 2.0;
+
 // Neighbours beyond the unknowns: an exactly determined fit would follow noise.
 constexpr std::size_t kSpareNeighbours = 2;
 
@@ -85,8 +92,37 @@ public:
         direction_[count_] = column / left;
         row.height = direction_[count_].dot(rest_);
         rest_ -= row.height * direction_[count_];
+        row.well_determined =
+            left > kWellDetermined * size && (count_ == 0 || row_[count_ - 1].well_determined);
+        row.misfit = rest_.squaredNorm();
         row_[count_++] = row;
         return true;
+    }
+
+    // Whether the first `count` columns are, one and all.
+    [[nodiscard]] bool well_determined(std::size_t count) const {
+        return row_[count - 1].well_determined;
+    }
+
+    // Standard error of the first two coefficients in a fit with the first `count` columns, as its
+    // misfit tells it. \pre there are more neighbours than columns
+    [[nodiscard]] std::array<double, 2> errors(std::size_t count) const {
+        const auto spare = static_cast<double>(rest_.size()) - static_cast<double>(count);
+        std::array<double, 2> error{};
+        for (std::size_t wanted = 0; wanted < error.size(); ++wanted) {
+            std::array<double, kJetTerms> inverse{};  // row of the inverse of the shares
+            double sum = 0.0;
+            for (std::size_t k = wanted; k < count; ++k) {
+                double value = k == wanted ? 1.0 : 0.0;
+                for (std::size_t j = wanted; j < k; ++j) {
+                    value -= row_[k].share[j] * inverse[j];
+                }
+                inverse[k] = value / row_[k].share[k];
+                sum += inverse[k] * inverse[k];
+            }
+            error[wanted] = std::sqrt(sum * row_[count - 1].misfit / spare);
+        }
+        return error;
     }
 
     // Coefficients of the first `count` columns that were taken.
@@ -108,6 +144,8 @@ private:
     struct Row {
         std::array<double, kJetTerms> share{};  // of the directions in this column
         double height = 0.0;                    // of the heights along this direction
+        double misfit = 0.0;                    // squares of the heights that are left
+        bool well_determined = false;           // this column and those before it
     };
     Column rest_;
     std::array<Column, kJetTerms> direction_;
@@ -222,6 +260,14 @@ std::optional<Jet> fit_jet(const Vector3d& centre, const Vector3d& normal_guess,
         if (fit.count() == kTermsTo[at(d)]) {
             degree = d;
         }
+    }
+    const auto slope_error = [&](int d) {
+        const std::array<double, 2> error = fit.errors(kTermsTo[at(d)]);
+        return std::hypot(error[0] / s.x_mm, error[1] / s.y_mm);
+    };
+    while (degree > 2 && !fit.well_determined(kTermsTo[at(degree)]) &&
+           kClearlyBetter * slope_error(degree) > slope_error(degree - 1)) {
+        --degree;
     }
     // The plane and some curvature at least.
     if (degree < 1 || tried < kTermsTo[2] || fit.count() == kTermsTo[1]) {

@@ -151,6 +151,35 @@ TEST(FitJet, RefusesWhatIsNoNumber) {
     EXPECT_FALSE(fit_jet(Vector3d::Zero(), Vector3d::UnitZ(), broken, 3));
 }
 
+// At the end of a wall there are neighbours on one side alone, here in three rows of a cylinder as
+// even meshes have them beside a rim. Three rows hardly tell a cubic: what a polynomial misses
+// would come out in its slope, 12 deg of it.
+TEST(FitJet, LooksStraightAlongACylinderFromItsEnd) {
+    constexpr double kRadius_mm = 17.0;
+    const auto at = [](double depth_mm, double arc_mm) {
+        const double angle = arc_mm / kRadius_mm;
+        return Vector3d(depth_mm, kRadius_mm * std::sin(angle), kRadius_mm * std::cos(angle));
+    };
+    std::vector<Vector3d> neighbours;
+    for (const double arc : {3.24, 6.48}) {
+        neighbours.insert(neighbours.end(), {at(0.0, arc), at(0.0, -arc)});
+    }
+    for (const double arc : {2.18, 0.56, 4.3, 2.99, 3.49}) {
+        neighbours.insert(neighbours.end(), {at(2.65, arc), at(2.65, -arc)});
+    }
+    for (const double arc : {1.11, 2.73, 0.3}) {
+        neighbours.insert(neighbours.end(), {at(5.31, arc), at(5.31, -arc)});
+    }
+    neighbours.push_back(at(2.65, -0.15));
+    for (const double tilt_deg : {-2.0, -1.0, 0.0, 1.0, 2.0}) {  // of facets beside the end
+        const double tilt = rad_from_deg(tilt_deg);
+        const auto jet =
+            fit_jet(at(0.0, 0.0), Vector3d(std::sin(tilt), 0.0, std::cos(tilt)), neighbours);
+        ASSERT_TRUE(jet);
+        EXPECT_LT(deg_from_rad(std::acos(std::min(1.0, jet->normal.z()))), 0.3) << tilt_deg;
+    }
+}
+
 // A guess 60 deg off the true normal: the heights are no function any user meant.
 TEST(FitJet, RefusesANormalFarFromTheGuess) {
     const std::vector<Vector3d> points = points_on({}, 20);
