@@ -255,7 +255,7 @@ class MainJob(program.ProgramTest):
         """Each has a program of its own that holds; with fewer fibres no old file stays."""
         self.make("tee", "--edge", "8", "--run-length", "240", "--branch-length", "140")
         machine = json.loads((program.SOURCE / "machines/six_axis.json").read_text())
-        machine["fibre"]["min_free_length"] = 160
+        machine["fibre"]["min_free_length"] = 200
         self.write("machine.json", json.dumps(machine))
         files = {"program.ngc", "path.csv", "motion.csv", "fibre.obj", "fibre.step"}
         more = {"program-2.ngc", "path-2.csv", "motion-2.csv", "fibre-2.obj", "fibre-2.step"}

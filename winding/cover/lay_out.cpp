@@ -17,8 +17,18 @@ constexpr double kStation_mm = 4.0;
 // And in halves of turns that are only looked into: the turns themselves are checked in the end.
 constexpr double kHalfTurnStation_mm = 10.0;
 
+// But what is said to hide the free fibre is looked at on straight ways from station to station,
+// and those lie under a round wall: by no more than this share of the height at which the fibre
+// begins, or the wall itself would hide it.
+constexpr double kMostSag = 0.5;
+
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
+}
+
+double half_turn_station_mm(const CourseRules& rules, const Rim& rim) {
+    const double sag_mm = kMostSag * rules.free_fibre.stand_off_mm;
+    return std::min(kHalfTurnStation_mm, std::sqrt(8.0 * rim.radius_mm * sag_mm));
 }
 
 Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
@@ -63,7 +73,8 @@ Piece piece_of(const CourseRules& rules, const Member& member, bool backward) {
 void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
                     std::vector<Piece>& pieces) {
     const auto half = [&](const RimCrossing& end) {
-        return half_turn(rules.mandrel.rims[at(end.rim)], end, rules.turn, kHalfTurnStation_mm);
+        const Rim& rim = rules.mandrel.rims[at(end.rim)];
+        return half_turn(rim, end, rules.turn, half_turn_station_mm(rules, rim));
     };
     const RimCrossing& start = start_of(member, backward);
     const RimCrossing& end = end_of(member, backward);
