@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -31,6 +32,9 @@ namespace fs = std::filesystem;
 
 // Radii that are tried where the blend is yet to be chosen, in tow widths.
 constexpr std::array kBlendsInTows{0.0, 1.0, 2.0, 3.0};
+
+// To the micrometre: a few digits then name them.
+constexpr double kBlendsPerMm = 1000.0;
 
 // More fibres and longer extensions are tried so many times at most.
 constexpr int kMostMends = 2;
@@ -401,7 +405,8 @@ Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
         // A blend does more than fibres and extensions do, and takes no longer: all of them before.
         for (const double widths : kBlendsInTows) {
             Job asked = job;
-            asked.mandrel.blend_mm = widths * job.tow.width_mm;
+            asked.mandrel.blend_mm =
+                std::round(kBlendsPerMm * widths * job.tow.width_mm) / kBlendsPerMm;
             trials.run(asked);
             if (trials.done()) {
                 break;
