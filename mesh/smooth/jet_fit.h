@@ -25,9 +25,11 @@ struct Jet {
 };
 
 /// Least-squares fit of z = polynomial(x, y) through `centre` over the plane of `normal_guess`, of
-/// the highest degree up to `max_degree` that the neighbours determine. Where not even all
-/// quadratic terms are determined, as on long facets between two end circles, the undetermined
-/// terms are left out: the surface is taken as ruled where nothing is known of it.
+/// the highest degree up to `max_degree` that the neighbours determine. One that they determine
+/// badly, as to one side of a wall's end, is kept only if the slope is clearly better by its
+/// standard error. Where not even all quadratic terms are determined, as on long facets between
+/// two end circles, the undetermined terms are left out: the surface is taken as ruled where
+/// nothing is known of it.
 /// \param neighbours points of the same smooth surface, without `centre` \param max_degree 2 to 4
 /// \return nothing when the neighbours are too few or lie on a line
 /// Accuracy: normals of order `degree`, curvature of order `degree` - 1 in the neighbours'
