@@ -222,7 +222,7 @@ class Winder:
         write_obj(file, points, faces)
         yield "slivers", file
         file = self.folder / f"{part}_shaken.obj"
-        write_obj(file, *shaken(*read_obj(self.made(part, 4)), seed=1))
+        write_obj(file, *shaken(*read_obj(self.made(part, 2)), seed=1))
         yield "shaken", file
         if part in CAD:
             yield "one row of facets", ROOT / "data/meshes/cad" / CAD[part]
