@@ -1,4 +1,4 @@
-// The tracer and the freezing of a surface on irregular tori of real part sizes.
+// The tracer and the freezing of a surface on irregular tori of real part sizes; bridges on a tee.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +15,7 @@
 
 #include "bench/unfolding_kernel.h"
 #include "core/units.h"
+#include "geodesic/bridge.h"
 #include "geodesic/trace.h"
 #include "mesh/edge_table.h"
 #include "mesh/segment/feature_edges.h"
@@ -42,9 +43,9 @@ struct Parts {
     }
 };
 
-Parts torus_parts(double edge_mm) {
+Parts parts_of(const char* kind, const meshwind::MakeValues& values, double edge_mm) {
     Parts parts;
-    parts.soup = meshwind::make_mandrel("torus", {}, {.edge_mm = edge_mm, .irregular = true});
+    parts.soup = meshwind::make_mandrel(kind, values, {.edge_mm = edge_mm, .irregular = true});
     const auto neighbours = meshwind::face_neighbours(parts.soup.faces);
     parts.feature = meshwind::feature_edges(
         parts.soup.faces, meshwind::steady_normals(parts.soup, neighbours), neighbours);
@@ -57,8 +58,9 @@ Parts torus_parts(double edge_mm) {
 const meshwind::Surface& torus(double edge_mm) {
     static std::map<double, meshwind::Surface> made;
     const auto known = made.find(edge_mm);
-    return known != made.end() ? known->second
-                               : made.emplace(edge_mm, torus_parts(edge_mm).freeze()).first->second;
+    return known != made.end()
+               ? known->second
+               : made.emplace(edge_mm, parts_of("torus", {}, edge_mm).freeze()).first->second;
 }
 
 struct Start {
@@ -166,7 +168,7 @@ const bool kRegistered = [] {
 
 /// Adjacency, corners and cubic fits; items are triangles.
 void freeze_torus(benchmark::State& state, double edge_mm) {
-    const Parts parts = torus_parts(edge_mm);
+    const Parts parts = parts_of("torus", {}, edge_mm);
     for (auto _ : state) {
         benchmark::DoNotOptimize(parts.freeze());
     }
@@ -176,5 +178,35 @@ void freeze_torus(benchmark::State& state, double edge_mm) {
 BENCHMARK_CAPTURE(freeze_torus, 10k, 9.5)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(freeze_torus, 100k, 3.0)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(freeze_torus, 1M_large, 0.96)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// From 512 places of a tee of 50 mm radius, scaled: where the straight fibre meets the wall again.
+/// Walking along the wall alone takes turns with asking the lifted wall as well; `x_walked` is the
+/// time of the second divided by that of the first, medians of the same run.
+void look_ahead_on_tee(benchmark::State& state, double scale) {
+    const meshwind::MakeValues values{{"run-radius", 50.0 * scale},
+                                      {"branch-radius", 40.0 * scale},
+                                      {"blend-radius", 15.0 * scale},
+                                      {"run-length", 400.0 * scale},
+                                      {"branch-length", 236.0 * scale}};
+    const meshwind::Surface tee = parts_of("tee", values, 4.0 * scale).freeze();
+    const meshwind::LiftedWall lifted(tee);
+    const std::vector<Start> starts = random_starts(tee);
+    const auto look = [&](const meshwind::LiftedWall* wall) {
+        for (const Start& start : starts) {
+            benchmark::DoNotOptimize(
+                meshwind::bridge_ahead(tee, meshwind::FieldWalker(tee, start.at), start.direction,
+                                       meshwind::bridge_reach_mm(tee), wall));
+        }
+    };
+    std::vector<double> asked_s;
+    std::vector<double> walked_s;
+    for (auto _ : state) {
+        asked_s.push_back(seconds([&] { look(&lifted); }));
+        walked_s.push_back(seconds([&] { look(nullptr); }));
+    }
+    state.counters["x_walked"] = median(asked_s) / median(walked_s);
+}
+BENCHMARK_CAPTURE(look_ahead_on_tee, full, 1.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(look_ahead_on_tee, quarter, 0.25)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -50,22 +50,39 @@ public:
     // > 0 where the wall turns away; a fibre touches it where this rises through zero.
     [[nodiscard]] double away_mm() const { return scout_.normal().dot(sight()); }
 
-private:
     [[nodiscard]] Vector3d sight() const { return scout_.position_mm() - from_mm_; }
 
+    // On a line of sight from where the fibre begins, beside the wall here.
+    // \param line unit
+    [[nodiscard]] Vector3d on_line_mm(const Vector3d& line) const {
+        return from_mm_ + line.dot(sight()) * line;
+    }
+    // Of the line over the wall here.
+    [[nodiscard]] double height_mm(const Vector3d& line) const {
+        return scout_.normal().dot(on_line_mm(line) - scout_.position_mm());
+    }
+
+private:
     Vector3d from_mm_;
     Vector3d along_;
     FieldWalker scout_;
 };
 
-// How far ahead a fibre from `from` touches the wall that stands over it; 0 where none does.
-double contact_ahead(const FieldWalker& from, const Vector3d& along, double reach_mm,
-                     double step_mm) {
+// The place ahead that stands highest over a fibre, to a step.
+struct Highest {
+    double ahead_mm = 0.0;
+    double beyond_mm = 0.0;           // a step beyond it, where the wall turns away there
+    std::optional<Lookout> before{};  // a step before it
+};
+
+// Where the wall stands over a fibre from `from` and turns away again; nothing where it does not.
+std::optional<Highest> highest_ahead(const FieldWalker& from, const Vector3d& along,
+                                     double reach_mm, double step_mm, const LiftedWall* lifted) {
+    Highest found;
+    double over_rad = kTouch_rad;
+    Vector3d line = along;  // of sight, over all of the wall up to here
+    bool asked = false;     // whether anything further on stands over it
     Lookout last(from, along);
-    std::optional<Lookout> before;  // a step before the highest place
-    double highest = kTouch_rad;
-    double highest_at = 0.0;
-    double beyond = 0.0;  // a step beyond the highest place, where the wall turns away there
     for (double ahead = step_mm; ahead < reach_mm; ahead += step_mm) {
         Lookout here = last;
         if (!here.go(ahead)) {
@@ -73,28 +90,39 @@ double contact_ahead(const FieldWalker& from, const Vector3d& along, double reac
         }
         const double over = here.over_rad();
         // Of a stretch along which the fibre lies on the wall, the end.
-        if (over > kTouch_rad && over >= highest - kTouch_rad) {
-            highest = std::max(highest, over);
-            highest_at = ahead;
-            before = last;
-            beyond = 0.0;
+        if (over > kTouch_rad && over >= over_rad - kTouch_rad) {
+            over_rad = std::max(over_rad, over);
+            found = {ahead, 0.0, last};
+            line = here.sight().normalized();
+            asked = false;
         }
-        if (highest_at > 0.0 && beyond == 0.0 && here.away_mm() > 0.0) {
-            beyond = ahead;
+        if (found.before && found.beyond_mm == 0.0 && here.away_mm() > 0.0) {
+            found.beyond_mm = ahead;
+        }
+        const bool rises = found.before && found.beyond_mm == 0.0;
+        if (lifted != nullptr && !asked && !rises && here.height_mm(line) > lifted->height_mm()) {
+            asked = true;
+            if (lifted->is_free(here.on_line_mm(line), from.position_mm() + reach_mm * line)) {
+                break;
+            }
         }
         last = here;
     }
-    if (beyond == 0.0) {
-        return 0.0;  // none, or a wall that rises on
+    // Without a step beyond it there is none, or a wall that rises on.
+    return found.beyond_mm > 0.0 ? std::optional(found) : std::nullopt;
+}
+
+// How far ahead the fibre touches there.
+double contact_mm(const Highest& highest, double step_mm) {
+    double low = highest.ahead_mm - step_mm;
+    double high = highest.beyond_mm;
+    if (low <= 0.0 || highest.before->away_mm() >= 0.0) {
+        return highest.ahead_mm;
     }
-    double low = highest_at - step_mm;
-    double high = beyond;
-    if (low <= 0.0 || before->away_mm() >= 0.0) {
-        return highest_at;
-    }
+    Lookout last = *highest.before;
     for (int i = 0; i < kContactHalvings; ++i) {
         const double middle = 0.5 * (low + high);
-        last = *before;
+        last = *highest.before;
         (last.go(middle) && last.away_mm() < 0.0 ? low : high) = middle;
     }
     return last.ahead_mm();
@@ -118,8 +146,9 @@ struct Leaving {
 
 class TautTracer {
 public:
-    TautTracer(const Surface& surface, const Steering& steering, const TraceOptions& options)
-        : surface_(surface), steering_(steering), options_(options) {
+    TautTracer(const Surface& surface, const Steering& steering, const TraceOptions& options,
+               const LiftedWall* lifted)
+        : surface_(surface), steering_(steering), options_(options), lifted_(lifted) {
         options_.method = TraceMethod::Patches;
     }
 
@@ -196,30 +225,40 @@ private:
 
     [[nodiscard]] std::optional<Bridge> bridge_at(const PathPoint& place) const {
         return bridge_ahead(surface_, FieldWalker(surface_, place.at), place.tangent,
-                            bridge_reach_mm(surface_));
+                            bridge_reach_mm(surface_), lifted_);
+    }
+    [[nodiscard]] bool is_under_wall(const PathPoint& place) const {
+        return highest_ahead(FieldWalker(surface_, place.at), place.tangent,
+                             bridge_reach_mm(surface_), kStepEdges * surface_.mean_edge_mm, lifted_)
+            .has_value();
     }
 
     // Halves the way from a station before a bridge to one after its beginning.
     void refine(const PathPoint& before, double way_mm, Leaving& leaving) const {
         double low = 0.0;
         double high = way_mm;
+        PathPoint first = leaving.place;
         for (int i = 0; i < kHalvings; ++i) {
             const double middle = 0.5 * (low + high);
             PathPoint place = stretch(before.at, before.tangent, middle).path.back();
             place.s_mm += before.s_mm;
-            if (auto bridge = bridge_at(place)) {
-                leaving.bridge = std::move(*bridge);
-                leaving.place = place;
+            if (is_under_wall(place)) {
+                first = place;
                 high = middle;
             } else {
                 low = middle;
             }
+        }
+        if (auto bridge = bridge_at(first)) {
+            leaving.bridge = std::move(*bridge);
+            leaving.place = first;
         }
     }
 
     const Surface& surface_;
     Steering steering_;
     TraceOptions options_;
+    const LiftedWall* lifted_;
 };
 
 }  // namespace
@@ -229,17 +268,19 @@ double bridge_reach_mm(const Surface& surface) {
 }
 
 std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& from,
-                                   const Vector3d& along, double reach_mm) {
+                                   const Vector3d& along, double reach_mm,
+                                   const LiftedWall* lifted) {
     const double step = kStepEdges * surface.mean_edge_mm;
-    const double contact_mm = contact_ahead(from, along, reach_mm, step);
-    if (contact_mm == 0.0) {
+    const std::optional<Highest> highest = highest_ahead(from, along, reach_mm, step, lifted);
+    if (!highest) {
         return std::nullopt;
     }
+    const double contact = contact_mm(*highest, step);
     Bridge bridge{{}, {}, from};
     const Vector3d& start = from.position_mm();
     double length_mm = 0.0;
-    for (double ahead = 0.0; ahead < contact_mm;) {
-        ahead = std::min(ahead + step, contact_mm);
+    for (double ahead = 0.0; ahead < contact;) {
+        ahead = std::min(ahead + step, contact);
         const Vector3d target = start + ahead * along;
         const FieldWalk walk = bridge.far.walk(shadow(target, along, step), kMaxDetour * step, step,
                                                [&](const PathPoint& station) {
@@ -263,8 +304,9 @@ std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& fr
 }
 
 TraceResult trace_taut(const Surface& surface, const SurfacePoint& start, const Vector3d& direction,
-                       const Steering& steering, const TraceOptions& options) {
-    return TautTracer(surface, steering, options).run(start, direction);
+                       const Steering& steering, const TraceOptions& options,
+                       const LiftedWall* lifted) {
+    return TautTracer(surface, steering, options, lifted).run(start, direction);
 }
 
 }  // namespace meshwind

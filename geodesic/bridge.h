@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geodesic/field_walk.h"
+#include "geodesic/lifted_wall.h"
 #include "geodesic/trace.h"
 
 namespace meshwind {
@@ -32,8 +33,10 @@ struct Bridge {
 /// Follows the straight fibre that leaves the wall at `from` along the unit vector `along`, over
 /// the wall below it, and takes the place that stands highest, seen from `from`: there the fibre
 /// touches. Nothing where the wall stays below the fibre over `reach_mm`.
+/// \param lifted of the same surface, where it is at hand: no other bridge is found, but sooner
 [[nodiscard]] std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& from,
-                                                 const Eigen::Vector3d& along, double reach_mm);
+                                                 const Eigen::Vector3d& along, double reach_mm,
+                                                 const LiftedWall* lifted = nullptr);
 
 /// trace() by TraceMethod::Patches of the path that a taut fibre takes: where its tangent meets the
 /// wall further on it leaves the wall, runs straight, and goes on from there in the direction in
@@ -41,7 +44,8 @@ struct Bridge {
 /// straight fibre over it. Bridges of less than kLeastBridge_mm are left as the path over the wall.
 [[nodiscard]] TraceResult trace_taut(const Surface& surface, const SurfacePoint& start,
                                      const Eigen::Vector3d& direction, const Steering& steering,
-                                     const TraceOptions& options);
+                                     const TraceOptions& options,
+                                     const LiftedWall* lifted = nullptr);
 
 inline constexpr double kLeastBridge_mm = 0.002;
 

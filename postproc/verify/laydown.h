@@ -51,6 +51,8 @@ public:
         return hollow_[static_cast<std::size_t>(face)] != 0;
     }
 
+    [[nodiscard]] const LiftedWall& lifted() const { return lifted_; }
+
     /// The nearest place of the wall.
     /// \throws InputError verify.tie_on where it is more than two edges off, and 1 mm
     [[nodiscard]] SurfacePoint nearest(const Eigen::Vector3d& place_mm) const;
@@ -61,6 +63,7 @@ private:
     std::vector<Pin> pins_;
     std::vector<char> hollow_;  // per face
     RayQuery facets_;
+    LiftedWall lifted_;
 };
 
 /// When a station was laid.

@@ -100,6 +100,28 @@ TEST(BridgeAhead, NothingWhereTheWallStaysBelowOrTheReachIsTooShort) {
     EXPECT_FALSE(bridge_ahead(hourglass(), from, lowered, 20.0));
 }
 
+TEST(BridgeAhead, IsTheSameWhereALiftedWallTellsThatThereIsNone) {
+    const LiftedWall lifted(hourglass());
+    int bridges = 0;
+    int none = 0;
+    for (double z_mm = -23.3; z_mm < 24.0; z_mm += 3.1) {
+        for (double angle_deg = 0.0; angle_deg < 90.0; angle_deg += 5.0) {
+            const Start start = start_of(z_mm, rad_from_deg(angle_deg));
+            const FieldWalker from(hourglass(), start.at);
+            const auto walked = bridge_ahead(hourglass(), from, start.direction, kBridgeReach_mm);
+            const auto told =
+                bridge_ahead(hourglass(), from, start.direction, kBridgeReach_mm, &lifted);
+            ASSERT_EQ(walked.has_value(), told.has_value());
+            (walked ? bridges : none) += 1;
+            if (walked) {
+                EXPECT_EQ(walked->far.position_mm(), told->far.position_mm());
+            }
+        }
+    }
+    EXPECT_GT(bridges, 20);
+    EXPECT_GT(none, 20);
+}
+
 TEST(TraceTaut, MeridianLeavesAndLandsWhereTheCommonTangentTouches) {
     const Hourglass shape;
     const TraceResult taut = taut_path(0.0);

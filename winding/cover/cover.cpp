@@ -79,6 +79,7 @@ public:
           samples_(sample_surface(mandrel.surface, sample_spacing_mm(mandrel, options),
                                   seed_of(Stream::Sampling, options.context.seed))),
           footprints_(mandrel.surface, samples_, options.tow.width_mm),
+          lifted_(mandrel.surface),
           rules_{mandrel,
                  obstacles,
                  footprints_,
@@ -89,6 +90,7 @@ public:
         rules_.turn.friction = options.tow.friction;
         rules_.turn.band_mm = options.tow.width_mm;
         rules_.angle_rad = options.angle_rad;
+        rules_.lifted = &lifted_;
         rules_.free_fibre.clearance_mm += margin::kCandidates_mm;
         plan_.planner = Planner::Cover;
         plan_.effort.seed = options.context.seed;
@@ -550,6 +552,7 @@ private:
     const Windability* machine_;
     CoverageSamples samples_;
     FootprintFinder footprints_;
+    LiftedWall lifted_;
     CourseRules rules_;
     Library library_;
     std::vector<Member>& members_ = library_.members;  // then the courses of the plan

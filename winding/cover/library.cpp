@@ -43,7 +43,7 @@ TraceResult trace_half(const CourseRules& rules, const Candidate& candidate, dou
     const TraceOptions options{.max_length_mm = rules.max_half_length_mm, .method = method};
     return method == TraceMethod::Walk
                ? trace(surface, candidate.seed, direction, steering, options)
-               : trace_taut(surface, candidate.seed, direction, steering, options);
+               : trace_taut(surface, candidate.seed, direction, steering, options, rules.lifted);
 }
 
 SurfacePath join_halves(const SurfacePath& behind, const SurfacePath& ahead) {

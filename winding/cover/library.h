@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geodesic/lifted_wall.h"
 #include "geodesic/measure.h"
 #include "geodesic/trace.h"
 #include "mesh/mandrel.h"
@@ -30,7 +31,8 @@ struct CourseRules {
     FreeFibreRule free_fibre;
     double max_half_length_mm =
         1e4;  ///< a candidate that meets no rim within this circles for ever
-    std::optional<double> angle_rad{};  ///< wanted winding angle
+    std::optional<double> angle_rad{};   ///< wanted winding angle
+    const LiftedWall* lifted = nullptr;  ///< of the mandrel's surface, where it is at hand
 };
 
 /// The unit tangent along which a candidate leaves its seed.

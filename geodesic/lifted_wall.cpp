@@ -1,0 +1,120 @@
+#include "geodesic/lifted_wall.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "mesh/smooth/patch.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+
+// Places of a patch at which its height over the facet is measured: the middles of the edges and of
+// the triangle. Between them it may be somewhat more.
+const std::array<Eigen::Vector2d, 4> kMeasured{
+    {{0.5, 0.0}, {0.5, 0.5}, {0.0, 0.5}, {1.0 / 3.0, 1.0 / 3.0}}};
+constexpr double kBetween = 1.5;
+
+// Rays are in single precision: 1e-7 of the size of the scene.
+constexpr double kSingle = 1e-6;
+
+// Where an edge is so sharp that its facets are lifted by less of the way of its vertices, no ray
+// tells anything.
+constexpr double kLeastShare = 0.2;
+
+// The facets are over the wall by what they are lifted, and by what patches are under them.
+constexpr double kOver = 2.0;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+double size_mm(const Surface& surface) {
+    Eigen::AlignedBox3d box;
+    for (const Vector3d& p : surface.position_mm) {
+        box.extend(p);
+    }
+    return box.diagonal().norm();
+}
+
+// How far the patch over a face is off it.
+double off_mm(const Surface& surface, std::size_t face) {
+    const auto& v = surface.face[face];
+    const Vector3d& a = surface.position_mm[at(v[0])];
+    const Vector3d along_u = surface.position_mm[at(v[1])] - a;
+    const Vector3d along_v = surface.position_mm[at(v[2])] - a;
+    const Patch patch(surface, static_cast<std::int32_t>(face));
+    double most = 0.0;
+    for (const Eigen::Vector2d& uv : kMeasured) {
+        const Vector3d flat = a + uv.x() * along_u + uv.y() * along_v;
+        most = std::max(most, (patch.at(uv).position_mm - flat).norm());
+    }
+    return most;
+}
+
+struct Lifted {
+    std::vector<Vector3d> position_mm;  // per vertex
+    double highest_mm = 0.0;
+};
+
+// Every vertex goes out so far that each facet about it is lifted by as much as its patch is off.
+Lifted lift(const Surface& surface) {
+    const double least_mm = kSingle * size_mm(surface);
+    std::vector<Vector3d> facet_normal(surface.face.size());
+    std::vector<Vector3d> normal(surface.position_mm.size(), Vector3d::Zero());
+    std::vector<double> needed_mm(surface.position_mm.size(), least_mm);
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const auto& v = surface.face[f];
+        const Vector3d& a = surface.position_mm[at(v[0])];
+        const Vector3d along_u = surface.position_mm[at(v[1])] - a;
+        const Vector3d along_v = surface.position_mm[at(v[2])] - a;
+        facet_normal[f] = along_u.cross(along_v).normalized();
+        const double off = least_mm + kBetween * off_mm(surface, f);
+        for (const std::int32_t vertex : v) {
+            normal[at(vertex)] += facet_normal[f];
+            needed_mm[at(vertex)] = std::max(needed_mm[at(vertex)], off);
+        }
+    }
+    std::vector<double> share(normal.size(), 1.0);  // of a vertex's way that the facets are lifted
+    for (Vector3d& n : normal) {
+        n.normalize();
+    }
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        for (const std::int32_t vertex : surface.face[f]) {
+            share[at(vertex)] =
+                std::min(share[at(vertex)], normal[at(vertex)].dot(facet_normal[f]));
+        }
+    }
+    Lifted lifted;
+    for (std::size_t i = 0; i < normal.size(); ++i) {
+        const double way_mm = needed_mm[i] / std::max(share[i], kLeastShare);
+        lifted.position_mm.push_back(surface.position_mm[i] + way_mm * normal[i]);
+        lifted.highest_mm =
+            std::max(lifted.highest_mm,
+                     share[i] < kLeastShare ? std::numeric_limits<double>::infinity() : way_mm);
+    }
+    return lifted;
+}
+
+}  // namespace
+
+LiftedWall::LiftedWall(const Surface& surface) {
+    const Lifted lifted = lift(surface);
+    height_mm_ = kOver * lifted.highest_mm;
+    if (std::isfinite(height_mm_)) {
+        const std::array<TriangleSoup, 1> soup{{{lifted.position_mm, surface.face}}};
+        facets_.emplace(soup);
+    }
+}
+
+bool LiftedWall::is_free(const Vector3d& from, const Vector3d& to) const {
+    return facets_ && facets_->closest(from, height_mm_).part < 0 && !facets_->occluded(from, to);
+}
+
+}  // namespace meshwind
