@@ -18,6 +18,11 @@ constexpr double kOneStation_mm = 0.01;
 // further away has left the plan.
 constexpr double kAhead_mm = 50.0;
 
+// A fibre that points elsewhere over so short a way that it goes aside by no more than this share
+// of what it may be off lies where it should: where it comes down from a bridge, or where the
+// normals of two patches differ at their edge.
+constexpr double kSwing = 0.05;
+
 // The planned fibre at a laid station.
 struct Matched {
     Vector3d position_mm, normal, tangent;
@@ -38,6 +43,29 @@ std::size_t stations_at_one_place(Station first, Station last) {
         return !((station.position_mm - first->position_mm).norm() < kOneStation_mm);
     });
     return static_cast<std::size_t>(apart - first);
+}
+
+// The stations that turn from the plan by more than they may, without those of short swings, which
+// turn by nothing then.
+// \param angle_rad per station
+std::vector<char> turned(const SurfacePath& path, std::vector<double>& angle_rad,
+                         const LaydownTolerance& tolerance) {
+    std::vector<char> wrong(path.size(), 0);
+    for (std::size_t first = 0, end = 0; first < path.size(); first = end + 1) {
+        double most_rad = 0.0;
+        for (end = first; end < path.size() && angle_rad[end] > tolerance.angle_rad; ++end) {
+            most_rad = std::max(most_rad, angle_rad[end]);
+        }
+        const std::size_t before = first > 0 ? first - 1 : 0;
+        const std::size_t after = std::min(end, path.size() - 1);
+        const double aside_mm = most_rad * (path[after].s_mm - path[before].s_mm);
+        const bool swings = aside_mm <= kSwing * tolerance.deviation_mm;
+        for (std::size_t i = first; i < end; ++i) {
+            wrong[i] = swings ? 0 : 1;
+            angle_rad[i] = swings ? 0.0 : angle_rad[i];
+        }
+    }
+    return wrong;
 }
 
 }  // namespace
@@ -78,6 +106,8 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
     const std::size_t end =
         laid.path.size() - stations_at_one_place(laid.path.rbegin(), laid.path.rend());
     const auto beyond_end = [&](std::size_t i) { return i + 1 < begin || i > end; };
+    std::vector<double> angle_rad(laid.path.size(), 0.0);
+    std::vector<char> aside(laid.path.size(), 0);
     for (std::size_t i = 0; i < laid.path.size(); ++i) {
         const PathPoint& station = laid.path[i];
         std::size_t next = next_of(j);
@@ -100,18 +130,22 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         const bool on_the_spot = laid.at[i].held || beyond_end(i) ||
                                  swings(j, next, station.position_mm) ||
                                  swings(next, next_of(next), station.position_mm);
-        const double angle = on_the_spot ? 0.0
-                                         : std::abs(std::atan2(station.tangent.dot(across),
-                                                               station.tangent.dot(match.tangent)));
+        angle_rad[i] = on_the_spot ? 0.0
+                                   : std::abs(std::atan2(station.tangent.dot(across),
+                                                         station.tangent.dot(match.tangent)));
+        aside[i] = sideways > tolerance.deviation_mm ? 1 : 0;
         if (sideways > deviation.max_mm) {
             deviation.max_mm = sideways;
             deviation.max_at = i;
         }
-        if (angle > deviation.max_angle_rad) {
-            deviation.max_angle_rad = angle;
+    }
+    const std::vector<char> wrong = turned(laid.path, angle_rad, tolerance);
+    for (std::size_t i = 0; i < laid.path.size(); ++i) {
+        if (angle_rad[i] > deviation.max_angle_rad) {
+            deviation.max_angle_rad = angle_rad[i];
             deviation.max_angle_at = i;
         }
-        if (sideways > tolerance.deviation_mm || angle > tolerance.angle_rad) {
+        if (aside[i] != 0 || wrong[i] != 0) {
             deviation.wrong.push_back(i);
         }
     }

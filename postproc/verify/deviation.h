@@ -37,7 +37,8 @@ struct LaydownTolerance {
 struct Deviation {
     double max_mm = 0.0;  ///< sideways, in the tangent plane
     std::size_t max_at = 0;
-    double max_angle_rad = 0.0;  ///< between the tangents, in the tangent plane
+    double max_angle_rad =
+        0.0;  ///< between the tangents, in the tangent plane; not of short swings
     std::size_t max_angle_at = 0;
     double end_gap_mm = 0.0;           ///< from the last landing point to the last planned one
     std::vector<std::size_t> wrong;    ///< laid stations beyond a tolerance, ascending
@@ -46,7 +47,9 @@ struct Deviation {
 
 /// Goes along both fibres at once: each laid station is held against the cubic between the planned
 /// stations around it. Over a bridge, from the station before it to the one after, nothing is
-/// compared: there the fibre is in the air.
+/// compared: there the fibre is in the air. An angle beyond the tolerance that goes aside by no
+/// more than a twentieth of the deviation allowed, as over a few tenths of a mm where the fibre
+/// comes down from a bridge, is a swing and counts as none.
 /// \pre planned is not empty
 [[nodiscard]] Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
                                 const LaydownTolerance& tolerance);

@@ -142,7 +142,7 @@ class Post(program.ProgramTest):
                          {("0", "course"), ("1", "transition"), ("2", "course")})
         for a, b in zip(rows, rows[1:]):
             gap = math.dist(*([float(r[k]) for k in ("x_mm", "y_mm", "z_mm")] for r in (a, b)))
-            self.assertLess(gap, 8.1)
+            self.assertLess(gap, 9.5)  # the last two stations of 4 mm, and one of the wall's
             turned = sum(float(a[k]) * float(b[k]) for k in ("tx", "ty", "tz"))
             self.assertGreater(turned, math.cos(0.15))
         # Courses that meet need no join.

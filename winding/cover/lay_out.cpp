@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "winding/plan/assemble.h"
@@ -9,10 +10,6 @@
 
 namespace meshwind {
 namespace {
-
-// Distance of the stations of a plan: what the machine is told of the curve between them is below
-// its own following error.
-constexpr double kStation_mm = 4.0;
 
 // And in halves of turns that are only looked into: the turns themselves are checked in the end.
 constexpr double kHalfTurnStation_mm = 10.0;
@@ -26,6 +23,15 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
+// Distance of the stations of a plan, by its thinnest leg.
+double plan_station_mm(const CourseRules& rules) {
+    double radius_mm = std::numeric_limits<double>::infinity();
+    for (const Rim& rim : rules.mandrel.rims) {
+        radius_mm = std::min(radius_mm, rim.radius_mm);
+    }
+    return station_on_mm(radius_mm, rules.tow.width_mm);
+}
+
 double half_turn_station_mm(const CourseRules& rules, const Rim& rim) {
     const double sag_mm = kMostSag * rules.free_fibre.stand_off_mm;
     return std::min(kHalfTurnStation_mm, std::sqrt(8.0 * rim.radius_mm * sag_mm));
@@ -33,7 +39,8 @@ double half_turn_station_mm(const CourseRules& rules, const Rim& rim) {
 
 Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
                    TurnsAtRim& turns) {
-    Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, kStation_mm);
+    Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn,
+                          plan_station_mm(rules));
     ++turns.turns;
     turns.dwell_rad += turn.dwell_rad;
     turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);
@@ -42,7 +49,8 @@ Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimC
 
 }  // namespace
 
-Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
+Piece piece_of(const CourseRules& rules, FollowedCourse&& course, const Member& member,
+               bool backward) {
     Piece piece;
     piece.kind = PieceKind::Course;
     if (backward) {
@@ -56,7 +64,7 @@ Piece piece_of(FollowedCourse&& course, const Member& member, bool backward) {
     piece.worst_slip = course.slip.worst;
     piece.start_rim = start_of(member, backward).rim;
     piece.end_rim = end_of(member, backward).rim;
-    thin_out(piece, kStation_mm);
+    thin_out(piece, plan_station_mm(rules));
     return piece;
 }
 
@@ -67,7 +75,7 @@ Piece piece_of(const CourseRules& rules, const Member& member, bool backward) {
     course.slip =
         measure_slip(rules.mandrel.surface, course.path, course.string,
                      {.friction = rules.tow.friction.holds(), .method = TraceMethod::Patches});
-    return piece_of(std::move(course), member, backward);
+    return piece_of(rules, std::move(course), member, backward);
 }
 
 void add_half_turns(const CourseRules& rules, const Member& member, bool backward,

@@ -10,7 +10,8 @@
 namespace meshwind {
 
 /// A finished course as it is wound.
-[[nodiscard]] Piece piece_of(FollowedCourse&& course, const Member& member, bool backward);
+[[nodiscard]] Piece piece_of(const CourseRules& rules, FollowedCourse&& course,
+                             const Member& member, bool backward);
 
 /// The same of a proven member, followed again.
 [[nodiscard]] Piece piece_of(const CourseRules& rules, const Member& member, bool backward);

@@ -27,7 +27,7 @@ Rejection prove_course(const CourseRules& rules, const Windability* machine, Pla
     }
     SurfacePath path = followed.path;
     std::vector<Piece> pieces;
-    pieces.push_back(piece_of(std::move(followed), exact, backward));
+    pieces.push_back(piece_of(rules, std::move(followed), exact, backward));
     add_half_turns(rules, exact, backward, pieces);
     if (const Rejection rejection = machine != nullptr ? machine->follow(pieces) : Rejection::None;
         rejection != Rejection::None) {

@@ -1,11 +1,39 @@
 #include "winding/plan/piece.h"
 
+#include <cmath>
+
 namespace meshwind {
+namespace {
+
+// The cubic between two stations may turn from those left out by so much sideways, 0.03 deg: a
+// tenth of what the laid fibre may.
+constexpr double kTurned_rad = 5e-4;
+
+// Whether the cubic between two stations runs along the wall as all stations between them do.
+bool runs_along(const Piece& piece, std::size_t first, std::size_t last) {
+    const PathPoint& a = piece.path[first];
+    const PathPoint& b = piece.path[last];
+    for (std::size_t i = first + 1; i < last; ++i) {
+        const PathPoint& here = piece.path[i];
+        const Eigen::Vector3d tangent =
+            beside(a.position_mm, a.tangent, b.position_mm, b.tangent, here.position_mm).tangent;
+        if (piece.string.gap_mm[i] == 0.0 &&
+            std::abs(tangent.dot(here.normal.cross(here.tangent))) > kTurned_rad) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
 
 void thin_out(Piece& piece, double step_mm) {
     std::vector<std::size_t> kept{0};
     const std::size_t last = piece.path.size() - 1;
     for (std::size_t i = 1; i <= last; ++i) {
+        if (!runs_along(piece, kept.back(), i)) {
+            kept.push_back(i - 1);
+        }
         const double s = piece.path[i].s_mm;
         const bool crease =
             s <= piece.path[i - 1].s_mm || (i < last && piece.path[i + 1].s_mm <= s);

@@ -36,8 +36,9 @@ struct Piece {
     bool starts_fibre = false;  ///< tied on before this piece
 };
 
-/// Keeps stations at least `step_mm` apart, both ends, both sides of a feature edge, and where the
-/// fibre leaves the wall or meets it again the stations on either side of that place.
+/// Keeps stations at least `step_mm` apart, or as many as tell the direction in between to 0.03
+/// deg; both ends, both sides of a feature edge, and where the fibre leaves the wall or meets it
+/// again the stations on either side of that place.
 void thin_out(Piece& piece, double step_mm);
 
 /// Per piece the number of its course in winding order: its own, or of the one before the turn.

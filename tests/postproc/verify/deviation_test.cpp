@@ -62,7 +62,12 @@ std::vector<Flat> there_and_back(double step_mm, double aside_mm = 0.0) {
 LaidPath laid(const std::vector<Flat>& line) {
     LaidPath result;
     for (const Flat& flat : line) {
-        result.path.push_back(rolled(flat));
+        PathPoint station = rolled(flat);
+        if (!result.path.empty()) {
+            const PathPoint& before = result.path.back();
+            station.s_mm = before.s_mm + (station.position_mm - before.position_mm).norm();
+        }
+        result.path.push_back(station);
         result.at.emplace_back();
     }
     return result;
@@ -285,6 +290,30 @@ TEST(PlannedFibre, HasAllStationsInWindingOrder) {
         EXPECT_EQ(fibre[i].tangent, pieces[0].path[i % 3].tangent);
         EXPECT_EQ(fibre[i].lifted, i == 4);
     }
+}
+
+// By 0.8 deg over `way_mm` from the middle on, where 0.3 deg and 0.2 mm are allowed.
+Deviation swung(double way_mm) {
+    const std::vector<Flat> line = straight(0.7, 2.0, 31);
+    std::vector<Flat> off = straight(0.7, 0.1, 601);
+    for (Flat& flat : off) {
+        const double s_mm = std::hypot(flat.x_mm, flat.y_mm);
+        if (s_mm > 30.05 && s_mm < 30.05 + way_mm) {
+            flat.heading_rad += rad_from_deg(0.8);
+        }
+    }
+    return compare(laid(off), planned(line), {.deviation_mm = 0.2, .angle_rad = rad_from_deg(0.3)});
+}
+
+TEST(Compare, AnAngleCountsWhereItLeadsAside) {
+    // Between the stations on either side it leads 0.007 mm aside, then 0.015 mm; a twentieth of
+    // 0.2 mm is 0.01.
+    const Deviation shortly = swung(0.4);
+    EXPECT_TRUE(shortly.wrong.empty());
+    EXPECT_LT(shortly.max_angle_rad, rad_from_deg(0.01));
+    const Deviation long_enough = swung(1.0);
+    EXPECT_EQ(long_enough.wrong.size(), 10U);
+    EXPECT_NEAR(long_enough.max_angle_rad, rad_from_deg(0.8), 1e-6);
 }
 
 }  // namespace
