@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/parallel.h"
 #include "mesh/smooth/patch.h"
 
 namespace meshwind {
@@ -31,6 +32,8 @@ constexpr double kLeastShare = 0.2;
 // The facets are over the wall by what they are lifted, and by what patches are under them.
 constexpr double kOver = 2.0;
 
+constexpr std::size_t kChunk = 1024;
+
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
@@ -43,7 +46,7 @@ double size_mm(const Surface& surface) {
     return box.diagonal().norm();
 }
 
-// How far the patch over a face is off it.
+// How far the patch over a face is off it; infinite where it is none.
 double off_mm(const Surface& surface, std::size_t face) {
     const auto& v = surface.face[face];
     const Vector3d& a = surface.position_mm[at(v[0])];
@@ -53,7 +56,11 @@ double off_mm(const Surface& surface, std::size_t face) {
     double most = 0.0;
     for (const Eigen::Vector2d& uv : kMeasured) {
         const Vector3d flat = a + uv.x() * along_u + uv.y() * along_v;
-        most = std::max(most, (patch.at(uv).position_mm - flat).norm());
+        const double off = (patch.at(uv).position_mm - flat).norm();
+        if (!std::isfinite(off)) {
+            return std::numeric_limits<double>::infinity();
+        }
+        most = std::max(most, off);
     }
     return most;
 }
@@ -66,6 +73,12 @@ struct Lifted {
 // Every vertex goes out so far that each facet about it is lifted by as much as its patch is off.
 Lifted lift(const Surface& surface) {
     const double least_mm = kSingle * size_mm(surface);
+    std::vector<double> off(surface.face.size());
+    parallel_for(off.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            off[f] = off_mm(surface, f);
+        }
+    });
     std::vector<Vector3d> facet_normal(surface.face.size());
     std::vector<Vector3d> normal(surface.position_mm.size(), Vector3d::Zero());
     std::vector<double> needed_mm(surface.position_mm.size(), least_mm);
@@ -75,10 +88,9 @@ Lifted lift(const Surface& surface) {
         const Vector3d along_u = surface.position_mm[at(v[1])] - a;
         const Vector3d along_v = surface.position_mm[at(v[2])] - a;
         facet_normal[f] = along_u.cross(along_v).normalized();
-        const double off = least_mm + kBetween * off_mm(surface, f);
         for (const std::int32_t vertex : v) {
             normal[at(vertex)] += facet_normal[f];
-            needed_mm[at(vertex)] = std::max(needed_mm[at(vertex)], off);
+            needed_mm[at(vertex)] = std::max(needed_mm[at(vertex)], least_mm + kBetween * off[f]);
         }
     }
     std::vector<double> share(normal.size(), 1.0);  // of a vertex's way that the facets are lifted

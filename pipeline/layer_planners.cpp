@@ -188,6 +188,7 @@ TriedPlan plan_cover_layer(const LayerTask& task) {
     }
     cover.fibres = setup.job.fibres;
     cover.context = task.options.context;
+    cover.least_covered = task.options.least_covered;
     return plan_cover(setup.mandrel, *setup.obstacles, cover, &task.machine);
 }
 

@@ -20,6 +20,7 @@ struct LayerPlanOptions {
     const Mandrel* bare = nullptr;
     double build_up_mm = 0.0;      ///< of the layers before at most
     const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
+    double least_covered = 0.0;    ///< as in CoverOptions
 };
 
 /// A cover of a body that has patterns is planned on a job's own account only where the wall is no

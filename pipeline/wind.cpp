@@ -31,13 +31,16 @@ namespace {
 namespace fs = std::filesystem;
 
 // Radii that are tried where the blend is yet to be chosen, in tow widths.
-constexpr std::array kBlendsInTows{0.0, 1.0, 2.0, 3.0};
+constexpr std::array kBlendsInTows{0.0, 1.0, 2.0, 3.0, 4.0};
 
 // To the micrometre: a few digits then name them.
 constexpr double kBlendsPerMm = 1000.0;
 
 // More fibres and longer extensions are tried so many times at most.
 constexpr int kMostMends = 2;
+
+// What is planned later to join the courses covers no more than this share on top.
+constexpr double kJoinsCover = 0.02;
 
 class Stopwatch {
 public:
@@ -206,6 +209,7 @@ private:
             };
         }
         options.stage_done = [this](const char* stage) { watch_.stage(stage); };
+        options.least_covered = options_.least_covered;
         wind_layer(layer, options);
         if (number == 0 && !options_.import) {
             propose_mends(layer);
@@ -279,7 +283,7 @@ const Plan& first_plan(const Run& run) {
 }
 
 double covered_share(const Run& run) {
-    return first_plan(run).failure.empty() ? first_plan(run).coverage.fraction : 0.0;
+    return first_plan(run).coverage.fraction;
 }
 
 bool stands(const Run& run) {
@@ -299,8 +303,10 @@ std::string tried_words(const Run& run) {
            ", extensions of " + fixed(job.mandrel.extension_mm, 0) + " mm and " +
            (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
                                        : std::string("no blend ")) +
-           percent(covered_share(run), 1) + " of the wall is covered, and " +
-           std::to_string(failed) + (failed == 1 ? " check fails" : " checks fail");
+           percent(covered_share(run), 1) + " of the wall is covered, " +
+           (run.planned()
+                ? "and " + std::to_string(failed) + (failed == 1 ? " check fails" : " checks fail")
+                : "and nothing is wound");
 }
 
 // What the job has to say for the same run.
@@ -320,14 +326,16 @@ public:
     Trials(const MandrelOf& mandrel, const Machine& machine, const WindOptions& options)
         : mandrel_(mandrel), machine_(machine), options_(options) {}
 
+    enum class Depth { Full, WhereItCovers };
+
     /// \throws as wind() does for the first job
-    void run(const Job& job) {
+    void run(const Job& job, Depth depth) {
         if (!best_) {
-            take(once(job));
+            take(once(job, depth), depth);
             return;
         }
         try {
-            take(once(job));
+            take(once(job, depth), depth);
         } catch (const InputError& error) {  // of no use for what stands
             tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
         }
@@ -337,15 +345,21 @@ public:
     void mend() {
         next_ = room_for(*best_);
         for (int mend = 0; mend < kMostMends && next_; ++mend) {
-            run(*std::exchange(next_, std::nullopt));
+            run(*std::exchange(next_, std::nullopt), Depth::WhereItCovers);
         }
     }
 
     [[nodiscard]] bool done() const { return stands(*best_); }
 
     [[nodiscard]] Run best() && {
+        const bool cut_short = !best_->planned() && best_depth_ == Depth::WhereItCovers;
+        if (cut_short) {
+            best_ = once(Job(best_->layers.front().setup.job), Depth::Full);
+        }
         if (tried_.size() > 1) {
-            options_.context.report_remark(tried_.back());
+            if (!cut_short) {
+                options_.context.report_remark(tried_.back());
+            }
             tried_.push_back("what stands is the job with " +
                              settings_words(best_->layers.front().setup.job));
             options_.context.report_remark(tried_.back());
@@ -360,15 +374,16 @@ private:
                            : more_room(run.layers.front().setup.job, first_plan(run));
     }
 
-    void take(Run&& run) {
+    void take(Run&& run, Depth depth) {
         tried_.push_back(tried_words(run));
         next_ = room_for(run);
         if (!best_ || is_better(run, *best_)) {
             best_ = std::move(run);
+            best_depth_ = depth;
         }
     }
 
-    [[nodiscard]] Run once(const Job& job) {
+    [[nodiscard]] Run once(const Job& job, Depth depth) {
         if (!tried_.empty()) {
             options_.context.report_remark(tried_.back());
         }
@@ -380,6 +395,7 @@ private:
                 options_.context.report_remark(words);
             }
         };
+        options.least_covered = depth == Depth::Full ? 0.0 : kCoveredShare - kJoinsCover;
         options.reading_s +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
         return wind(std::move(read), machine_, job, options);
@@ -389,6 +405,7 @@ private:
     const Machine& machine_;
     const WindOptions& options_;
     std::optional<Run> best_;
+    Depth best_depth_ = Depth::Full;
     std::optional<Job> next_;  // that may mend the last run that was wound
     std::set<std::string> said_;
     std::vector<std::string> tried_;
@@ -400,14 +417,14 @@ Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
          const WindOptions& options) {
     Trials trials(mandrel, machine, options);
     if (job.mandrel.blend_mm || options.import) {
-        trials.run(job);
+        trials.run(job, Trials::Depth::Full);
     } else {
         // A blend does more than fibres and extensions do, and takes no longer: all of them before.
         for (const double widths : kBlendsInTows) {
             Job asked = job;
             asked.mandrel.blend_mm =
                 std::round(kBlendsPerMm * widths * job.tow.width_mm) / kBlendsPerMm;
-            trials.run(asked);
+            trials.run(asked, Trials::Depth::WhereItCovers);
             if (trials.done()) {
                 break;
             }

@@ -53,6 +53,7 @@ private:
             plan.context = options_.context;
             plan.bare = options_.bare;
             plan.build_up_mm = options_.build_up_mm;
+            plan.least_covered = options_.least_covered;
             plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;
             planned = plan_layer(setup_, layer_.job, machine, plan);
         }

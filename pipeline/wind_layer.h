@@ -42,6 +42,7 @@ struct WindLayerOptions {
     const WoundLayer* before = nullptr;  ///< none for the first
     const Mandrel* bare = nullptr;       ///< under all layers; none for the first
     double build_up_mm = 0.0;            ///< of the layers before at most
+    double least_covered = 0.0;          ///< as in CoverOptions
     RunContext context{};
     std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
 };

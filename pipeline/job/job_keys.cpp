@@ -109,12 +109,11 @@ Key<Job::MandrelJob> blend_key() {
         }
         return mandrel.blend_mm ? number_text(*mandrel.blend_mm) : string_text(kAutoWord);
     };
-    return {
-        "blend",
-        "mm, radius of a ball: crotches and steps that it cannot touch are filled up smoothly; "
-        "the part has to be made so. auto: wind tries none, then one, two and three tow widths, "
-        "and takes the first with which every check passes",
-        or_word(kAutoWord, number_schema(kCutRange)), read, text};
+    return {"blend",
+            "mm, radius of a ball: crotches and steps that it cannot touch are filled up smoothly; "
+            "the part has to be made so. auto: wind tries none, then one to four tow widths, "
+            "and takes the first with which every check passes",
+            or_word(kAutoWord, number_schema(kCutRange)), read, text};
 }
 
 // The key, and a flag that it was given.

@@ -19,6 +19,7 @@
 #include "pipeline/verify_text.h"
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
+#include "postproc/verify/check_kinds.h"
 #include "tests/support/small_pipe.h"
 
 namespace meshwind {
@@ -109,6 +110,19 @@ TEST(Wind, GoesOnWhereABlendCannotBeMade) {
     const auto run = wind(mandrel, shipped("six_axis"), job);
     EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
     EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+}
+
+TEST(Wind, DoesNotWindACoverThatIsTooBare) {
+    // No plan covers twice what single courses reach.
+    const auto run = wind(small_pipe(), shipped("six_axis"), quick_job(LayerKind::Cover),
+                          {.least_covered = 2.0});
+    EXPECT_FALSE(run.planned());
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{std::string(check_kind::kPlan.name)});
+    const Plan& plan = run.layers.front().plan;
+    EXPECT_GT(plan.coverage.fraction, 0.5);
+    EXPECT_GE(plan.coverage.reachable, plan.coverage.fraction);
+    EXPECT_TRUE(plan.pieces.empty());
+    EXPECT_TRUE(run.layers.front().programs.empty());
 }
 
 TEST(Wind, TakesTheBlendThatTheJobHas) {

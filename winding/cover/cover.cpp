@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "core/margins.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -36,9 +34,6 @@ constexpr double kSamplesPerBand = 4.0;
 
 // On a wall so large that this would take more samples, they lie further apart.
 constexpr double kMaxSamples = 6e5;
-
-// A candidate whose half is longer than this many bounding boxes circles without meeting a rim.
-constexpr double kMaxHalfLengthBoxes = 8.0;
 
 // Proposals of the annealing at an effort of 1, and of each that follows where courses had to be
 // given up.
@@ -103,17 +98,13 @@ public:
         plan_.effort.refusals = library_.refusals;
         tell("library", 1.0);
         if (members_.empty()) {
-            plan_.failure = "no admissible course: " + refused_most(plan_.effort);
-            describe_uncovered();
-            return {std::move(plan_), nullptr};
+            return fail("no admissible course: " + refused_most(plan_.effort));
         }
         plan_.what_if = ask_what_if(rules_, samples_, library_,
                                     seed_of(Stream::Otherwise, options_.context.seed));
         if (reached_share(library_.reached) < kWorthPlanning) {
-            plan_.failure = hardly_reachable();
             rejection_.assign(members_.size(), Rejection::NotPlanned);
-            describe_uncovered();
-            return {std::move(plan_), nullptr};
+            return fail(hardly_reachable());
         }
         ground_.emplace(rules_, samples_, sample_spacing_mm(mandrel_, options_), members_,
                         seed_of(Stream::Ground, options_.context.seed));
@@ -122,23 +113,26 @@ public:
         rejection_.assign(members_.size(), Rejection::None);
         find_routes();
         choose();
+        anneal_proven(false);
+        keep_what_winds();
+        if (!covers_enough()) {
+            return fail("courses cover only " + fixed(100.0 * plan_.coverage.fraction, 1) +
+                        " % of the wall where " + fixed(100.0 * plan_.coverage.reachable, 1) +
+                        " % is in reach");
+        }
         make_it_hold();
         if (order_.empty()) {
-            plan_.failure = "every course was refused, " + rejected_most(plan_.effort);
-            describe_uncovered();
-            return {std::move(plan_), nullptr};
+            return fail("every course was refused, " + rejected_most(plan_.effort));
         }
         measure();
         return {std::move(plan_), std::move(trial_)};
     }
 
 private:
-    static double max_half_length_mm(const Surface& surface) {
-        Eigen::AlignedBox3d box;
-        for (const Eigen::Vector3d& p : surface.position_mm) {
-            box.extend(p);
-        }
-        return kMaxHalfLengthBoxes * box.diagonal().norm();
+    TriedPlan fail(std::string words) {
+        plan_.failure = std::move(words);
+        describe_uncovered();
+        return {std::move(plan_), nullptr};
     }
 
     static double sample_spacing_mm(const Mandrel& mandrel, const CoverOptions& options) {
@@ -421,12 +415,23 @@ private:
         plan_.effort.courses_out_of_reach = static_cast<int>(all - order_.size());
     }
 
-    // Plans, winds the whole, and plans again without the courses that the machine refuses in their
-    // place. Where putting others there leads nowhere they are only left out; if all is in vain,
-    // the plan with the fewest of them stands.
+    // Whether the courses cover enough to be wound.
+    bool covers_enough() {
+        std::vector<std::int32_t> layers = layers_of(courses_);
+        Coverage coverage = measure_coverage(layers);
+        coverage.reachable = reached_share(library_.reached);
+        if (coverage.fraction >= options_.least_covered * coverage.reachable) {
+            return true;
+        }
+        layers_ = std::move(layers);
+        plan_.coverage = coverage;
+        return false;
+    }
+
+    // Joins the courses, winds the whole, and plans again without the courses that the machine
+    // refuses in their place. Where putting others there leads nowhere they are only left out; if
+    // all is in vain, the plan with the fewest of them stands.
     void make_it_hold() {
-        anneal_proven(false);
-        keep_what_winds();
         std::vector<PlacedCourse> best;
         std::size_t least = 0;
         int in_vain = 0;

@@ -22,6 +22,7 @@ struct CoverOptions {
     int fibres = 1;                     ///< that the plan may take, >= 1
     std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
     RunContext context{};               ///< `effort`: how long courses are annealed
+    double least_covered = 0.0;         ///< of the wall in reach; what covers less fails, not wound
     int candidates = 16000;             ///< tried over the whole surface
     int rounds = 3;                     ///< of further candidates aimed at what is not reached yet
     int aimed_candidates = 4000;        ///< in each such round

@@ -39,8 +39,8 @@ double half_turn_station_mm(const CourseRules& rules, const Rim& rim) {
 
 Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
                    TurnsAtRim& turns) {
-    Turn turn = make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn,
-                          plan_station_mm(rules));
+    Turn turn =
+        make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, plan_station_mm(rules));
     ++turns.turns;
     turns.dwell_rad += turn.dwell_rad;
     turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);

@@ -29,6 +29,9 @@ constexpr int kMaxMoves = 3;
 
 constexpr std::size_t kCandidateChunk = 64;
 
+// A candidate whose half is longer than this many bounding boxes circles.
+constexpr double kMaxHalfLengthBoxes = 8.0;
+
 // Of the directions drawn, those at the wanted winding angle.
 constexpr double kWantedShare = 2.0 / 3.0;
 
@@ -154,6 +157,14 @@ Refusal follow_taut(const CourseRules& rules, Member& course, Run& run) {
 }
 
 }  // namespace
+
+double max_half_length_mm(const Surface& surface) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : surface.position_mm) {
+        box.extend(p);
+    }
+    return kMaxHalfLengthBoxes * box.diagonal().norm();
+}
 
 Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
     const Vector3d n = smooth_normal(surface, candidate.seed);

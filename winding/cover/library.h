@@ -35,6 +35,9 @@ struct CourseRules {
     const LiftedWall* lifted = nullptr;  ///< of the mandrel's surface, where it is at hand
 };
 
+/// Length of half a candidate beyond which it circles without meeting a rim, on this surface.
+[[nodiscard]] double max_half_length_mm(const Surface& surface);
+
 /// The unit tangent along which a candidate leaves its seed.
 [[nodiscard]] Eigen::Vector3d direction_of(const Surface& surface, const Candidate& candidate);
 
