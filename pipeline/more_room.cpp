@@ -11,6 +11,9 @@ namespace {
 // Share of the wall that more fibres or longer extensions have to reach.
 constexpr double kWorthIt = 0.01;
 
+// A plan that covers this share of what it has to comes to it with a fibre to spare, or not at all.
+constexpr double kNearly = 0.95;
+
 // The fewest fibres that reach what all those that were looked for do.
 int fibres_enough(const std::vector<double>& reach) {
     const auto enough = std::find_if(
@@ -36,10 +39,10 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
     const auto same = [&] {
         return more.fibres == job.fibres && more.mandrel.extension_mm == job.mandrel.extension_mm;
     };
-    // What covers and fails has turns that do not hold. A fibre to spare need not take them, and
-    // one is tried: each more is a run of the whole job.
-    const bool covers =
-        plan.failure.empty() && plan.coverage.fraction >= kCoveredShare * plan.coverage.reachable;
+    // What covers and fails has turns that do not hold, and what nearly covers lacks courses
+    // between some rims. A fibre to spare need not take them, and one is tried: each more is a run
+    // of the whole job.
+    const bool covers = plan.coverage.fraction >= kNearly * kCoveredShare * plan.coverage.reachable;
     if (same() && fibres_free && covers && job.fibres <= enough) {
         more.fibres = job.fibres + 1;
     }

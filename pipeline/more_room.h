@@ -9,8 +9,8 @@
 namespace meshwind {
 
 /// The job with as many fibres, and with extensions as long, as the plan says reach a hundredth
-/// more of the wall; where neither does and the plan covers, with one fibre more. What the job
-/// gives itself stays. None where nothing is left to loosen.
+/// more of the wall; where neither does and the plan covers, or nearly, with one fibre more. What
+/// the job gives itself stays. None where nothing is left to loosen.
 [[nodiscard]] std::optional<Job> more_room(const Job& job, const Plan& plan);
 
 }  // namespace meshwind
