@@ -2,7 +2,7 @@
 import { clock, escapeHtml, fixed, number, percent, sentence, withUnit } from './format';
 import type { LayerReport, Plan, Report, Uncovered } from './types';
 
-/** \param duration of the programs, where the report has none */
+/** \param duration of all programs on the page, 0 where it has none */
 export function figuresHtml(report: Report, duration: number): string {
     const plan = report.plan;
     const laminate = report.laminate;
@@ -10,7 +10,7 @@ export function figuresHtml(report: Report, duration: number): string {
     const figures: [string, string][] = [
         ['Machine', escapeHtml(report.machine ?? '\u2013')],
         ['Fibre', withUnit(metres, 'm', 4)],
-        ['Time', clock(laminate?.time_s ?? report.program?.duration_s ?? duration)],
+        ['Time', clock(laminate?.time_s ?? (duration || (report.program?.duration_s ?? 0)))],
     ];
     if (laminate?.mass_g) figures.push(['Mass', withUnit(laminate.mass_g, 'g')]);
     if (plan?.courses !== undefined) figures.push(['Courses', number(plan.courses)]);
