@@ -32,6 +32,10 @@ constexpr std::size_t kStationsBefore = 2;
 // Bridges along one path; more means a wall of spikes.
 constexpr int kMaxBridges = 200;
 
+double step_mm(const Surface& surface) {
+    return kStepEdges * surface.mean_edge_mm;
+}
+
 // The wall under a straight fibre, seen from where the fibre begins.
 class Lookout {
 public:
@@ -229,7 +233,7 @@ private:
     }
     [[nodiscard]] bool is_under_wall(const PathPoint& place) const {
         return highest_ahead(FieldWalker(surface_, place.at), place.tangent,
-                             bridge_reach_mm(surface_), kStepEdges * surface_.mean_edge_mm, lifted_)
+                             bridge_reach_mm(surface_), step_mm(surface_), lifted_)
             .has_value();
     }
 
@@ -270,7 +274,7 @@ double bridge_reach_mm(const Surface& surface) {
 std::optional<Bridge> bridge_ahead(const Surface& surface, const FieldWalker& from,
                                    const Vector3d& along, double reach_mm,
                                    const LiftedWall* lifted) {
-    const double step = kStepEdges * surface.mean_edge_mm;
+    const double step = step_mm(surface);
     const std::optional<Highest> highest = highest_ahead(from, along, reach_mm, step, lifted);
     if (!highest) {
         return std::nullopt;

@@ -22,7 +22,7 @@ const std::array<Eigen::Vector2d, 4> kMeasured{
     {{0.5, 0.0}, {0.5, 0.5}, {0.0, 0.5}, {1.0 / 3.0, 1.0 / 3.0}}};
 constexpr double kBetween = 1.5;
 
-// Rays are in single precision: 1e-7 of the size of the scene.
+// Rays are in single precision, which is good to 1e-7 of the size of the scene.
 constexpr double kSingle = 1e-6;
 
 // Where an edge is so sharp that its facets are lifted by less of the way of its vertices, no ray
@@ -38,31 +38,25 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-double size_mm(const Surface& surface) {
-    Eigen::AlignedBox3d box;
-    for (const Vector3d& p : surface.position_mm) {
-        box.extend(p);
-    }
-    return box.diagonal().norm();
-}
+struct Facet {
+    Vector3d normal;
+    double off_mm = 0.0;  // of the patch over it; infinite where that is none
+};
 
-// How far the patch over a face is off it; infinite where it is none.
-double off_mm(const Surface& surface, std::size_t face) {
+Facet facet_of(const Surface& surface, std::size_t face) {
     const auto& v = surface.face[face];
     const Vector3d& a = surface.position_mm[at(v[0])];
     const Vector3d along_u = surface.position_mm[at(v[1])] - a;
     const Vector3d along_v = surface.position_mm[at(v[2])] - a;
     const Patch patch(surface, static_cast<std::int32_t>(face));
-    double most = 0.0;
+    Facet facet{along_u.cross(along_v).normalized()};
     for (const Eigen::Vector2d& uv : kMeasured) {
         const Vector3d flat = a + uv.x() * along_u + uv.y() * along_v;
         const double off = (patch.at(uv).position_mm - flat).norm();
-        if (!std::isfinite(off)) {
-            return std::numeric_limits<double>::infinity();
-        }
-        most = std::max(most, off);
+        facet.off_mm = std::isfinite(off) ? std::max(facet.off_mm, off)
+                                          : std::numeric_limits<double>::infinity();
     }
-    return most;
+    return facet;
 }
 
 struct Lifted {
@@ -72,25 +66,20 @@ struct Lifted {
 
 // Every vertex goes out so far that each facet about it is lifted by as much as its patch is off.
 Lifted lift(const Surface& surface) {
-    const double least_mm = kSingle * size_mm(surface);
-    std::vector<double> off(surface.face.size());
-    parallel_for(off.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    const double least_mm = kSingle * diagonal_mm(surface.position_mm);
+    std::vector<Facet> facets(surface.face.size());
+    parallel_for(facets.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
-            off[f] = off_mm(surface, f);
+            facets[f] = facet_of(surface, f);
         }
     });
-    std::vector<Vector3d> facet_normal(surface.face.size());
     std::vector<Vector3d> normal(surface.position_mm.size(), Vector3d::Zero());
     std::vector<double> needed_mm(surface.position_mm.size(), least_mm);
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
-        const auto& v = surface.face[f];
-        const Vector3d& a = surface.position_mm[at(v[0])];
-        const Vector3d along_u = surface.position_mm[at(v[1])] - a;
-        const Vector3d along_v = surface.position_mm[at(v[2])] - a;
-        facet_normal[f] = along_u.cross(along_v).normalized();
-        for (const std::int32_t vertex : v) {
-            normal[at(vertex)] += facet_normal[f];
-            needed_mm[at(vertex)] = std::max(needed_mm[at(vertex)], least_mm + kBetween * off[f]);
+        const double off_mm = least_mm + kBetween * facets[f].off_mm;
+        for (const std::int32_t vertex : surface.face[f]) {
+            normal[at(vertex)] += facets[f].normal;
+            needed_mm[at(vertex)] = std::max(needed_mm[at(vertex)], off_mm);
         }
     }
     std::vector<double> share(normal.size(), 1.0);  // of a vertex's way that the facets are lifted
@@ -100,7 +89,7 @@ Lifted lift(const Surface& surface) {
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
         for (const std::int32_t vertex : surface.face[f]) {
             share[at(vertex)] =
-                std::min(share[at(vertex)], normal[at(vertex)].dot(facet_normal[f]));
+                std::min(share[at(vertex)], normal[at(vertex)].dot(facets[f].normal));
         }
     }
     Lifted lifted;

@@ -151,11 +151,8 @@ PathAccuracy estimate_path_accuracy(const Surface& surface, int count) {
     if (surface.face.empty()) {
         return accuracy;
     }
-    Eigen::AlignedBox3d box;
-    for (const Vector3d& p : surface.position_mm) {
-        box.extend(p);
-    }
-    accuracy.length_mm = std::min(box.diagonal().norm(), kMostEdges * surface.mean_edge_mm);
+    accuracy.length_mm =
+        std::min(diagonal_mm(surface.position_mm), kMostEdges * surface.mean_edge_mm);
     const std::vector<Start> starts = even_starts(surface, count);
     std::vector<TraceResult> best(starts.size());
     const auto for_each_path = [&](const auto& body) {

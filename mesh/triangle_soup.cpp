@@ -28,12 +28,16 @@ double area_mm2(const TriangleSoup& soup) {
     return area;
 }
 
-double diagonal_mm(const TriangleSoup& soup) {
+double diagonal_mm(const std::vector<Eigen::Vector3d>& points_mm) {
     Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& point : soup.points_mm) {
+    for (const Eigen::Vector3d& point : points_mm) {
         box.extend(point);
     }
     return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+double diagonal_mm(const TriangleSoup& soup) {
+    return diagonal_mm(soup.points_mm);
 }
 
 }  // namespace meshwind

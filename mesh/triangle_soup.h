@@ -28,7 +28,8 @@ struct TriangleSoup {
 /// Area in mm^2 of all faces.
 [[nodiscard]] double area_mm2(const TriangleSoup& soup);
 
-/// Length in mm of the bounding box's diagonal; 0 for an empty soup.
+/// Length in mm of the bounding box's diagonal; 0 for no points.
+[[nodiscard]] double diagonal_mm(const std::vector<Eigen::Vector3d>& points_mm);
 [[nodiscard]] double diagonal_mm(const TriangleSoup& soup);
 
 }  // namespace meshwind

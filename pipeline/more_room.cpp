@@ -11,7 +11,7 @@ namespace {
 // Share of the wall that more fibres or longer extensions have to reach.
 constexpr double kWorthIt = 0.01;
 
-// A plan that covers this share of what it has to comes to it with a fibre to spare, or not at all.
+// To a plan that covers so much of what it has to a fibre to spare may bring the rest.
 constexpr double kNearly = 0.95;
 
 // The fewest fibres that reach what all those that were looked for do.

@@ -286,6 +286,12 @@ double covered_share(const Run& run) {
     return first_plan(run).coverage.fraction;
 }
 
+// A cover that was too bare to be wound (WindOptions::least_covered).
+bool was_too_bare(const Run& run) {
+    const Plan& plan = first_plan(run);
+    return plan.planner == Planner::Cover && !plan.failure.empty() && plan.coverage.fraction > 0.0;
+}
+
 bool stands(const Run& run) {
     return run.planned() && run.passed();
 }
@@ -304,9 +310,9 @@ std::string tried_words(const Run& run) {
            (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
                                        : std::string("no blend ")) +
            percent(covered_share(run), 1) + " of the wall is covered, " +
-           (run.planned()
-                ? "and " + std::to_string(failed) + (failed == 1 ? " check fails" : " checks fail")
-                : "and nothing is wound");
+           (was_too_bare(run) ? "and nothing is wound"
+                              : "and " + std::to_string(failed) +
+                                    (failed == 1 ? " check fails" : " checks fail"));
 }
 
 // What the job has to say for the same run.
@@ -331,11 +337,11 @@ public:
     /// \throws as wind() does for the first job
     void run(const Job& job, Depth depth) {
         if (!best_) {
-            take(once(job, depth), depth);
+            take(once(job, depth));
             return;
         }
         try {
-            take(once(job, depth), depth);
+            take(once(job, depth));
         } catch (const InputError& error) {  // of no use for what stands
             tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
         }
@@ -352,7 +358,7 @@ public:
     [[nodiscard]] bool done() const { return stands(*best_); }
 
     [[nodiscard]] Run best() && {
-        const bool cut_short = !best_->planned() && best_depth_ == Depth::WhereItCovers;
+        const bool cut_short = was_too_bare(*best_);
         if (cut_short) {
             best_ = once(Job(best_->layers.front().setup.job), Depth::Full);
         }
@@ -374,12 +380,11 @@ private:
                            : more_room(run.layers.front().setup.job, first_plan(run));
     }
 
-    void take(Run&& run, Depth depth) {
+    void take(Run&& run) {
         tried_.push_back(tried_words(run));
         next_ = room_for(run);
         if (!best_ || is_better(run, *best_)) {
             best_ = std::move(run);
-            best_depth_ = depth;
         }
     }
 
@@ -405,7 +410,6 @@ private:
     const Machine& machine_;
     const WindOptions& options_;
     std::optional<Run> best_;
-    Depth best_depth_ = Depth::Full;
     std::optional<Job> next_;  // that may mend the last run that was wound
     std::set<std::string> said_;
     std::vector<std::string> tried_;

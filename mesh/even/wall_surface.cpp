@@ -89,7 +89,7 @@ WallProjection::WallProjection(const Surface& surface) : surface_(surface), shap
     for (const auto& [region, soup] : soups) {
         part_[region].query = std::make_unique<RayQuery>(std::span(&soup, 1));
     }
-    reach_mm_ = diagonal_mm({surface.position_mm, surface.face});
+    reach_mm_ = diagonal_mm(surface.position_mm);
 }
 
 WallProjection::Foot WallProjection::nearest(const Vector3d& point, std::int32_t region) const {

@@ -45,12 +45,10 @@ std::size_t stations_at_one_place(Station first, Station last) {
     return static_cast<std::size_t>(apart - first);
 }
 
-// The stations that turn from the plan by more than they may, without those of short swings, which
-// turn by nothing then.
+// Takes short swings for no angle.
 // \param angle_rad per station
-std::vector<char> turned(const SurfacePath& path, std::vector<double>& angle_rad,
-                         const LaydownTolerance& tolerance) {
-    std::vector<char> wrong(path.size(), 0);
+void forget_swings(const SurfacePath& path, const LaydownTolerance& tolerance,
+                   std::vector<double>& angle_rad) {
     for (std::size_t first = 0, end = 0; first < path.size(); first = end + 1) {
         double most_rad = 0.0;
         for (end = first; end < path.size() && angle_rad[end] > tolerance.angle_rad; ++end) {
@@ -58,14 +56,11 @@ std::vector<char> turned(const SurfacePath& path, std::vector<double>& angle_rad
         }
         const std::size_t before = first > 0 ? first - 1 : 0;
         const std::size_t after = std::min(end, path.size() - 1);
-        const double aside_mm = most_rad * (path[after].s_mm - path[before].s_mm);
-        const bool swings = aside_mm <= kSwing * tolerance.deviation_mm;
-        for (std::size_t i = first; i < end; ++i) {
-            wrong[i] = swings ? 0 : 1;
-            angle_rad[i] = swings ? 0.0 : angle_rad[i];
+        if (most_rad * (path[after].s_mm - path[before].s_mm) <= kSwing * tolerance.deviation_mm) {
+            std::fill(angle_rad.begin() + static_cast<std::ptrdiff_t>(first),
+                      angle_rad.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
         }
     }
-    return wrong;
 }
 
 }  // namespace
@@ -107,7 +102,7 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         laid.path.size() - stations_at_one_place(laid.path.rbegin(), laid.path.rend());
     const auto beyond_end = [&](std::size_t i) { return i + 1 < begin || i > end; };
     std::vector<double> angle_rad(laid.path.size(), 0.0);
-    std::vector<char> aside(laid.path.size(), 0);
+    std::vector<double> sideways_mm(laid.path.size(), 0.0);
     for (std::size_t i = 0; i < laid.path.size(); ++i) {
         const PathPoint& station = laid.path[i];
         std::size_t next = next_of(j);
@@ -125,7 +120,7 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         // Of several stations at one place the last leads on.
         const Matched match = between(planned[next - 1], planned[next], station.position_mm);
         const Vector3d across = match.normal.cross(match.tangent);
-        const double sideways = std::abs((station.position_mm - match.position_mm).dot(across));
+        sideways_mm[i] = std::abs((station.position_mm - match.position_mm).dot(across));
         // About a pin the fibre has the pin's direction, wherever it came from.
         const bool on_the_spot = laid.at[i].held || beyond_end(i) ||
                                  swings(j, next, station.position_mm) ||
@@ -133,19 +128,18 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         angle_rad[i] = on_the_spot ? 0.0
                                    : std::abs(std::atan2(station.tangent.dot(across),
                                                          station.tangent.dot(match.tangent)));
-        aside[i] = sideways > tolerance.deviation_mm ? 1 : 0;
-        if (sideways > deviation.max_mm) {
-            deviation.max_mm = sideways;
+    }
+    forget_swings(laid.path, tolerance, angle_rad);
+    for (std::size_t i = 0; i < laid.path.size(); ++i) {
+        if (sideways_mm[i] > deviation.max_mm) {
+            deviation.max_mm = sideways_mm[i];
             deviation.max_at = i;
         }
-    }
-    const std::vector<char> wrong = turned(laid.path, angle_rad, tolerance);
-    for (std::size_t i = 0; i < laid.path.size(); ++i) {
         if (angle_rad[i] > deviation.max_angle_rad) {
             deviation.max_angle_rad = angle_rad[i];
             deviation.max_angle_at = i;
         }
-        if (aside[i] != 0 || wrong[i] != 0) {
+        if (sideways_mm[i] > tolerance.deviation_mm || angle_rad[i] > tolerance.angle_rad) {
             deviation.wrong.push_back(i);
         }
     }

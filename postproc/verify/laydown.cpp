@@ -432,7 +432,7 @@ private:
         const double length = free.norm();
         const std::optional<Bridge> bridge =
             bridge_ahead(wall_.surface(), walker_, free / length,
-                         std::min(wall_.bridge_reach_mm(), kAheadShare * length), &wall_.lifted());
+                         std::min(wall_.bridge_reach_mm(), kAheadShare * length), wall_.lifted());
         if (!bridge) {
             return false;
         }
@@ -505,8 +505,11 @@ LaydownWall::LaydownWall(Surface surface, double bridge_reach_mm, std::vector<Pi
       bridge_reach_mm_(bridge_reach_mm),
       pins_(std::move(pins)),
       hollow_(hollow_faces(surface_, bridge_reach_mm)),
-      facets_(facets_of(surface_)),
-      lifted_(surface_) {}
+      facets_(facets_of(surface_)) {
+    if (std::find(hollow_.begin(), hollow_.end(), 1) != hollow_.end()) {
+        lifted_.emplace(surface_);
+    }
+}
 
 SurfacePoint LaydownWall::nearest(const Vector3d& place) const {
     const double reach = std::max(1.0, 2.0 * surface_.mean_edge_mm);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,8 @@ public:
         return hollow_[static_cast<std::size_t>(face)] != 0;
     }
 
-    [[nodiscard]] const LiftedWall& lifted() const { return lifted_; }
+    /// Null where the wall is hollow nowhere.
+    [[nodiscard]] const LiftedWall* lifted() const { return lifted_ ? &*lifted_ : nullptr; }
 
     /// The nearest place of the wall.
     /// \throws InputError verify.tie_on where it is more than two edges off, and 1 mm
@@ -63,7 +65,7 @@ private:
     std::vector<Pin> pins_;
     std::vector<char> hollow_;  // per face
     RayQuery facets_;
-    LiftedWall lifted_;
+    std::optional<LiftedWall> lifted_;
 };
 
 /// When a station was laid.

@@ -159,11 +159,7 @@ Refusal follow_taut(const CourseRules& rules, Member& course, Run& run) {
 }  // namespace
 
 double max_half_length_mm(const Surface& surface) {
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& p : surface.position_mm) {
-        box.extend(p);
-    }
-    return kMaxHalfLengthBoxes * box.diagonal().norm();
+    return kMaxHalfLengthBoxes * diagonal_mm(surface.position_mm);
 }
 
 Vector3d direction_of(const Surface& surface, const Candidate& candidate) {
