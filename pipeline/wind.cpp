@@ -300,6 +300,14 @@ bool is_better(const Run& run, const Run& than) {
     return stands(run) != stands(than) ? stands(run) : covered_share(run) > covered_share(than);
 }
 
+// A cover that is wound, covers what it has to, and fails all the same: at turns and places of the
+// head between courses, which another choice of courses has elsewhere.
+bool fails_by_chance(const Run& run) {
+    const Plan& plan = first_plan(run);
+    return plan.planner == Planner::Cover && run.planned() && !run.passed() &&
+           plan.coverage.fraction >= kCoveredShare * plan.coverage.reachable;
+}
+
 // "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
 std::string tried_words(const Run& run) {
     const Job& job = run.layers.front().setup.job;
@@ -334,16 +342,22 @@ public:
 
     enum class Depth { Full, WhereItCovers };
 
-    /// \throws as wind() does for the first job
+    /// Once, and where that fails by chance with the next seed. \throws as wind() does for the
+    /// first job
     void run(const Job& job, Depth depth) {
+        const std::uint64_t seed = options_.context.seed;
         if (!best_) {
-            take(once(job, depth));
-            return;
+            take(once(job, depth, seed));
+        } else {
+            try {
+                take(once(job, depth, seed));
+            } catch (const InputError& error) {  // of no use for what stands
+                tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
+                return;
+            }
         }
-        try {
-            take(once(job, depth));
-        } catch (const InputError& error) {  // of no use for what stands
-            tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
+        if (by_chance_) {
+            take(once(job, depth, seed + 1));
         }
     }
 
@@ -360,14 +374,16 @@ public:
     [[nodiscard]] Run best() && {
         const bool cut_short = was_too_bare(*best_);
         if (cut_short) {
-            best_ = once(Job(best_->layers.front().setup.job), Depth::Full);
+            best_ = once(Job(best_->layers.front().setup.job), Depth::Full, best_->seed);
         }
         if (tried_.size() > 1) {
             if (!cut_short) {
                 options_.context.report_remark(tried_.back());
             }
-            tried_.push_back("what stands is the job with " +
-                             settings_words(best_->layers.front().setup.job));
+            tried_.push_back(
+                "what stands is the job with " + settings_words(best_->layers.front().setup.job) +
+                (best_->seed == options_.context.seed ? ""
+                                                      : " --seed " + std::to_string(best_->seed)));
             options_.context.report_remark(tried_.back());
             best_->remarks.insert(best_->remarks.end(), tried_.begin(), tried_.end());
         }
@@ -381,14 +397,17 @@ private:
     }
 
     void take(Run&& run) {
-        tried_.push_back(tried_words(run));
+        tried_.push_back(tried_words(run) + (run.seed == options_.context.seed
+                                                 ? ""
+                                                 : ", with seed " + std::to_string(run.seed)));
         next_ = room_for(run);
+        by_chance_ = fails_by_chance(run);
         if (!best_ || is_better(run, *best_)) {
             best_ = std::move(run);
         }
     }
 
-    [[nodiscard]] Run once(const Job& job, Depth depth) {
+    [[nodiscard]] Run once(const Job& job, Depth depth, std::uint64_t seed) {
         if (!tried_.empty()) {
             options_.context.report_remark(tried_.back());
         }
@@ -400,6 +419,7 @@ private:
                 options_.context.report_remark(words);
             }
         };
+        options.context.seed = seed;
         options.least_covered = depth == Depth::Full ? 0.0 : kCoveredShare - kJoinsCover;
         options.reading_s +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -411,6 +431,7 @@ private:
     const WindOptions& options_;
     std::optional<Run> best_;
     std::optional<Job> next_;  // that may mend the last run that was wound
+    bool by_chance_ = false;   // did that fail
     std::set<std::string> said_;
     std::vector<std::string> tried_;
 };

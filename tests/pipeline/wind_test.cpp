@@ -125,6 +125,26 @@ TEST(Wind, DoesNotWindACoverThatIsTooBare) {
     EXPECT_TRUE(run.layers.front().programs.empty());
 }
 
+TEST(Wind, PlansACoverThatFailsOnceMoreWithTheNextSeed) {
+    Job job = quick_job(LayerKind::Cover);
+    job.tolerance.laydown_mm = 0.01;
+    job.tolerance.laydown_angle_deg = 0.001;  // finer than any program keeps
+    job.fibres_given = true;
+    job.mandrel.extension_given = true;
+    job.mandrel.blend_mm = 0.0;
+    int asked = 0;
+    const auto mandrel = [&](const Job&) {
+        ++asked;
+        return small_pipe();
+    };
+    const auto run = wind(mandrel, shipped("six_axis"), job, {.context = {.seed = 7}});
+    EXPECT_EQ(asked, 2);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{std::string(check_kind::kLaydown.name)});
+    EXPECT_TRUE(std::any_of(run.remarks.begin(), run.remarks.end(), [](const std::string& words) {
+        return words.find("seed 8") != std::string::npos;
+    }));
+}
+
 TEST(Wind, TakesTheBlendThatTheJobHas) {
     std::vector<double> asked_mm;
     EXPECT_FALSE(wind_with_blend(kPipeTow_mm, asked_mm).passed());
