@@ -8,6 +8,7 @@ namespace meshwind {
 
 struct WindingMeshReport {
     bool own = false;                ///< the program's own mesh; false: the file's
+    bool swept = false;              ///< in rings about the axis of a body of revolution
     double least_quality = 1.0;      ///< of the file's wall, see mesh/even/slivers.h
     int ruled_shapes = 0;            ///< cylinders and cones of long facets
     std::size_t triangles = 0;       ///< of the own mesh's wall

@@ -71,6 +71,7 @@ json mandrel_report(const Mandrel& mandrel) {
             {"repairs", repairs_of(mandrel.repairs)},
             {"winding_mesh",
              {{"own", mandrel.winding_mesh.own},
+              {"swept", mandrel.winding_mesh.swept},
               {"least_quality", report_number(mandrel.winding_mesh.least_quality)},
               {"ruled_shapes", mandrel.winding_mesh.ruled_shapes},
               {"deviation_mm", report_number(mandrel.winding_mesh.deviation_mm)},

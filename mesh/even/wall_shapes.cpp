@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -35,6 +36,10 @@ constexpr double kTellsNormalShare = 4e-4;
 constexpr double kAlong = 0.5;
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kLeastGroup = 6;
+
+// Short facets along an edge turn too little to tell: so many are looked at where those do not,
+// which then have vertices inside, as one row of a curved surface has none.
+constexpr std::size_t kWideGroup = 128;
 
 // A shape's own normals turn by less than this over a facet (46 degrees), and the facet's is among
 // them within this (3 degrees).
@@ -228,19 +233,29 @@ private:
                });
     }
 
-    // Facets around one, over their long edges.
-    [[nodiscard]] Faces group_around(std::int32_t seed) const {
-        Faces group{seed};
-        for (std::size_t i = 0; i < group.size() && group.size() < kGroup; ++i) {
-            const std::int32_t f = group[i];
+    // Facets around one, over their long edges: the nearest, or those that turn least.
+    [[nodiscard]] Faces group_around(std::int32_t seed, bool wide) const {
+        const std::size_t most = wide ? kWideGroup : kGroup;
+        double seen = 0.0;
+        Faces group;
+        std::set<std::pair<double, std::int32_t>> next{{0.0, seed}};
+        while (!next.empty() && group.size() < most) {
+            const std::int32_t f = next.extract(next.begin()).value().second;
+            if (std::find(group.begin(), group.end(), f) != group.end()) {
+                continue;
+            }
+            group.push_back(f);
             for (std::size_t e = 0; e < 3; ++e) {
                 const std::int32_t g = beyond(f, e);
                 const double length = edge_mm(f, e);
                 if (g >= 0 && found_.of_face[at_index(g)] < 0 &&
                     length >= kAlong * facets_[at_index(f)].longest_mm &&
-                    length >= kAlong * facets_[at_index(g)].longest_mm &&
-                    std::find(group.begin(), group.end(), g) == group.end()) {
-                    group.push_back(g);
+                    length >= kAlong * facets_[at_index(g)].longest_mm) {
+                    seen += 1.0;
+                    next.emplace(
+                        wide ? angle_rad(facets_[at_index(f)].normal, facets_[at_index(g)].normal)
+                             : seen,
+                        g);
                 }
             }
         }
@@ -320,19 +335,23 @@ private:
 
     void try_seed(std::int32_t seed, bool flat) {
         if (flat) {
-            take(WallShape::Kind::Plane, {seed});
+            take(WallShape::Kind::Plane, {seed}, false);
             return;
         }
-        const Faces group = group_around(seed);
-        if (group.size() < kLeastGroup ||
-            (!take(WallShape::Kind::Ruled, group) && !take(WallShape::Kind::Ball, group))) {
+        for (const bool wide : {false, true}) {
+            const Faces group = group_around(seed, wide);
+            if (group.size() >= (wide ? kGroup : kLeastGroup) &&
+                (take(WallShape::Kind::Ruled, group, wide) ||
+                 take(WallShape::Kind::Ball, group, wide))) {
+                return;
+            }
             for (const std::int32_t f : group) {
                 tried_[at_index(f)] = 1;
             }
         }
     }
 
-    bool take(WallShape::Kind kind, const Faces& group) {
+    bool take(WallShape::Kind kind, const Faces& group, bool wide) {
         std::optional<WallShape> shape = fit(kind, group);
         Faces faces;
         for (int i = 0; shape && i < kMostGrowths; ++i) {
@@ -347,7 +366,8 @@ private:
             }
             shape = better;
         }
-        if (!shape || !is_certain(*shape, faces)) {
+        if (!shape || !is_certain(*shape, faces) ||
+            (wide && vertices_inside(faces) < kLeastInside)) {
             return false;
         }
         for (const std::int32_t f : faces) {

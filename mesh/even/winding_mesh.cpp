@@ -51,6 +51,12 @@ constexpr double kDetailBall = 0.1;
 // nearer to the file's vertices.
 constexpr double kDetailLeast = kDeviationShare / 2.0;
 
+// Where the own mesh is too far off the file's vertices, its edges are made shorter by this, so
+// often at most.
+constexpr double kShorter = 0.5;
+constexpr double kShortenFrom = 0.5;  // of what they may be off
+constexpr int kRounds = 3;
+
 // Why a frozen wall is none, or empty.
 std::string no_surface(const Surface& wall, double most_averaged) {
     const auto corners = static_cast<double>(wall.normal.size());
@@ -60,32 +66,110 @@ std::string no_surface(const Surface& wall, double most_averaged) {
                      percent(wall.fit.averaged / corners, 0) + " of the corners";
 }
 
-// Largest distance of a vertex of the file's wall from the smooth surface of the own mesh, but for
-// those on details that were taken off.
-double deviation_mm(const LabelledMesh& file, const Surface& surface, const std::vector<char>& kept,
-                    const TriangleSoup& removed, double near_mm) {
+double mean_edge_mm(const Surface& surface, std::int32_t face) {
+    double sum = 0.0;
+    const auto& v = surface.face[static_cast<std::size_t>(face)];
+    for (std::size_t e = 0; e < 3; ++e) {
+        sum += (surface.position_mm[static_cast<std::size_t>(v[(e + 1) % 3])] -
+                surface.position_mm[static_cast<std::size_t>(v[e])])
+                   .norm();
+    }
+    return sum / 3.0;
+}
+
+// A vertex of the file's wall, and how far it is off the smooth surface of the own mesh.
+struct OffVertex {
+    Eigen::Vector3d at_mm;
+    std::int32_t region = -1;
+    double off_mm = 0.0;
+    double edge_mm = 0.0;  // of the own mesh there, mean
+};
+
+bool is_nearer(const OffVertex& a, const OffVertex& b) {
+    return a.off_mm < b.off_mm;
+}
+
+// All of them but those on details that were taken off.
+std::vector<OffVertex> off_vertices(const LabelledMesh& file, const Surface& surface,
+                                    const std::vector<char>& kept, const TriangleSoup& removed,
+                                    double near_mm) {
     const WallProjection wall(surface);
     const RayQuery gone{std::span(&removed, 1)};
-    std::vector<std::int32_t> region_of_vertex(file.soup.points_mm.size(), -1);
+    std::vector<OffVertex> off(file.soup.points_mm.size());
     for (std::size_t f = 0; f < file.soup.faces.size(); ++f) {
         if (kept[static_cast<std::size_t>(file.region[f])] != 0) {
             for (const std::int32_t v : file.soup.faces[f]) {
-                region_of_vertex[static_cast<std::size_t>(v)] = file.region[f];
+                off[static_cast<std::size_t>(v)].region = file.region[f];
             }
         }
     }
-    std::vector<double> off(region_of_vertex.size(), 0.0);
     constexpr std::size_t kChunk = 256;
     parallel_for(off.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            const Eigen::Vector3d& p = file.soup.points_mm[v];
-            if (region_of_vertex[v] >= 0 && wall.has(region_of_vertex[v]) &&
-                gone.closest(p, near_mm).part < 0) {
-                off[v] = (wall.nearest(p, region_of_vertex[v]).position_mm - p).norm();
+            OffVertex& vertex = off[v];
+            vertex.at_mm = file.soup.points_mm[v];
+            if (vertex.region >= 0 && wall.has(vertex.region) &&
+                gone.closest(vertex.at_mm, near_mm).part < 0) {
+                const WallProjection::Foot foot = wall.nearest(vertex.at_mm, vertex.region);
+                vertex.off_mm = (foot.position_mm - vertex.at_mm).norm();
+                vertex.edge_mm = mean_edge_mm(surface, foot.face);
             }
         }
     });
-    return *std::max_element(off.begin(), off.end());
+    return off;
+}
+
+// Shorter edges around vertices that the own mesh is too far off.
+void shorten_edges(const std::vector<OffVertex>& off, double most_off_mm, const Surface& wall,
+                   EvenMeshOptions& options) {
+    const WallProjection file(wall);
+    options.most_mm.resize(wall.position_mm.size(), options.longest_mm);
+    for (const OffVertex& vertex : off) {
+        if (vertex.off_mm > most_off_mm) {
+            const WallProjection::Foot foot = file.nearest(vertex.at_mm, vertex.region);
+            for (const std::int32_t v : wall.face[static_cast<std::size_t>(foot.face)]) {
+                double& most = options.most_mm[static_cast<std::size_t>(v)];
+                most = std::min(most, kShorter * vertex.edge_mm);
+            }
+        }
+    }
+}
+
+// Even triangles over what is left of the part, near the file's vertices where they can be had;
+// their count and what they are off go to the report, and why there are none.
+LabelledMesh even_triangles(const LabelledMesh& file, const Details& left,
+                            const std::vector<char>& kept, WindingMeshReport& report) {
+    const Surface wall = frozen_wall(left.part, kept);
+    report.why_not = no_surface(wall, kMostAveragedInFile);
+    if (!report.why_not.empty()) {
+        return {};
+    }
+    const double size = size_mm(file, kept);
+    EvenMeshOptions options = even_options(size);
+    LabelledMesh own;
+    for (int round = 0; round < kRounds; ++round) {
+        check_interrupt();
+        const double wanted = wanted_triangles(wall, options);
+        if (!(wanted <= kMostEvenTriangles)) {
+            report.why_not = "even triangles would be too many, " + fixed(wanted, 0);
+            break;
+        }
+        own = even_mesh(left.part, kept, wall, options);
+        const Surface surface = frozen_wall(own, kept);
+        const std::vector<OffVertex> off =
+            off_vertices(file, surface, kept, left.removed, kDetailLeast * size);
+        report.triangles = surface.face.size();
+        report.deviation_mm = std::max_element(off.begin(), off.end(), is_nearer)->off_mm;
+        const double most_mm = kDeviationShare * size;
+        if (report.deviation_mm <= most_mm) {
+            report.why_not = no_surface(surface, kMostAveraged);
+            break;
+        }
+        report.why_not = "even triangles would be up to " + fixed(report.deviation_mm, 3) +
+                         " mm off its vertices, more than " + fixed(most_mm, 3) + " mm";
+        shorten_edges(off, kShortenFrom * most_mm, wall, options);
+    }
+    return own;
 }
 
 }  // namespace
@@ -118,32 +202,13 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     Details details =
         without_details(clean(halved.part), kept, kDetailBall * size, least_detail_mm, height_mm);
     details.part.shape.clear();  // triangles turn over the edge between two shapes
-    const LabelledMesh& told = details.part;
-    const EvenMeshOptions options = even_options(size);
-    Surface wall = frozen_wall(told, kept);
-    report.why_not = no_surface(wall, kMostAveragedInFile);
-    if (!report.why_not.empty()) {
-        return result;
-    }
-    const double wanted = wanted_triangles(wall, options);
-    if (!(wanted <= kMostEvenTriangles)) {
-        report.why_not = "even triangles would be too many, " + fixed(wanted, 0);
-        return result;
-    }
-    LabelledMesh own = even_mesh(told, kept, std::move(wall), options);
-    const Surface surface = frozen_wall(own, kept);
-    report.triangles = surface.face.size();
-    report.deviation_mm = deviation_mm(part, surface, kept, details.removed, least_detail_mm);
-    const double most_mm = kDeviationShare * size;
-    const double narrow = share_below(own, kept, kUnevenQuality);
-    if (!(report.deviation_mm <= most_mm)) {
-        report.why_not = "even triangles would be up to " + fixed(report.deviation_mm, 3) +
-                         " mm off its vertices, more than " + fixed(most_mm, 3) + " mm";
-    } else if (narrow > kMostNarrow) {
-        report.why_not = "its narrow triangles cannot be taken out: " + percent(narrow, 1) +
-                         " of the wall would still lie in such";
-    } else {
-        report.why_not = no_surface(surface, kMostAveraged);
+    LabelledMesh own = even_triangles(part, details, kept, report);
+    if (report.why_not.empty()) {
+        const double narrow = share_below(own, kept, kUnevenQuality);
+        if (narrow > kMostNarrow) {
+            report.why_not = "its narrow triangles cannot be taken out: " + percent(narrow, 1) +
+                             " of the wall would still lie in such";
+        }
     }
     report.own = report.why_not.empty();
     if (report.own) {

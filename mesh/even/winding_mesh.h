@@ -26,8 +26,9 @@ struct WindingMesh {
 
 /// Where the wall has narrow triangles: long facets are halved on their cylinders and cones
 /// (long_facets.h), slivers go (slivers.h), lettering is taken off (details.h), and even triangles
-/// are laid over the smooth surface through the vertices that are left (even_mesh.h). Where that
-/// does not come out even and near the given vertices, the given mesh stays.
+/// are laid over the smooth surface through the vertices that are left (even_mesh.h), with shorter
+/// edges where they would be too far off the given vertices. Where that does not come out even and
+/// near them, the given mesh stays.
 /// \param kept per region: whether it is wall \param part oriented manifold, mm
 /// \param details_mm height up to which details are taken off, also from even walls; none: of
 /// lettering, 1 mm; 0: none are

@@ -17,6 +17,7 @@
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
 #include "mesh/mandrel/remarks.h"
+#include "mesh/mandrel/swept_part.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/weld.h"
 #include "mesh/revolution/crease_rings.h"
@@ -208,29 +209,6 @@ std::optional<BodyOfRevolution> body_of(Wall wall) {
     return find_revolution(surface, wall.rims.rims).body;
 }
 
-// Onto the surface of revolution that the file's vertices lie on: straight stretches and joints are
-// then exact, which curves through even points only come near.
-void settle_on(const Meridian& meridian, const Eigen::Isometry3d& mandrel_from_file,
-               const std::vector<char>& kept, LabelledMesh& part) {
-    std::vector<char> wall(part.soup.points_mm.size(), 0);
-    for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
-        for (const std::int32_t v : part.soup.faces[f]) {
-            wall[static_cast<std::size_t>(v)] |= kept[static_cast<std::size_t>(part.region[f])];
-        }
-    }
-    const Eigen::Isometry3d back = mandrel_from_file.inverse();
-    for (std::size_t v = 0; v < wall.size(); ++v) {
-        const Eigen::Vector3d p = mandrel_from_file * part.soup.points_mm[v];
-        const double radius = p.head<2>().norm();
-        if (wall[v] == 0 || !(radius > 0.0)) {
-            continue;
-        }
-        const MeridianPlace place = meridian.at(meridian.foot(radius, p.z()).arc_mm);
-        const double scale = place.radius_mm / radius;
-        part.soup.points_mm[v] = back * Eigen::Vector3d(scale * p.x(), scale * p.y(), place.z_mm);
-    }
-}
-
 void take(LabelledMesh&& part, Mandrel& mandrel, Segmentation& segmentation) {
     mandrel.whole = std::move(part.soup);
     segmentation.region = std::move(part.region);
@@ -288,6 +266,29 @@ void note(const std::vector<EndCut>& cuts, std::vector<Rim>& rims) {
     }
 }
 
+// A body of revolution in rings of our own, where the file's triangles are uneven. The spindle
+// stays.
+bool make_rings(Mandrel& mandrel, Segmentation& segmentation, Wall& wall) {
+    WindingMeshReport& report = mandrel.winding_mesh;
+    if (report.least_quality >= kUnevenQuality) {
+        return false;
+    }
+    const std::vector<char> kept = kept_of(segmentation.regions);
+    const std::optional<BodyOfRevolution> body = body_of(wall);
+    if (!body || body->residual_mm > kDeviationShare * size_mm(wall.kept, kept)) {
+        return false;
+    }
+    take(swept_part(view(mandrel.whole, segmentation), kept, body->meridian,
+                    wall.frame.mandrel_from_file),
+         mandrel, segmentation);
+    wall.kept = wall_of(view(mandrel.whole, segmentation), kept);
+    wall.rims = find_rims(wall.kept.soup);
+    report.own = report.swept = true;
+    report.triangles = wall.kept.soup.faces.size();
+    report.deviation_mm = body->residual_mm;
+    return true;
+}
+
 // The wall in triangles of our own, where the file's are uneven.
 void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
                const std::optional<MandrelOptions::Axis>& axis_mm,
@@ -298,18 +299,9 @@ void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
     made.report.file_triangles = mandrel.winding_mesh.file_triangles;
     mandrel.winding_mesh = made.report;
     mandrel.details = std::move(made.removed);
-    if (!made.report.own) {
-        return;
-    }
-    const std::optional<BodyOfRevolution> body = body_of(wall);
-    if (body) {
-        settle_on(body->meridian, wall.frame.mandrel_from_file, kept, made.part);
-    }
-    take(std::move(made.part), mandrel, segmentation);
-    const SpindleFrame frame = wall.frame;
-    wall = find_wall(mandrel.whole, segmentation, axis_mm);
-    if (body) {
-        wall.frame = frame;
+    if (made.report.own) {
+        take(std::move(made.part), mandrel, segmentation);
+        wall = find_wall(mandrel.whole, segmentation, axis_mm);
     }
 }
 
@@ -384,10 +376,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     const std::vector<EndCut> cuts = cut_ends(mandrel, segmentation, options.cut_ends_mm, name);
     Wall wall = find_wall(mandrel.whole, segmentation, given);
     check_interrupt();
-    if (options.mesh == MandrelOptions::Mesh::Even) {
+    mandrel.winding_mesh.least_quality = least_quality(wall.kept.soup);
+    if (options.mesh == MandrelOptions::Mesh::Even && !make_rings(mandrel, segmentation, wall)) {
         make_even(mandrel, segmentation, wall, given, options.remove_details_mm);
-    } else {
-        mandrel.winding_mesh.least_quality = least_quality(wall.kept.soup);
     }
     if (options.blend_mm > 0.0) {
         check_interrupt();

@@ -116,13 +116,13 @@ void add_mesh_remarks(Mandrel& mandrel) {
                    {});
     }
     if (mesh.own) {
-        add_remark(mandrel,
-                   "the file's triangles are uneven: what is wound has " +
-                       std::to_string(mesh.triangles) +
-                       " even ones, from which no vertex of the file is more than " +
-                       fixed(mesh.deviation_mm, 3) +
-                       " mm off; \"mandrel\": {\"mesh\": \"file\"} in the job winds the file's",
-                   {});
+        add_remark(
+            mandrel,
+            "the file's triangles are uneven: what is wound has " + std::to_string(mesh.triangles) +
+                (mesh.swept ? " in rings about the spindle" : " even ones") +
+                ", from which no vertex of the file is more than " + fixed(mesh.deviation_mm, 3) +
+                " mm off; \"mandrel\": {\"mesh\": \"file\"} in the job winds the file's",
+            {});
     } else if (!mesh.why_not.empty()) {
         add_remark(mandrel,
                    "the file's triangles are uneven and are wound as they are: " + mesh.why_not,

@@ -263,59 +263,114 @@ void set_exact(ProfileLine& line, double length_mm, double tolerance_mm) {
     }
 }
 
+// Appends how far each place is off the quartic through three neighbours on either side.
+void append_off_neighbours(const Places& places, std::vector<double>& off) {
+    constexpr std::size_t kBeside = 3;
+    for (std::size_t i = kBeside; i + kBeside < places.size(); ++i) {
+        const ProfileLine line = line_of(places, i - kBeside, i + kBeside);
+        Eigen::Matrix<double, 2 * kBeside, 5> terms;
+        Eigen::Matrix<double, 2 * kBeside, 1> value;
+        for (std::size_t k = 0; k < 2 * kBeside; ++k) {
+            const Vector2d& p = places[i - kBeside + k + (k < kBeside ? 0 : 1)].at_mm;
+            const double x = line.along_mm(p) - line.along_mm(places[i].at_mm);
+            const auto row = static_cast<Eigen::Index>(k);
+            const double u =
+                x / line.along_mm(places[i + kBeside].at_mm - places[i].at_mm + line.origin_mm);
+            terms.row(row) << 1.0, u, u * u, u * u * u, u * u * u * u;
+            value[row] = line.off_mm(p);
+        }
+        const Eigen::Matrix<double, 5, 1> fit = terms.colPivHouseholderQr().solve(value);
+        off.push_back(std::abs(line.off_mm(places[i].at_mm) - fit[0]));
+    }
+}
+
+double as_a_rule(std::vector<double>& off) {
+    constexpr double kRule = 0.6;  // share that is better
+    const auto rule =
+        off.begin() + static_cast<std::ptrdiff_t>(kRule * static_cast<double>(off.size() - 1));
+    std::nth_element(off.begin(), rule, off.end());
+    return *rule;
+}
+
+// So many vertices at one place are a ring.
+constexpr std::size_t kRing = 6;
+
+// One behind the ring that starts at `first`, or `first`. The rings of a fillet may be much nearer
+// to each other than the vertices of each are, but not than these are off their circle.
+std::size_t end_of_ring(std::span<const ProfilePoint> points, std::size_t first) {
+    constexpr double kTogether = 0.01;  // of an edge, from one vertex to the next
+    constexpr double kApart = 5.0;      // times what a ring is wide, to the next
+    std::size_t last = first + 1;
+    while (last < points.size() &&
+           points[last].arc_mm - points[last - 1].arc_mm <= kTogether * points[first].spacing_mm) {
+        ++last;
+    }
+    const double apart = kApart * (points[last - 1].arc_mm - points[first].arc_mm);
+    const bool alone =
+        (first == 0 || points[first].arc_mm - points[first - 1].arc_mm > apart) &&
+        (last == points.size() || points[last].arc_mm - points[last - 1].arc_mm > apart);
+    return last - first >= kRing && alone ? last : first;
+}
+
+ProfilePlace place_of(std::span<const ProfilePoint> points, std::size_t first, std::size_t last) {
+    ProfilePlace place{.low_mm = points[first].arc_mm,
+                       .high_mm = points[last - 1].arc_mm,
+                       .spacing_mm = points[first].spacing_mm,
+                       .first = first,
+                       .last = last};
+    const auto count = static_cast<double>(last - first);
+    for (const ProfilePoint& p : points.subspan(first, last - first)) {
+        place.at_mm += p.at_mm / count;
+        place.arc_mm += p.arc_mm / count;
+    }
+    for (const ProfilePoint& p : points.subspan(first, last - first)) {
+        place.spread_mm += (p.at_mm - place.at_mm).squaredNorm() / count;
+    }
+    place.spread_mm = std::sqrt(place.spread_mm);
+    return place;
+}
+
 }  // namespace
 
 std::vector<ProfilePlace> places_of(std::span<const ProfilePoint> points) {
     constexpr double kOnePlace = 0.25;  // of an edge
     Places places;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (places.empty() ||
-            points[i].arc_mm - places.back().low_mm > kOnePlace * places.back().spacing_mm) {
-            places.push_back({Vector2d::Zero(), 0.0, points[i].arc_mm, points[i].arc_mm,
-                              points[i].spacing_mm, i, i});
+    for (std::size_t first = 0; first < points.size();) {
+        std::size_t last = end_of_ring(points, first);
+        if (last == first) {
+            do {
+                ++last;
+            } while (last < points.size() && end_of_ring(points, last) == last &&
+                     points[last].arc_mm - points[first].arc_mm <=
+                         kOnePlace * points[first].spacing_mm);
         }
-        ProfilePlace& place = places.back();
-        place.at_mm += points[i].at_mm;
-        place.arc_mm += points[i].arc_mm;
-        place.high_mm = points[i].arc_mm;
-        place.last = i + 1;
-    }
-    for (ProfilePlace& place : places) {
-        place.at_mm /= static_cast<double>(place.last - place.first);
-        place.arc_mm /= static_cast<double>(place.last - place.first);
+        places.push_back(place_of(points, first, last));
+        first = last;
     }
     return places;
 }
 
 double scatter_mm(std::span<const Places> sections) {
-    constexpr std::size_t kBeside = 3;
-    constexpr double kRule = 0.6;  // share of the places that are better
     std::vector<double> off;
     for (const Places& places : sections) {
-        for (std::size_t i = kBeside; i + kBeside < places.size(); ++i) {
-            const ProfileLine line = line_of(places, i - kBeside, i + kBeside);
-            Eigen::Matrix<double, 2 * kBeside, 5> terms;
-            Eigen::Matrix<double, 2 * kBeside, 1> value;
-            for (std::size_t k = 0; k < 2 * kBeside; ++k) {
-                const Vector2d& p = places[i - kBeside + k + (k < kBeside ? 0 : 1)].at_mm;
-                const double x = line.along_mm(p) - line.along_mm(places[i].at_mm);
-                const auto row = static_cast<Eigen::Index>(k);
-                const double u =
-                    x / line.along_mm(places[i + kBeside].at_mm - places[i].at_mm + line.origin_mm);
-                terms.row(row) << 1.0, u, u * u, u * u * u, u * u * u * u;
-                value[row] = line.off_mm(p);
-            }
-            const Eigen::Matrix<double, 5, 1> fit = terms.colPivHouseholderQr().solve(value);
-            off.push_back(std::abs(line.off_mm(places[i].at_mm) - fit[0]));
-        }
+        append_off_neighbours(places, off);
     }
     if (off.empty()) {
         return 0.0;
     }
-    const auto rule =
-        off.begin() + static_cast<std::ptrdiff_t>(kRule * static_cast<double>(off.size() - 1));
-    std::nth_element(off.begin(), rule, off.end());
-    return *rule;
+    const double scatter = as_a_rule(off);
+    // Fillets of a few rings between lines are off a smooth curve, but not their vertices.
+    std::vector<double> spread;
+    std::size_t places = 0;
+    for (const Places& section : sections) {
+        places += section.size();
+        for (const ProfilePlace& place : section) {
+            if (place.last - place.first >= kRing) {
+                spread.push_back(place.spread_mm);
+            }
+        }
+    }
+    return 2 * spread.size() > places ? std::min(scatter, as_a_rule(spread)) : scatter;
 }
 
 std::vector<ProfileStretch> stretches_of(std::span<const ProfilePoint> points, const Places& places,

@@ -16,6 +16,7 @@ struct ProfilePlace {
     double arc_mm = 0.0;                              ///< mean
     double low_mm = 0.0;                              ///< least and largest arc
     double high_mm = 0.0;
+    double spread_mm = 0.0;   ///< root mean square of the points' distances from the mean
     double spacing_mm = 0.0;  ///< of its first point
     std::size_t first = 0;    ///< of the points
     std::size_t last = 0;     ///< one behind
@@ -50,7 +51,8 @@ struct ProfileStretch {
     ProfileLine line;  ///< of a straight one
 };
 
-/// How far places lie off a smooth curve through their neighbours, as a rule.
+/// How far places lie off a smooth curve through their neighbours, as a rule, or less where they
+/// are rings whose vertices lie nearer together.
 [[nodiscard]] double scatter_mm(std::span<const std::vector<ProfilePlace>> sections);
 
 /// \param tolerance_mm places this near to a line are on it \param precision_mm of the coordinates

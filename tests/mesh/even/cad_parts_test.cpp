@@ -1,6 +1,7 @@
 // Parts as a CAD program tessellates them: one row of long facets along each pipe. The figures are
 // those the parts were drawn with (data/README.md).
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -86,6 +87,35 @@ TEST(CadParts, SteppedReducerHasItsCylinders) {
     EXPECT_EQ(found.body->parts[2].kind, MeridianPartKind::Cylinder);
     EXPECT_NEAR(found.body->parts[0].radius_mm, 40.0, 1e-4);
     EXPECT_NEAR(found.body->parts[2].radius_mm, 25.0, 1e-4);
+}
+
+// Cylinders and cones with fillets of a millimetre between them, five rings of facets each, whose
+// vertices around are fifteen times as far apart.
+TEST(CadParts, FilletedReducerIsSweptWithItsFillets) {
+    const Mandrel mandrel = part("filleted_reducer");
+    EXPECT_TRUE(mandrel.winding_mesh.swept);
+    EXPECT_LT(mandrel.winding_mesh.deviation_mm, 1e-3);
+    const RevolutionFinding found = find_revolution(mandrel);
+    ASSERT_TRUE(found.body) << found.why_not;
+    using enum MeridianPartKind;
+    const MeridianPartKind kinds[] = {Cylinder, Dome, Cone, Dome,    Cylinder,
+                                      Dome,     Cone, Dome, Cylinder};
+    ASSERT_EQ(found.body->parts.size(), std::size(kinds));
+    for (std::size_t i = 0; i < std::size(kinds); ++i) {
+        EXPECT_EQ(found.body->parts[i].kind, kinds[i]) << i;
+    }
+    EXPECT_NEAR(found.body->parts[0].radius_mm, 23.541, 1e-3);
+    EXPECT_NEAR(found.body->parts[8].radius_mm, 12.444, 1e-3);
+    EXPECT_LT(found.body->residual_mm, 1e-3);
+    EXPECT_EQ(mandrel.surface.fit.averaged, 0U);
+}
+
+// Even triangles of the first size come only within 0.16 mm of the file's vertices.
+TEST(CadParts, VesselWithANozzleHasShorterEdgesWhereItNeedsThem) {
+    const Mandrel mandrel = part("vessel_with_nozzle");
+    ASSERT_TRUE(mandrel.winding_mesh.own) << mandrel.winding_mesh.why_not;
+    EXPECT_LE(mandrel.winding_mesh.deviation_mm, 0.1208);
+    ASSERT_EQ(mandrel.rims.size(), 3U);
 }
 
 // Off the blend the legs are cylinders: vertices and normals are theirs to fourth and third order.

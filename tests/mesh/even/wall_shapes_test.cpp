@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -59,6 +60,48 @@ TriangleSoup shoulder() {
         profile.emplace_back(12.0 + 8.0 * std::cos(angle), 100.0 + 8.0 * std::sin(angle));
     }
     return test::revolve(profile, kSegments);
+}
+
+// Two pipes and a short cone between them in two rows, whose rings have other numbers of vertices.
+TriangleSoup step() {
+    struct Ring {
+        double radius_mm, z_mm;
+        std::int32_t count;
+    };
+    TriangleSoup soup;
+    std::int32_t before = -1;
+    std::int32_t first = 0;
+    for (const Ring& ring : {Ring{33.0, -100.0, 107}, Ring{33.0, 0.0, 107}, Ring{31.0, 2.1, 54},
+                             Ring{29.0, 4.2, 107}, Ring{29.0, 100.0, 107}}) {
+        const auto start = static_cast<std::int32_t>(soup.points_mm.size());
+        for (std::int32_t i = 0; i < ring.count; ++i) {
+            const double phi = 2.0 * kPi * i / ring.count;
+            soup.points_mm.emplace_back(ring.radius_mm * std::cos(phi),
+                                        ring.radius_mm * std::sin(phi), ring.z_mm);
+        }
+        for (std::int32_t i = 0, j = 0; before > 0 && (i < before || j < ring.count);) {
+            const std::int32_t low = first + i % before;
+            const std::int32_t high = start + j % ring.count;
+            if (j == ring.count || (i < before && (i + 1) * ring.count <= (j + 1) * before)) {
+                soup.faces.push_back({low, first + ++i % before, high});
+            } else {
+                soup.faces.push_back({low, start + ++j % ring.count, high});
+            }
+        }
+        before = ring.count;
+        first = start;
+    }
+    return soup;
+}
+
+TEST(WallShapes, OfAStepAreItsShortFacetsACone) {
+    const Walls walls = walls_of(step());
+    const WallShapes found = find_wall_shapes(walls.part, walls.kept);
+    ASSERT_EQ(count(found, Kind::Ruled), 3);
+    EXPECT_EQ(std::count(found.of_face.begin(), found.of_face.end(), -1), 0);
+    EXPECT_TRUE(std::any_of(found.shapes.begin(), found.shapes.end(), [](const WallShape& shape) {
+        return std::abs(std::abs(shape.ruled.growth) - 2.0 / 2.1) < 1e-9;
+    }));
 }
 
 TEST(WallShapes, OfAReducerAreItsCylindersAndCone) {

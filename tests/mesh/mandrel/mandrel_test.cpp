@@ -119,7 +119,7 @@ TEST(BuildMandrel, WallsOfHolesIntoTheBoreAreBore) {
                                                    {26, 0},
                                                    {30, 0}},
                                                   48),
-                                    "vessel");
+                                    "vessel", kAsItCame);
     ASSERT_EQ(m.rims.size(), 2U);
     std::vector<double> radii = {m.rims[0].radius_mm, m.rims[1].radius_mm};
     std::sort(radii.begin(), radii.end());
