@@ -278,9 +278,12 @@ bool make_rings(Mandrel& mandrel, Segmentation& segmentation, Wall& wall) {
     if (!body || body->residual_mm > kDeviationShare * size_mm(wall.kept, kept)) {
         return false;
     }
-    take(swept_part(view(mandrel.whole, segmentation), kept, body->meridian,
-                    wall.frame.mandrel_from_file),
-         mandrel, segmentation);
+    std::optional<LabelledMesh> swept = swept_part(view(mandrel.whole, segmentation), kept,
+                                                   body->meridian, wall.frame.mandrel_from_file);
+    if (!swept) {
+        return false;
+    }
+    take(*std::move(swept), mandrel, segmentation);
     wall.kept = wall_of(view(mandrel.whole, segmentation), kept);
     wall.rims = find_rims(wall.kept.soup);
     report.own = report.swept = true;

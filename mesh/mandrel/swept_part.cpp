@@ -45,14 +45,18 @@ std::vector<std::int32_t> regions_along(const LabelledMesh& wall, const Meridian
 
 }  // namespace
 
-LabelledMesh swept_part(const LabelledView& part, const std::vector<char>& kept,
-                        const Meridian& meridian, const Eigen::Isometry3d& mandrel_from_part) {
+std::optional<LabelledMesh> swept_part(const LabelledView& part, const std::vector<char>& kept,
+                                       const Meridian& meridian,
+                                       const Eigen::Isometry3d& mandrel_from_part) {
     std::vector<char> others;
     for (const char keep : kept) {
         others.push_back(static_cast<char>(keep == 0));
     }
     const LabelledMesh wall = wall_of(part, kept);
     const LabelledMesh rings = swept_wall(meridian, size_mm(wall, kept));
+    if (rings.soup.faces.empty()) {
+        return std::nullopt;
+    }
     const std::vector<std::int32_t> regions = regions_along(wall, meridian, mandrel_from_part);
     LabelledMesh made = wall_of(part, others);
     const auto first = static_cast<std::int32_t>(made.soup.points_mm.size());

@@ -104,7 +104,7 @@ Place place_at(const std::vector<Place>& places, double steps) {
             a.about_mm + part * (b.about_mm - a.about_mm), steps};
 }
 
-// Rings from the first end to the second.
+// Rings from the first end to the second; none where they would be too many.
 std::vector<Place> rings_of(const Meridian& meridian, double size_mm) {
     const std::vector<double> bounds = bounds_of(meridian);
     std::vector<Place> places;
@@ -126,6 +126,9 @@ std::vector<Place> rings_of(const Meridian& meridian, double size_mm) {
         return at->steps;
     };
     std::vector<Place> rings;
+    if (!(places.back().steps * kFewest <= kMostEvenTriangles)) {
+        return rings;
+    }
     for (std::size_t b = 0; b + 1 < bounds.size(); ++b) {
         const double from = steps_to(bounds[b]);
         const double steps = std::max(steps_to(bounds[b + 1]) - from, 0.0);
@@ -170,6 +173,9 @@ public:
             crossed += crease ? 1 : 0;
             on_crease = crease;
             before = ring;
+            if (static_cast<double>(mesh_.soup.faces.size()) > kMostEvenTriangles) {
+                return {};
+            }
         }
         return std::move(mesh_);
     }

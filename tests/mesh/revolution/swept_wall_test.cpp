@@ -55,6 +55,11 @@ TEST(SweptWall, OfACapsuleIsClosedAndHoldsItsVolume) {
     EXPECT_NEAR(std::log2(missing[0] / missing[1]), 2.0, 0.2);
 }
 
+TEST(SweptWall, OfAWireIsEmpty) {
+    EXPECT_TRUE(swept_wall(Meridian({{1.0, 0.0}, {1.0, 1e6}}), 100.0).soup.faces.empty());
+    EXPECT_TRUE(swept_wall(Meridian({{1.0, 0.0}, {1.0, 1e9}}), 100.0).soup.faces.empty());
+}
+
 // Fillets of a millimetre have rows of their own; between creases it is one region.
 TEST(SweptWall, HasRowsOnFilletsAndRingsOnCreases) {
     std::vector<MeridianNode> nodes{{.radius_mm = 30.0, .z_mm = 0.0, .straight = true}};
