@@ -5,6 +5,7 @@
 #include <optional>
 
 #define CGAL_EIGEN3_ENABLED
+#define CGAL_NDEBUG  // fair() asserts at every vertex that all faces are triangles
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/fair.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>

@@ -1,6 +1,7 @@
 #include "postproc/collision/collision.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -21,6 +22,9 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t kStepChunk = 64;
+
+// What a sweep may take for a hit that is none.
+constexpr double kSweepSlack_mm = 2.0 * kSweepResolution_mm;
 
 // Pieces and steps larger than this are divided without a search where the table, which is good to
 // some mm, says that it would not settle them.
@@ -161,15 +165,18 @@ public:
         return clear_within(part, way, part.chunk, 0.0, 1.0);
     }
 
-    // The same for a piece that is measured to be so far off at the step's end, up to the
-    // resolution: mostly without a search.
-    [[nodiscard]] bool clear(const LinkedChunk& part, double end_clearance_mm) const {
+    // How far a piece moves at most.
+    [[nodiscard]] double motion_mm(const LinkedChunk& part) const {
         const Way way(machine_, part.link, std::nullopt);
-        const double room = end_clearance_mm - need_mm_ - 2.0 * kSweepResolution_mm;
-        return (room > 0.0 &&
-                way.motion_mm(Joints(to_.begin(), to_.end()), from_, to_, 1.0, part.chunk.centre(),
-                              part.chunk.reach_mm() + part.chunk.radius_mm) < room) ||
-               clear_within(part, way, part.chunk, 0.0, 1.0);
+        return way.motion_mm(Joints(to_.begin(), to_.end()), from_, to_, 1.0, part.chunk.centre(),
+                             part.chunk.reach_mm() + part.chunk.radius_mm);
+    }
+
+    // The same for a piece that is known to be so far off at the step's end and to move so little,
+    // up to the resolution: mostly without a search.
+    [[nodiscard]] bool clear(const LinkedChunk& part, double end_clearance_mm,
+                             double motion_mm) const {
+        return motion_mm < end_clearance_mm - need_mm_ - kSweepSlack_mm || clear(part);
     }
 
 private:
@@ -411,8 +418,9 @@ public:
           parts_(chunks_of(envelope.parts)),
           bodies_(chunks_of(envelope.bodies)) {}
 
-    [[nodiscard]] StepFinding find(const EyePath& path, const JointPath& joints,
-                                   std::size_t i) const {
+    // `least_mm`: what is known to be the least clearance so far.
+    [[nodiscard]] StepFinding find(const EyePath& path, const JointPath& joints, std::size_t i,
+                                   double least_mm) const {
         const std::size_t before = i > 0 ? i - 1 : i;
         const std::span<const double> from = joints.row(before);
         const std::span<const double> to = joints.row(i);
@@ -424,10 +432,18 @@ public:
         for (const LinkedChunk& part : parts_) {
             if (rule_.told_mm > rule_.clearance_mm) {
                 const Isometry3d pose = mandrel * base_from_link(machine_, to, part.link);
-                found.clearance_mm =
-                    least_distance(obstacles_, pose, part.chunk, found.clearance_mm);
+                const double move = sweep.motion_mm(part);
+                double told = found.clearance_mm;
+                if (rule_.least_only) {  // what may be the least, or tells that the step is clear
+                    const double enough = rule_.clearance_mm + move + 2.0 * kSweepSlack_mm;
+                    told = std::min(told, std::max(least_mm + kSweepSlack_mm, enough));
+                }
+                const double at_end = least_distance(obstacles_, pose, part.chunk, told);
+                found.clearance_mm = at_end < told ? at_end : found.clearance_mm;
+                found.head = found.head || !sweep.clear(part, at_end, move);
+            } else {
+                found.head = found.head || !sweep.clear(part);
             }
-            found.head = found.head || !sweep.clear(part, found.clearance_mm);
         }
         for (const LinkedChunk& body : bodies_) {
             look_at(body, path[before], path[i], from, to, found);
@@ -498,9 +514,14 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
                                  const JointPath& joints, const CollisionRule& rule) {
     const StepCheck check(machine, envelope, obstacles, rule);
     std::vector<StepFinding> found(path.size());
+    std::atomic<double> least_mm = rule.told_mm;
     parallel_for(path.size(), kStepChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            found[i] = check.find(path, joints, i);
+            double least = least_mm;
+            found[i] = check.find(path, joints, i, least);
+            while (found[i].clearance_mm < least &&
+                   !least_mm.compare_exchange_weak(least, found[i].clearance_mm)) {
+            }
         }
     });
     CollisionReport report;

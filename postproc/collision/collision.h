@@ -50,6 +50,7 @@ struct CollisionRule {
     /// Clearances of the head beyond this are not told apart; where it is `clearance_mm`, none is
     /// measured.
     double told_mm = kClearanceCap_mm;
+    bool least_only = false;  ///< no clearance is told but the least of all: much is not measured
 };
 
 /// What the motion touches. A step leads from eye point i - 1 to eye point i.
@@ -59,7 +60,8 @@ struct CollisionReport {
         head_hits;  ///< steps in which the head comes nearer than the clearance
     std::vector<std::size_t>
         body_hits;  ///< steps in which a body touches what turns with the mandrel
-    std::vector<double> clearance_mm;  ///< of the head at each eye point, up to told_mm
+    std::vector<double> clearance_mm;  ///< of the head at each eye point, up to told_mm; with
+                                       ///< least_only told_mm where it was not measured
     double min_clearance_mm = 0.0;     ///< least of them
     std::size_t min_clearance_point = 0;
 };

@@ -295,9 +295,10 @@ private:
 
     void check_collision() {
         const LaidPath& laid = found_.laid;
-        const CollisionReport report =
-            check_collisions(task_.machine, task_.envelope, task_.obstacles, laid.samples,
-                             laid.joints, rules_.collision);
+        CollisionRule rule = rules_.collision;
+        rule.least_only = true;
+        const CollisionReport report = check_collisions(
+            task_.machine, task_.envelope, task_.obstacles, laid.samples, laid.joints, rule);
         Check check(check_kind::kCollision);
         check.numbers = {{"fibre_hits", static_cast<double>(report.fibre_hits.size())},
                          {"head_hits", static_cast<double>(report.head_hits.size())},

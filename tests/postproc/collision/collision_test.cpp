@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/parallel.h"
 #include "core/units.h"
 #include "machines/kinematics.h"
 #include "machines/machine_json.h"
@@ -139,6 +140,39 @@ TEST(CheckCollisions, ClearanceFromASphereIsTheClosedForm) {
             std::sqrt(pose.x * pose.x + pose.y * pose.y + pose.z * pose.z) - 50.0 - 6.0;
         EXPECT_NEAR(scene.check(sphere).min_clearance_mm, std::min(expected, kClearanceCap_mm),
                     0.06);
+    }
+}
+
+// Of a head that wanders about a ball, through it here and there: what is pruned changes nothing.
+TEST(CheckCollisions, TheLeastAloneIsTheLeastOfAll) {
+    const TriangleSoup sphere = make_mandrel(
+        "ellipsoid", {{"equator-radius", 50.0}, {"pole-radius", 50.0}}, {.edge_mm = 6.0});
+    test::Draw draw(7);
+    for (const double nearest_mm : {45.0, 60.0}) {
+        Scene scene({});
+        for (int k = 0; k < 400; ++k) {
+            const Scene pose({{.c = draw.between(-0.5, 0.5),
+                               .z = draw.between(-80.0, 80.0),
+                               .y = draw.between(-40.0, 40.0),
+                               .x = draw.between(nearest_mm, 120.0)}});
+            scene.joints.joints.insert(scene.joints.joints.end(), pose.joints.joints.begin(),
+                                       pose.joints.joints.end());
+            scene.path.push_back(pose.path.front());
+        }
+        scene.add_capsule('X', Vector3d::Zero(), {60.0, 0.0, 0.0}, 6.0);
+        scene.add_capsule('B', {8.0, 0.0, 0.0}, {130.0, 0.0, 0.0}, 4.0);
+        scene.rule.told_mm = 25.0;
+        const CollisionReport all = scene.check(sphere);
+        EXPECT_EQ(all.head_hits.empty(), nearest_mm > 50.0);
+        scene.rule.least_only = true;
+        for (const int threads : {1, 2}) {
+            set_thread_count(threads);
+            const CollisionReport least = scene.check(sphere);
+            EXPECT_EQ(least.head_hits, all.head_hits);
+            EXPECT_EQ(least.min_clearance_mm, all.min_clearance_mm);
+            EXPECT_EQ(least.min_clearance_point, all.min_clearance_point);
+        }
+        set_thread_count(0);
     }
 }
 
