@@ -18,11 +18,6 @@ constexpr double kOneStation_mm = 0.01;
 // further away has left the plan.
 constexpr double kAhead_mm = 50.0;
 
-// A fibre that points elsewhere over so short a way that it goes aside by no more than this share
-// of what it may be off lies where it should: where it comes down from a bridge, or where the
-// normals of two patches differ at their edge.
-constexpr double kSwing = 0.05;
-
 // The planned fibre at a laid station.
 struct Matched {
     Vector3d position_mm, normal, tangent;
@@ -56,7 +51,8 @@ void forget_swings(const SurfacePath& path, const LaydownTolerance& tolerance,
         }
         const std::size_t before = first > 0 ? first - 1 : 0;
         const std::size_t after = std::min(end, path.size() - 1);
-        if (most_rad * (path[after].s_mm - path[before].s_mm) <= kSwing * tolerance.deviation_mm) {
+        if (most_rad * (path[after].s_mm - path[before].s_mm) <=
+            kUnnoticed * tolerance.deviation_mm) {
             std::fill(angle_rad.begin() + static_cast<std::ptrdiff_t>(first),
                       angle_rad.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
         }

@@ -33,6 +33,11 @@ struct LaydownTolerance {
     double angle_rad = 0.005;  ///< 0.3 deg
 };
 
+/// What would lead a fibre aside by no more than this share of what it may be off is no error: an
+/// angle where it comes down from a bridge, or where the normals of two patches differ at their
+/// edge; slip over less than a tow is wide.
+inline constexpr double kUnnoticed = 0.05;
+
 /// Indices are of laid stations.
 struct Deviation {
     double max_mm = 0.0;  ///< sideways, in the tangent plane

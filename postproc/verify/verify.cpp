@@ -8,9 +8,9 @@
 #include "core/margins.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
-#include "geodesic/measure.h"
 #include "postproc/motion/axis_loads.h"
 #include "postproc/verify/check_kinds.h"
+#include "postproc/verify/laid_slip.h"
 #include "postproc/verify/roller_check.h"
 #include "postproc/verify/verify_head.h"
 
@@ -219,38 +219,17 @@ private:
         found_.checks.push_back(check);
     }
 
-    // Length of path from each station to the nearest one under a bridge or held by a pin.
-    [[nodiscard]] std::vector<double> distance_to_bridges() const {
-        const LaidPath& laid = found_.laid;
-        std::vector<double> distance(laid.path.size(), std::numeric_limits<double>::infinity());
-        double last = -std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < laid.path.size(); ++i) {
-            last = laid.at[i].lifted || laid.at[i].held ? laid.path[i].s_mm : last;
-            distance[i] = laid.path[i].s_mm - last;
-        }
-        last = std::numeric_limits<double>::infinity();
-        for (std::size_t i = laid.path.size(); i-- > 0;) {
-            last = laid.at[i].lifted || laid.at[i].held ? laid.path[i].s_mm : last;
-            distance[i] = std::min(distance[i], last - laid.path[i].s_mm);
-        }
-        return distance;
-    }
-
     void check_slip() {
         const LaidPath& laid = found_.laid;
         const double limit = rules_.friction.holds();
-        const SlipOptions options{
-            .window_mm = rules_.tow_width_mm, .friction = limit, .method = TraceMethod::Patches};
-        found_.slip =
-            measure_slip(task_.wall.surface(), laid.path, taut_string(laid.path), options).slip;
-        const std::vector<double> to_bridge = distance_to_bridges();
+        found_.slip = laid_slip(task_.wall.surface(), laid,
+                                {.tow_width_mm = rules_.tow_width_mm,
+                                 .friction = limit,
+                                 .aside_mm = kUnnoticed * rules_.laydown.deviation_mm});
         std::size_t worst = 0;
         std::optional<std::size_t> first;
         std::optional<std::size_t> noted;
         for (std::size_t i = 0; i < found_.slip.size(); ++i) {
-            if (to_bridge[i] <= rules_.tow_width_mm) {
-                found_.slip[i] = 0.0;
-            }
             worst = found_.slip[i] > found_.slip[worst] ? i : worst;
             if (found_.slip[i] > limit) {
                 first = first.value_or(i);

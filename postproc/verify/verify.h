@@ -70,9 +70,7 @@ struct Verification {
 /// and always:
 ///  - laydown: the simulation reaches the end; against the plan, where there is one, sideways
 ///    deviation and angle are within tolerance and the last landing point is the planned one;
-///  - slip: |kg / kn| of the laid path <= what friction holds, over chords as long as the tow is
-///    wide, which does not turn on less; the ends of bridges, where the fibre may turn, apart, and
-///    what pins hold;
+///  - slip: |kg / kn| of the laid path <= what friction holds (laid_slip.h);
 ///  - bridging: height of the straight fibre over the wall;
 ///  - collision: free fibre and head, swept between the samples;
 ///  - free_length: within what the machine can wind with;
