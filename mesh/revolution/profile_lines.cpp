@@ -300,9 +300,14 @@ constexpr std::size_t kRing = 6;
 std::size_t end_of_ring(std::span<const ProfilePoint> points, std::size_t first) {
     constexpr double kTogether = 0.01;  // of an edge, from one vertex to the next
     constexpr double kApart = 5.0;      // times what a ring is wide, to the next
+    constexpr double kWidest = 0.1;     // of an edge: beyond, vertices are scattered
     std::size_t last = first + 1;
+    const double spacing = points[first].spacing_mm;
     while (last < points.size() &&
-           points[last].arc_mm - points[last - 1].arc_mm <= kTogether * points[first].spacing_mm) {
+           points[last].arc_mm - points[last - 1].arc_mm <= kTogether * spacing) {
+        if (points[last].arc_mm - points[first].arc_mm > kWidest * spacing) {
+            return first;
+        }
         ++last;
     }
     const double apart = kApart * (points[last - 1].arc_mm - points[first].arc_mm);
