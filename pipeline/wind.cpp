@@ -39,6 +39,11 @@ constexpr double kBlendsPerMm = 1000.0;
 // More fibres and longer extensions are tried so many times at most.
 constexpr int kMostMends = 2;
 
+// A cover of less of what courses reach does not fail by chance. What does is planned with so many
+// seeds at most, with two where there are other jobs to try.
+constexpr double kCoversMost = 0.75;
+constexpr std::uint64_t kMostSeeds = 3;
+
 // What is planned later to join the courses covers no more than this share on top.
 constexpr double kJoinsCover = 0.02;
 
@@ -300,12 +305,13 @@ bool is_better(const Run& run, const Run& than) {
     return stands(run) != stands(than) ? stands(run) : covered_share(run) > covered_share(than);
 }
 
-// A cover that is wound, covers what it has to, and fails all the same: at turns and places of the
-// head between courses, which another choice of courses has elsewhere.
+// A cover that is wound, covers most of what it can, and fails: courses that the machine refuses
+// in their places, which another choice of courses has elsewhere, leave wall bare or fail
+// themselves.
 bool fails_by_chance(const Run& run) {
     const Plan& plan = first_plan(run);
     return plan.planner == Planner::Cover && run.planned() && !run.passed() &&
-           plan.coverage.fraction >= kCoveredShare * plan.coverage.reachable;
+           plan.coverage.fraction >= kCoversMost * plan.coverage.reachable;
 }
 
 // "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
@@ -342,22 +348,23 @@ public:
 
     enum class Depth { Full, WhereItCovers };
 
-    /// Once, and where that fails by chance with the next seed. \throws as wind() does for the
+    /// Once, and where that fails by chance with the next seeds. \throws as wind() does for the
     /// first job
     void run(const Job& job, Depth depth) {
-        const std::uint64_t seed = options_.context.seed;
-        if (!best_) {
-            take(once(job, depth, seed));
-        } else {
+        const std::uint64_t seeds = depth == Depth::Full ? kMostSeeds : 2;
+        const std::uint64_t first = options_.context.seed;
+        by_chance_ = true;
+        for (std::uint64_t seed = first; by_chance_ && seed < first + seeds; ++seed) {
+            if (!best_) {
+                take(once(job, depth, seed));
+                continue;
+            }
             try {
                 take(once(job, depth, seed));
             } catch (const InputError& error) {  // of no use for what stands
                 tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
                 return;
             }
-        }
-        if (by_chance_) {
-            take(once(job, depth, seed + 1));
         }
     }
 
