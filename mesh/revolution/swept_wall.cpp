@@ -16,6 +16,9 @@ namespace {
 constexpr double kRows = 3.0;
 constexpr double kFewest = 8.0;
 
+// Edges about the axis are no shorter than this share of the part's size.
+constexpr double kShortest = 1e-3;
+
 // Places per piece of the meridian at which edges are wanted.
 constexpr int kPlaces = 16;
 
@@ -60,7 +63,8 @@ void append_places(const Meridian& meridian, std::size_t piece, double stretch_m
             std::abs(std::cos(at.slope_rad)) / std::max(at.radius_mm, options.least_mm);
         const double along = straight ? 0.0 : std::abs(at.curvature_per_mm);
         const double bend = std::max({about, along, 1.0 / size_mm});
-        const double least = std::min(options.least_mm, options.most_turn / bend);
+        const double least =
+            std::max(std::min(options.least_mm, options.most_turn / bend), kShortest * size_mm);
         const double edge = std::clamp(options.turn_rad / bend, least, options.longest_mm);
         places.push_back(
             {from + share * length, straight ? edge : std::min(edge, stretch_mm / kRows), edge});
