@@ -40,9 +40,10 @@ constexpr double kBlendsPerMm = 1000.0;
 constexpr int kMostMends = 2;
 
 // A cover of less of what courses reach does not fail by chance. What does is planned with so many
-// seeds at most, with two where there are other jobs to try.
+// seeds at most, and with fewer where other blends, fibres and extensions are tried too.
 constexpr double kCoversMost = 0.75;
 constexpr std::uint64_t kMostSeeds = 3;
+constexpr std::uint64_t kSeedsOfTries = 2;
 
 // What is planned later to join the courses covers no more than this share on top.
 constexpr double kJoinsCover = 0.02;
@@ -351,19 +352,17 @@ public:
     /// Once, and where that fails by chance with the next seeds. \throws as wind() does for the
     /// first job
     void run(const Job& job, Depth depth) {
-        const std::uint64_t seeds = depth == Depth::Full ? kMostSeeds : 2;
-        const std::uint64_t first = options_.context.seed;
+        const std::uint64_t seeds = depth == Depth::Full ? kMostSeeds : kSeedsOfTries;
         by_chance_ = true;
-        for (std::uint64_t seed = first; by_chance_ && seed < first + seeds; ++seed) {
-            if (!best_) {
-                take(once(job, depth, seed));
-                continue;
-            }
+        for (std::uint64_t k = 0; by_chance_ && k < seeds; ++k) {
             try {
-                take(once(job, depth, seed));
-            } catch (const InputError& error) {  // of no use for what stands
+                take(once(job, depth, options_.context.seed + k));
+            } catch (const InputError& error) {
+                if (!best_) {
+                    throw;
+                }
                 tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
-                return;
+                return;  // of no use for what stands
             }
         }
     }

@@ -37,8 +37,8 @@ constexpr double kAlong = 0.5;
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kLeastGroup = 6;
 
-// Short facets along an edge turn too little to tell: so many are looked at where those do not,
-// which then have vertices inside, as one row of a curved surface has none.
+// So few short facets turn too little to tell a shape; then so many are looked at, those first that
+// turn least. They have vertices inside: one row of a curved surface has none, and lies on a cone.
 constexpr std::size_t kWideGroup = 128;
 
 // A shape's own normals turn by less than this over a facet (46 degrees), and the facet's is among

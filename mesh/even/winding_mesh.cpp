@@ -146,9 +146,14 @@ LabelledMesh even_triangles(const LabelledMesh& file, const Details& left,
     }
     const double size = size_mm(file, kept);
     EvenMeshOptions options = even_options(size);
+    const double most_mm = kDeviationShare * size;
     LabelledMesh own;
+    std::vector<OffVertex> off;
     for (int round = 0; round < kRounds; ++round) {
         check_interrupt();
+        if (round > 0) {
+            shorten_edges(off, kShortenFrom * most_mm, wall, options);
+        }
         const double wanted = wanted_triangles(wall, options);
         if (!(wanted <= kMostEvenTriangles)) {
             report.why_not = "even triangles would be too many, " + fixed(wanted, 0);
@@ -156,18 +161,15 @@ LabelledMesh even_triangles(const LabelledMesh& file, const Details& left,
         }
         own = even_mesh(left.part, kept, wall, options);
         const Surface surface = frozen_wall(own, kept);
-        const std::vector<OffVertex> off =
-            off_vertices(file, surface, kept, left.removed, kDetailLeast * size);
+        off = off_vertices(file, surface, kept, left.removed, kDetailLeast * size);
         report.triangles = surface.face.size();
         report.deviation_mm = std::max_element(off.begin(), off.end(), is_nearer)->off_mm;
-        const double most_mm = kDeviationShare * size;
         if (report.deviation_mm <= most_mm) {
             report.why_not = no_surface(surface, kMostAveraged);
             break;
         }
         report.why_not = "even triangles would be up to " + fixed(report.deviation_mm, 3) +
                          " mm off its vertices, more than " + fixed(most_mm, 3) + " mm";
-        shorten_edges(off, kShortenFrom * most_mm, wall, options);
     }
     return own;
 }

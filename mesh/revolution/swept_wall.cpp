@@ -62,7 +62,8 @@ void append_places(const Meridian& meridian, std::size_t piece, double stretch_m
         const double about =
             std::abs(std::cos(at.slope_rad)) / std::max(at.radius_mm, options.least_mm);
         const double along = straight ? 0.0 : std::abs(at.curvature_per_mm);
-        const double bend = std::max({about, along, 1.0 / size_mm});
+        const double flattest = 1.0 / size_mm;  // a disc bends neither way
+        const double bend = std::max({about, along, flattest});
         const double least =
             std::max(std::min(options.least_mm, options.most_turn / bend), kShortest * size_mm);
         const double edge = std::clamp(options.turn_rad / bend, least, options.longest_mm);

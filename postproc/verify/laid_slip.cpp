@@ -35,30 +35,38 @@ std::vector<double> laid_slip(const Surface& wall, const LaidPath& laid,
                               const LaidSlipOptions& options) {
     const std::vector<double> to_bridge = distance_to_bridges(laid);
     const TautString string = taut_string(laid.path);
+    const double length_mm = laid.path.empty() ? 0.0 : laid.path.back().s_mm;
     std::vector<double> slip(laid.path.size(), 0.0);
-    std::vector<char> open(laid.path.size(), 1);  // not told yet
+    std::vector<std::size_t> open;  // stations that are not told yet
+    for (std::size_t i = 0; i < slip.size(); ++i) {
+        if (to_bridge[i] > options.tow_width_mm) {
+            open.push_back(i);
+        }
+    }
     for (const double widths : kChords) {
-        if (std::find(open.begin(), open.end(), 1) == open.end()) {
+        if (open.empty()) {
             break;
         }
         const double chord_mm = widths * options.tow_width_mm;
         const SlipMeasure measure = measure_slip(
             wall, laid.path, string,
             {.window_mm = chord_mm, .friction = options.friction, .method = TraceMethod::Patches});
-        for (std::size_t i = 0; i < slip.size(); ++i) {
-            if (open[i] == 0 || to_bridge[i] <= options.tow_width_mm) {
-                open[i] = 0;
-                continue;
+        std::erase_if(open, [&](std::size_t i) {
+            slip[i] = measure.slip[i];
+            const double over = slip[i] - options.friction;
+            if (over <= 0.0) {
+                return true;
             }
-            const double over = measure.slip[i] - options.friction;
-            const double over_per_mm =
-                over > 0.0 ? std::abs(measure.kg_per_mm[i]) * over / measure.slip[i] : 0.0;
-            const double s_mm = laid.path[i].s_mm;
-            const double reach_mm = std::min({chord_mm, s_mm, laid.path.back().s_mm - s_mm});
-            const bool counts = 0.5 * over_per_mm * reach_mm * reach_mm > options.aside_mm;
-            slip[i] = counts ? measure.slip[i] : std::min(measure.slip[i], options.friction);
-            open[i] = static_cast<char>(over > 0.0 && !counts);
-        }
+            const double to_end_mm = std::min(laid.path[i].s_mm, length_mm - laid.path[i].s_mm);
+            const double reach_mm = std::min(chord_mm, to_end_mm);
+            const double over_per_mm = std::abs(measure.kg_per_mm[i]) * over / slip[i];
+            if (0.5 * over_per_mm * reach_mm * reach_mm > options.aside_mm) {
+                return true;
+            }
+            // No longer chord fits between the ends: there is nothing to tell it by.
+            slip[i] = to_end_mm < chord_mm ? 0.0 : slip[i];
+            return to_end_mm < chord_mm;
+        });
     }
     return slip;
 }

@@ -14,10 +14,10 @@ struct LaidSlipOptions {
     double aside_mm = 0.0;      ///< by which a fibre may go aside unnoticed
 };
 
-/// |kg| / kn at each laid station. 0 within a tow width of bridges and pins, where friction does
-/// not hold the fibre. Where it is over the friction by so little, or over so short a way, that it
-/// would lead aside by less than `aside_mm` over its chords, chords of twice and four times the
-/// length tell; what counts over none of them is not over the friction.
+/// |kg| / kn at each laid station, as measured over chords of a tow width. Where what it is over
+/// the friction would lead aside by less than `aside_mm` over them, chords of two and then four tow
+/// widths tell. 0 within a tow width of bridges and pins, where friction does not hold the fibre,
+/// and where longer chords that would have to tell reach beyond an end.
 [[nodiscard]] std::vector<double> laid_slip(const Surface& wall, const LaidPath& laid,
                                             const LaidSlipOptions& options);
 

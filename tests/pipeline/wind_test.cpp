@@ -125,7 +125,7 @@ TEST(Wind, DoesNotWindACoverThatIsTooBare) {
     EXPECT_TRUE(run.layers.front().programs.empty());
 }
 
-TEST(Wind, PlansACoverThatFailsOnceMoreWithTheNextSeeds) {
+TEST(Wind, PlansACoverThatFailsAgainWithTheNextSeeds) {
     Job job = quick_job(LayerKind::Cover);
     job.tolerance.laydown_mm = 0.01;
     job.tolerance.laydown_angle_deg = 0.001;  // finer than any program keeps
