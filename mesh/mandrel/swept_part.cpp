@@ -48,10 +48,9 @@ std::vector<std::int32_t> regions_along(const LabelledMesh& wall, const Meridian
 std::optional<LabelledMesh> swept_part(const LabelledView& part, const std::vector<char>& kept,
                                        const Meridian& meridian,
                                        const Eigen::Isometry3d& mandrel_from_part) {
-    std::vector<char> others;
-    for (const char keep : kept) {
-        others.push_back(static_cast<char>(keep == 0));
-    }
+    std::vector<char> others(kept.size());
+    std::transform(kept.begin(), kept.end(), others.begin(),
+                   [](char keep) { return static_cast<char>(keep == 0); });
     const LabelledMesh wall = wall_of(part, kept);
     const LabelledMesh rings = swept_wall(meridian, size_mm(wall, kept));
     if (rings.soup.faces.empty()) {
