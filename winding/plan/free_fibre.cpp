@@ -104,52 +104,69 @@ double distance_to(const FreeFibreWindow& window, double length) {
     return std::max({0.0, window.low_mm - length, length - window.high_mm});
 }
 
-// The cheapest way over windows that overlap within the rates from station to station, by dynamic
-// programming; the cost is the area between windows and the preferred length. Where no window can
-// be reached the way starts anew.
-FreeLengths choose_windows(std::span<const double> s_mm,
-                           std::span<const std::vector<FreeFibreWindow>> windows,
-                           double preferred_mm) {
-    std::vector<std::vector<Reach>> reach(windows.size());
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-        for (const FreeFibreWindow& window : windows[i]) {
-            const double cost = distance_to(window, preferred_mm);
-            Reach best{window, i == 0 ? cost : std::numeric_limits<double>::infinity(), 0};
-            for (std::size_t k = 0; i > 0 && k < reach[i - 1].size(); ++k) {
-                const Reach& from = reach[i - 1][k];
-                const double ds = s_mm[i] - s_mm[i - 1];
-                const FreeFibreWindow next{
-                    std::max(window.low_mm, from.window.low_mm - kShorteningRate * ds),
-                    std::min(window.high_mm, from.window.high_mm + kLengtheningRate * ds)};
-                if (!next.empty() && from.cost + cost * ds < best.cost) {
-                    best = {next, from.cost + cost * ds, k};
-                }
-            }
-            reach[i].push_back(best);
+// The cheapest way to `window` from those of the station `ds_mm` before; of cost infinity where
+// none leads there.
+Reach reached_from(std::span<const Reach> before, const FreeFibreWindow& window, double ds_mm,
+                   double cost_mm2) {
+    Reach best;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+        const Reach& from = before[k];
+        const FreeFibreWindow next{
+            std::max(window.low_mm, from.window.low_mm - kShorteningRate * ds_mm),
+            std::min(window.high_mm, from.window.high_mm + kLengtheningRate * ds_mm)};
+        if (!next.empty() && from.cost + cost_mm2 < best.cost) {
+            best = {next, from.cost + cost_mm2, k};
         }
     }
-    FreeLengths lengths{std::vector<double>(windows.size(), preferred_mm),
-                        std::vector<double>(windows.size(), preferred_mm),
-                        {}};
-    bool fresh = true;
+    return best;
+}
+
+// One window of each station, and the stations at which the way over them begins: the first, and
+// those that cannot be reached.
+struct WindowWay {
+    std::vector<FreeFibreWindow> window;
+    std::vector<char> begins;
+};
+
+// The cheapest way over windows that overlap within the rates from station to station, by dynamic
+// programming; the cost is the area between windows and the preferred length. Where no window can
+// be reached the way begins anew.
+WindowWay choose_windows(std::span<const double> s_mm,
+                         std::span<const std::vector<FreeFibreWindow>> windows,
+                         double preferred_mm) {
+    std::vector<std::vector<Reach>> reach(windows.size());
+    WindowWay way{std::vector<FreeFibreWindow>(windows.size(), {preferred_mm, preferred_mm}),
+                  std::vector<char>(windows.size(), 1)};
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+        for (const FreeFibreWindow& window : windows[i]) {
+            const double ds = i == 0 ? 0.0 : s_mm[i] - s_mm[i - 1];
+            const Reach found = i == 0 ? Reach{}
+                                       : reached_from(reach[i - 1], window, ds,
+                                                      ds * distance_to(window, preferred_mm));
+            if (found.cost < std::numeric_limits<double>::infinity()) {
+                way.begins[i] = 0;
+            }
+            reach[i].push_back(found);
+        }
+        for (std::size_t k = 0; way.begins[i] != 0 && k < windows[i].size(); ++k) {
+            reach[i][k] = {windows[i][k], distance_to(windows[i][k], preferred_mm), 0};
+        }
+    }
     std::size_t k = 0;
     for (std::size_t i = windows.size(); i-- > 0;) {
         if (reach[i].empty()) {
-            fresh = true;
             continue;
         }
-        if (fresh) {
+        if (i + 1 == windows.size() || way.begins[i + 1] != 0) {
             k = static_cast<std::size_t>(
                 std::min_element(reach[i].begin(), reach[i].end(),
                                  [](const Reach& a, const Reach& b) { return a.cost < b.cost; }) -
                 reach[i].begin());
         }
-        lengths.low_mm[i] = windows[i][k].low_mm;
-        lengths.high_mm[i] = windows[i][k].high_mm;
-        fresh = reach[i][k].cost == std::numeric_limits<double>::infinity();
+        way.window[i] = windows[i][k];
         k = reach[i][k].before;
     }
-    return lengths;
+    return way;
 }
 
 }  // namespace
@@ -209,21 +226,31 @@ bool is_free_length(const RayQuery& obstacles, const Eigen::Vector3d& landing_mm
 FreeLengths choose_free_lengths(std::span<const double> s_mm,
                                 std::span<const std::vector<FreeFibreWindow>> windows,
                                 double preferred_mm) {
-    FreeLengths lengths = choose_windows(s_mm, windows, preferred_mm);
+    const auto [window, begins] = choose_windows(s_mm, windows, preferred_mm);
+    FreeLengths lengths;
     std::vector<double>& low = lengths.low_mm;
     std::vector<double>& high = lengths.high_mm;
+    for (const FreeFibreWindow& chosen : window) {
+        low.push_back(chosen.low_mm);
+        high.push_back(chosen.high_mm);
+    }
     for (std::size_t i = 1; i < s_mm.size(); ++i) {
         const double ds = s_mm[i] - s_mm[i - 1];
-        low[i] = std::max(low[i], low[i - 1] - kShorteningRate * ds);
-        high[i] = std::min(high[i], high[i - 1] + kLengtheningRate * ds);
+        if (begins[i] == 0) {
+            low[i] = std::max(low[i], low[i - 1] - kShorteningRate * ds);
+            high[i] = std::min(high[i], high[i - 1] + kLengtheningRate * ds);
+        }
     }
     for (std::size_t i = s_mm.size(); i-- > 1;) {
         const double ds = s_mm[i] - s_mm[i - 1];
-        low[i - 1] = std::max(low[i - 1], low[i] - kLengtheningRate * ds);
-        high[i - 1] = std::min(high[i - 1], high[i] + kShorteningRate * ds);
+        if (begins[i] == 0) {
+            low[i - 1] = std::max(low[i - 1], low[i] - kLengtheningRate * ds);
+            high[i - 1] = std::min(high[i - 1], high[i] + kShorteningRate * ds);
+        }
     }
     for (std::size_t i = 0; i < s_mm.size(); ++i) {
-        if (windows[i].empty() || low[i] > high[i]) {
+        const bool unreached = i > 0 && begins[i] != 0 && !windows[i - 1].empty();
+        if (windows[i].empty() || unreached) {
             lengths.blocked.push_back(i);
         }
     }

@@ -86,8 +86,9 @@ inline constexpr double kShorteningRate = 0.8;
 struct FreeLengths {
     std::vector<double> low_mm;
     std::vector<double> high_mm;
-    std::vector<std::size_t>
-        blocked;  ///< stations that no choice of windows passes; empty if it works
+    /// Stations without a window, or with none that can be reached from the one before; empty if
+    /// it works. The lengths before and behind such a place can be run through.
+    std::vector<std::size_t> blocked;
 };
 
 /// Chooses one window at each station and narrows them until the length can change from each to the

@@ -233,6 +233,35 @@ TEST(ChooseFreeLengths, FindsAWayThroughRandomWindows) {
     }
 }
 
+// Two ways that no length leads between: each can be run through, and only where the second begins
+// is blocked.
+TEST(ChooseFreeLengths, GoesOnBehindAPlaceThatBlocks) {
+    std::vector<double> s;
+    Windows windows;
+    for (int i = 0; i <= 100; ++i) {
+        s.push_back(4.0 * i);
+        const bool narrow = i == 80;
+        windows.push_back(i < 30
+                              ? Windows::value_type{{60.0, 90.0}}
+                              : Windows::value_type{{20.0, 30.0}, {180.0, narrow ? 190.0 : 400.0}});
+    }
+    const FreeLengths lengths = choose_free_lengths(s, windows, 300.0);
+    EXPECT_EQ(lengths.blocked, (std::vector<std::size_t>{30}));
+    EXPECT_TRUE(within_windows(lengths, windows));
+    const auto stretch = [&](std::size_t from, std::size_t to) {
+        const auto part = [&](const std::vector<double>& all) {
+            return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(from),
+                                       all.begin() + static_cast<std::ptrdiff_t>(to));
+        };
+        expect_rates(part(s), {part(lengths.low_mm), part(lengths.high_mm), {}}, 300.0);
+    };
+    stretch(0, 30);
+    stretch(30, s.size());
+    EXPECT_GE(lengths.high_mm[30], 300.0);
+    EXPECT_EQ(lengths.high_mm[80], 190.0);
+    EXPECT_GE(lengths.high_mm.back(), 300.0 - 1e-9);
+}
+
 TEST(ChooseFreeLengths, OfNothingIsNothing) {
     const FreeLengths lengths = choose_free_lengths({}, {}, 200.0);
     EXPECT_TRUE(lengths.low_mm.empty());
