@@ -52,12 +52,12 @@ private:
     [[nodiscard]] std::size_t node(std::size_t i) const {
         return i < fibre_.size() ? departure_node(start(i)) : arrival_node(end(i - 1));
     }
-    [[nodiscard]] double cost(std::size_t from, std::size_t to) const {
+    [[nodiscard]] double cost(std::size_t from, std::size_t to) {
         return costs_.rad(fibre_[from].course, fibre_[to].course);
     }
 
     // What it gains, as dwell, that the courses i .. j - 1 and j .. k - 1 change places.
-    [[nodiscard]] double gain(std::size_t i, std::size_t j, std::size_t k) const {
+    [[nodiscard]] double gain(std::size_t i, std::size_t j, std::size_t k) {
         const auto first = static_cast<double>(j - i);
         const auto second = static_cast<double>(k - j);
         const double later = (late_sum_[j] - late_sum_[i]) * second;

@@ -1,6 +1,8 @@
 #include "winding/cover/order.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/units.h"
@@ -48,7 +50,7 @@ private:
     [[nodiscard]] std::size_t arrives(std::size_t c) const { return arrival_node(end(c)); }
     [[nodiscard]] std::size_t departs(std::size_t c) const { return departure_node(start(c)); }
 
-    [[nodiscard]] double cost(std::size_t from, std::size_t to) const {
+    [[nodiscard]] double cost(std::size_t from, std::size_t to) {
         return costs_.rad(laid_[from], laid_[to]);
     }
 
@@ -197,7 +199,7 @@ private:
     }
 
     // The cycles one after the other, each opened at a cut, else where it costs most.
-    [[nodiscard]] std::vector<OrderedCourse> sequence() const {
+    [[nodiscard]] std::vector<OrderedCourse> sequence() {
         std::vector<OrderedCourse> order;
         const std::vector<std::size_t> cycle = cycle_of_each();
         for (std::size_t c = 0; c < laid_.size(); ++c) {
@@ -231,7 +233,27 @@ private:
 
 }  // namespace
 
-double TurnCosts::rad(const LaidCourse& from, const LaidCourse& to) const {
+double TurnCosts::rad(const LaidCourse& from, const LaidCourse& to) {
+    const auto row = [this](const LaidCourse& course) {
+        std::size_t& number = row_[2 * at(course.member) + (course.backward ? 1U : 0U)];
+        if (number == 0) {
+            known_.emplace_back();
+            number = known_.size();
+        }
+        return number - 1;
+    };
+    const std::size_t column = row(to);
+    std::vector<double>& costs = known_[row(from)];
+    if (costs.size() <= column) {
+        costs.resize(known_.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+    if (std::isnan(costs[column])) {
+        costs[column] = work_out_rad(from, to);
+    }
+    return costs[column];
+}
+
+double TurnCosts::work_out_rad(const LaidCourse& from, const LaidCourse& to) const {
     const RimCrossing& end = end_of(members_[at(from.member)], from.backward);
     const RimCrossing& start = start_of(members_[at(to.member)], to.backward);
     const double dwell = dwell_rad(rims_[at(end.rim)], end, start, rule_);

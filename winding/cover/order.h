@@ -1,6 +1,7 @@
 /// Putting chosen courses in order, so that as few continuous fibres as can be lay them all.
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <span>
 #include <utility>
@@ -15,21 +16,25 @@ namespace meshwind {
 using ClosedTurns = std::set<std::pair<LaidCourse, LaidCourse>>;
 
 /// What it costs that one course follows another: the dwell in rad, and for a closed turn more than
-/// any plan dwells.
+/// any plan dwells. Worked out once for each pair that is asked for.
 class TurnCosts {
 public:
-    /// All is kept.
+    /// All is referred to, and must stay as it is.
     TurnCosts(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
               const ClosedTurns& closed)
-        : rims_(rims), members_(members), rule_(rule), closed_(closed) {}
+        : rims_(rims), members_(members), rule_(rule), closed_(closed), row_(2 * members.size()) {}
 
-    [[nodiscard]] double rad(const LaidCourse& from, const LaidCourse& to) const;
+    [[nodiscard]] double rad(const LaidCourse& from, const LaidCourse& to);
 
 private:
+    [[nodiscard]] double work_out_rad(const LaidCourse& from, const LaidCourse& to) const;
+
     std::span<const Rim> rims_;
     std::span<const Member> members_;
     const TurnRule& rule_;
     const ClosedTurns& closed_;
+    std::vector<std::size_t> row_;  // from 1, per member and way; 0 where nothing was asked for it
+    std::vector<std::vector<double>> known_;  // by rows; not a number where it was not asked for
 };
 
 /// An Eulerian trail through the nodes: a fibre that arrives circling an extension one way leaves
