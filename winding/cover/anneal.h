@@ -25,8 +25,8 @@ struct AnnealOptions {
     double cold = 0.002;
     /// What a layer short of the target costs, against 1 for a layer too many or too few; it rises
     /// as the chance falls: first all is made even, then the last holes are closed.
-    double bare_hot = 30.0;
-    double bare_cold = 120.0;
+    double bare_hot = 45.0;
+    double bare_cold = 180.0;
     /// True where courses may lead; empty: anywhere.
     std::function<bool(const NodePair&)> way{};
     /// The last word on a course that is about to be taken, which it may make exact; false where

@@ -11,8 +11,8 @@
 namespace meshwind {
 namespace {
 
-// Dwell that a lateness of 1 is worth, moved over the whole plan.
-constexpr double kWorth_rad = 2.0 * kPi;
+// Turns' fibre that a lateness of 1 is worth, moved over the whole plan, as an angle about the rim.
+constexpr double kWorth_rad = 6.0 * kPi;
 
 // Gains below this are rounding.
 constexpr double kLeastGain_rad = 1e-9;
@@ -56,7 +56,8 @@ private:
         return costs_.rad(fibre_[from].course, fibre_[to].course);
     }
 
-    // What it gains, as dwell, that the courses i .. j - 1 and j .. k - 1 change places.
+    // What it gains, as an angle of turning, that the courses i .. j - 1 and j .. k - 1 change
+    // places.
     [[nodiscard]] double gain(std::size_t i, std::size_t j, std::size_t k) {
         const auto first = static_cast<double>(j - i);
         const auto second = static_cast<double>(k - j);

@@ -13,9 +13,9 @@ namespace meshwind {
 
 /// Brings courses over junctions forward and hoops back, so that hoops clamp what lies under them:
 /// stretches of a fibre that begin and end at one node change places, as long as what is gained is
-/// worth the dwell: a course that comes later by the whole plan for being hoop instead of junction
-/// is worth two turns. Fibres stay what they are. \param lateness per entry of the order
-/// \param closed turns that are not taken where the fibre has another way
+/// worth the fibre in turns: a course that comes later by the whole plan for being hoop instead of
+/// junction is worth six rounds of the rim. Fibres stay what they are. \param lateness per entry of
+/// the order \param closed turns that are not taken where the fibre has another way
 void arrange(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
              std::span<const double> lateness, std::vector<OrderedCourse>& order,
              const ClosedTurns& closed = {});

@@ -120,7 +120,7 @@ private:
         }
         // Overlap counts as a share of the member's own fibre.
         const auto own = static_cast<double>(std::max<std::size_t>(1, member.footprint.size()));
-        return options_.turn_mm + member.length_mm * (1.0 + options_.overlap_weight * waste / own);
+        return member.turn_mm + member.length_mm * (1.0 + options_.overlap_weight * waste / own);
     }
 
     struct Way {

@@ -37,7 +37,7 @@ constexpr double kMaxSamples = 6e5;
 
 // Proposals of the annealing at an effort of 1, and of each that follows where courses had to be
 // given up.
-constexpr std::int64_t kProposals = 20'000;
+constexpr std::int64_t kProposals = 30'000;
 constexpr std::int64_t kMendingProposals = 4'000;
 
 // Times that courses are added to join the others, each time some that the machine refuses.

@@ -14,7 +14,7 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-// More than all dwells of a plan together, and less than what a double loses them beside.
+// More than all turns of a plan together, and less than what a double loses them beside.
 constexpr double kClosed_rad = 1e6;
 
 class Ordering {
@@ -209,7 +209,8 @@ private:
             std::size_t last = c;
             double most = -1.0;
             for (std::size_t i = c, steps = 0; steps == 0 || i != c; i = next_[i], ++steps) {
-                const double value = cut_[i] != 0 ? 2.0 * kPi : cost(i, next_[i]);
+                const double value =
+                    cut_[i] != 0 ? std::numeric_limits<double>::infinity() : cost(i, next_[i]);
                 if (value > most) {
                     most = value;
                     last = i;
@@ -256,8 +257,9 @@ double TurnCosts::rad(const LaidCourse& from, const LaidCourse& to) {
 double TurnCosts::work_out_rad(const LaidCourse& from, const LaidCourse& to) const {
     const RimCrossing& end = end_of(members_[at(from.member)], from.backward);
     const RimCrossing& start = start_of(members_[at(to.member)], to.backward);
-    const double dwell = dwell_rad(rims_[at(end.rim)], end, start, rule_);
-    return closed_.count({from, to}) != 0 ? dwell + kClosed_rad : dwell;
+    const Rim& rim = rims_[at(end.rim)];
+    const double turn_rad = turn_mm(rim, end, start, rule_) / rim.radius_mm;
+    return closed_.count({from, to}) != 0 ? turn_rad + kClosed_rad : turn_rad;
 }
 
 std::vector<OrderedCourse> order_courses(std::span<const Rim> rims, std::span<const Member> members,

@@ -15,8 +15,8 @@ namespace meshwind {
 /// Turns that the machine cannot follow, each from one course to another.
 using ClosedTurns = std::set<std::pair<LaidCourse, LaidCourse>>;
 
-/// What it costs that one course follows another: the dwell in rad, and for a closed turn more than
-/// any plan dwells. Worked out once for each pair that is asked for.
+/// What it costs that one course follows another: the fibre of the turn as an angle about the rim,
+/// rad, and for a closed turn more than all of any plan. Worked out once for each pair.
 class TurnCosts {
 public:
     /// All is referred to, and must stay as it is.
@@ -38,7 +38,7 @@ private:
 };
 
 /// An Eulerian trail through the nodes: a fibre that arrives circling an extension one way leaves
-/// circling it the same way, and the dwell angles are kept small. Separate trails that share no
+/// circling it the same way, and the turns' fibre is kept little. Separate trails that share no
 /// node are tried the other way round, if their courses allow it. Closed turns are taken only where
 /// the fibre has no other way. \return every course once; the last one has cut_after set; more cuts
 /// only where the ends of the courses leave no other way

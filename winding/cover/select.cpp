@@ -51,7 +51,7 @@ private:
                            std::max(1.0, member.length_mm);
         gain.value = (static_cast<double>(gain.fresh) - options_.overlap_weight * waste -
                       options_.overlap_weight * options_.angle_weight * off) /
-                     (member.length_mm + options_.turn_mm);
+                     (member.length_mm + member.turn_mm);
         return gain;
     }
 

@@ -19,7 +19,6 @@ struct SelectOptions {
     double least_gain_share = 0.01;
     /// What fibre off the wanted winding angle costs, against 1 for a layer too many.
     double angle_weight = 4.0;
-    double turn_mm = 300.0;  ///< fibre that a course costs besides its own length
 };
 
 /// Which members are laid, and how often each coverage sample is covered by them.

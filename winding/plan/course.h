@@ -30,6 +30,7 @@ struct Member {
     bool windable_forward = false;  ///< from end 0 to end 1
     bool windable_backward = false;
     double length_mm = 0.0;
+    double turn_mm = 0.0;                 ///< fibre of the half turns at both ends
     double off_angle_mm = 0.0;            ///< length off the wanted winding angle (wound_angle.h)
     std::vector<std::int32_t> footprint;  ///< coverage samples
 };

@@ -44,6 +44,14 @@ double slip_for(const Rim& rim, const RimCrossing& crossing, double hoop_mm) {
            (hoop_mm - landing_mm(rim, crossing));
 }
 
+// Fibre from the rim to hoop, in the air and on the extension.
+double to_hoop_mm(const Rim& rim, const RimCrossing& crossing, double hoop_mm) {
+    const double in_air_mm =
+        rim.radius_mm * std::tan(crossing.ahead_rad) / std::sin(crossing.angle_rad);
+    return in_air_mm +
+           rim.radius_mm / (slip_for(rim, crossing, hoop_mm) * std::tan(crossing.angle_rad));
+}
+
 double positive_angle(double rad) {
     const double turn = 2.0 * kPi;
     const double rest = std::fmod(rad, turn);
@@ -222,6 +230,17 @@ double least_run_mm(double radius_mm, Friction friction) {
 
 double turn_angle_rad(double angle_rad, double slip) {
     return -std::log(std::tan(0.5 * angle_rad)) / slip;
+}
+
+double half_turn_mm(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule) {
+    return to_hoop_mm(rim, crossing, hoop_height_mm(rim, crossing, crossing, rule));
+}
+
+double turn_mm(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+               const TurnRule& rule) {
+    const double hoop_mm = hoop_height_mm(rim, from, to, rule);
+    return to_hoop_mm(rim, from, hoop_mm) + rim.radius_mm * dwell_rad(rim, from, to, rule) +
+           to_hoop_mm(rim, to, hoop_mm);
 }
 
 bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule) {

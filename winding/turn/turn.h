@@ -57,6 +57,11 @@ struct TurnRule {
 /// Source: andrianov_2022_machine_path, eq. (4). \pre 0 < angle_rad < pi, slip > 0
 [[nodiscard]] double turn_angle_rad(double angle_rad, double slip);
 
+/// Fibre that half a turn takes, from the rim to hoop: (R / slip) cot(beta) and what is in the air.
+/// \pre can_turn
+[[nodiscard]] double half_turn_mm(const Rim& rim, const RimCrossing& crossing,
+                                  const TurnRule& rule);
+
 /// True when the fibre can be turned by friction within the extension.
 [[nodiscard]] bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule);
 
@@ -78,6 +83,10 @@ struct Turn {
 /// travel. \pre the crossings have opposite senses and both can turn
 [[nodiscard]] double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                                const TurnRule& rule);
+
+/// Fibre of a whole turn, dwell included; what make_turn() winds. \pre as for dwell_rad
+[[nodiscard]] double turn_mm(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
+                             const TurnRule& rule);
 
 /// The turn itself: straight through the air from the rim to the extension where the rim is hollow,
 /// steered with constant slip to hoop, dwelling, and back.

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr TurnRule kRule{.friction = 0.25, .extension_mm = 150.0, .band_mm = 6.0};
-constexpr double kTwoTurns_rad = 2.0 * kPi;  // per lateness of 1 over the whole plan
+constexpr double kThreeRounds_rad = 6.0 * kPi;  // per lateness of 1 over the whole plan
 
 struct Scene {
     std::vector<Rim> rims;
@@ -57,7 +57,7 @@ double lateness_of(const Scene& scene, std::int32_t member) {
     return 0.0;
 }
 
-// What arranging makes larger: of each fibre, lateness by place, less the dwell.
+// What arranging makes larger: of each fibre, lateness by place, less the fibre in turns.
 double worth(const Scene& scene, const std::vector<OrderedCourse>& order) {
     double worth = 0.0;
     std::size_t begin = 0;
@@ -67,12 +67,13 @@ double worth(const Scene& scene, const std::vector<OrderedCourse>& order) {
             const RimCrossing& to =
                 start_of(member_of(scene, order[i + 1]), order[i + 1].course.backward);
             EXPECT_EQ(arrival_node(from), departure_node(to));
-            worth -= dwell_rad(scene.rims[static_cast<std::size_t>(from.rim)], from, to, kRule);
+            const Rim& rim = scene.rims[static_cast<std::size_t>(from.rim)];
+            worth -= turn_mm(rim, from, to, kRule) / rim.radius_mm;
             continue;
         }
         const auto courses = static_cast<double>(i + 1 - begin);
         for (std::size_t k = begin; k <= i; ++k) {
-            worth += kTwoTurns_rad * lateness_of(scene, order[k].course.member) *
+            worth += kThreeRounds_rad * lateness_of(scene, order[k].course.member) *
                      static_cast<double>(k - begin) / courses;
         }
         begin = i + 1;

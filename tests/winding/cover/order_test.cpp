@@ -120,10 +120,10 @@ TEST(OrderCourses, LaysEveryCourseOnceWithNoMoreCutsThanNeeded) {
 
 // A one-way course from one node to another, and a closed round that only touches one of the two:
 // one fibre lays both.
-void expect_joined(std::int32_t touched_rim) {
-    const auto member = [](std::int32_t from, int from_sense, std::int32_t to, int to_sense) {
+void expect_joined(std::int32_t touched_rim, double steep_rad = 1.1) {
+    const auto member = [steep_rad](std::int32_t from, int from_sense, std::int32_t to, int to_sense) {
         Member m;
-        m.end[0] = {from, 0.3, 1.1, from_sense};
+        m.end[0] = {from, 0.3, steep_rad, from_sense};
         m.end[1] = {to, 0.9, 1.2, to_sense};
         m.windable_forward = true;
         m.length_mm = 100.0;
@@ -144,6 +144,32 @@ TEST(OrderCourses, JoinsARoundAtTheEndOfAnOpenFibre) {
 
 TEST(OrderCourses, JoinsARoundAtTheStartOfAnOpenFibre) {
     expect_joined(0);
+}
+
+// The turn of steep ends takes more fibre than a whole round of the rim.
+TEST(OrderCourses, OpensNoFibreAtATurnThatTakesMuch) {
+    expect_joined(1, 0.7);
+    expect_joined(0, 0.7);
+}
+
+// Two pairs of ends, steep and shallow. Alike with alike is less fibre, as both halves of a turn
+// are hoop at one height.
+TEST(OrderCourses, TurnsEndsThatAreAlike) {
+    std::vector<Member> members(2);
+    std::vector<LaidCourse> laid;
+    for (std::int32_t i = 0; i < 2; ++i) {
+        Member& member = members[static_cast<std::size_t>(i)];
+        member.end[0] = {0, 0.5, i == 0 ? 1.3 : 0.8, -1};
+        member.end[1] = {0, 0.5, i == 0 ? 0.8 : 1.3, 1};
+        member.windable_forward = true;
+        laid.push_back({i, false});
+    }
+    const auto order = order_courses(test::plain_rims(1), members, laid, kRule);
+    ASSERT_EQ(order.size(), 2U);
+    const double turn =
+        end_of(members[static_cast<std::size_t>(order[0].course.member)], false).angle_rad;
+    EXPECT_EQ(start_of(members[static_cast<std::size_t>(order[1].course.member)], false).angle_rad,
+              turn);
 }
 
 // Three rounds from one node back to it, of which each may follow one other.

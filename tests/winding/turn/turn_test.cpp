@@ -264,6 +264,16 @@ TEST(HalfTurn, IsTheFirstHalfOfATurn) {
     }
 }
 
+TEST(TurnFibre, IsTheLengthOfTheTurnThatIsMade) {
+    const Rim rim = slanted_rim();
+    for (const Case& c : cases()) {
+        const Turn turn = make_turn(rim, c.from, c.to, kRule, kStep_mm);
+        EXPECT_NEAR(turn_mm(rim, c.from, c.to, kRule), turn.path.back().s_mm, 1e-9);
+        const Turn half = half_turn(rim, c.from, kRule, kStep_mm);
+        EXPECT_NEAR(half_turn_mm(rim, c.from, kRule), half.path.back().s_mm, 1e-9);
+    }
+}
+
 TEST(DwellAngle, IsTheSameBothWaysAndWithinOneTurn) {
     const Rim rim = slanted_rim();
     for (const Case& c : cases()) {
