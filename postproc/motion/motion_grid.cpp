@@ -26,7 +26,7 @@ constexpr int kLengths = 36;
 constexpr int kMostLonger = 4;
 constexpr int kMostShorter = 2;
 
-// Rounding of lengths that shrink by just what they may.
+// Rounding of lengths that change by just what they may.
 constexpr double kRateSlack_mm = 1e-9;
 
 // A change of column asks the axes for more than staying in it, which the programme does not see:
@@ -224,7 +224,8 @@ private:
                                    const Column& before, const Column& now) const {
         const double ds = knots_[k - 1].ahead_mm;
         const double dl = now.choice[to].length_mm - before.choice[from].length_mm;
-        if (dl < -kShorteningRate * ds - kRateSlack_mm || dl > kLengtheningRate * ds) {
+        if (dl < -kShorteningRate * ds - kRateSlack_mm ||
+            dl > kLengtheningRate * ds + kRateSlack_mm) {
             return kInfinity;
         }
         const double t = knots_.step_s(k - 1);

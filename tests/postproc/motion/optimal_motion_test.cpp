@@ -419,6 +419,29 @@ TEST_F(OptimalMotion, KeepsLengthsThatAreFixed) {
     EXPECT_LT(time_s(machine_, found), time_s(machine_, safe));
 }
 
+// Late in a long fibre the given lengths grow as fast as they may but for rounding, and nothing
+// else is allowed: the turn is chosen nevertheless.
+TEST_F(OptimalMotion, IsChosenWhereLengthsGrowAsFastAsTheyMay) {
+    for (int i = 0; i < 20; ++i) {
+        const double laid_mm = 60'000.0 + 17.3 * i;
+        SCOPED_TRACE(laid_mm);
+        EyePath safe = orbit(30.0, 10.0, 4);
+        double length_mm = 160.0 + std::sqrt(2.0) * i;
+        for (std::size_t k = 0; k < safe.size(); ++k) {
+            safe[k].s_mm += laid_mm;
+            if (k > safe.size() / 2) {
+                const double ds = safe[k].s_mm - safe[k - 1].s_mm;
+                length_mm = std::min(360.0, length_mm + kLengtheningRate * ds);
+            }
+            set_eye(safe[k], length_mm);
+        }
+        safe = with_central_turns(safe);
+        const EyePath found = best(safe, nothing_, {}, true);
+        expect_motion(found, safe);
+        EXPECT_LT(time_s(machine_, found), time_s(machine_, safe));
+    }
+}
+
 TEST_F(OptimalMotion, IsTheSameForAnyNumberOfThreads) {
     const BesideABar scene{};
     const EyePath safe = scene.safe(machine_);
