@@ -19,6 +19,7 @@
 #include "report/report_checks.h"
 #include "report/report_layers.h"
 #include "report/report_mandrel.h"
+#include "winding/laminate/coverage.h"
 
 namespace meshwind {
 namespace {
@@ -196,6 +197,7 @@ json plan_report(const Plan& plan) {
           {"reachable", report_number(plan.coverage.reachable)},
           {"mean_layers", report_number(plan.coverage.mean_layers)},
           {"max_layers", plan.coverage.max_layers},
+          {"p1_layers", plan.coverage.p1_layers},
           {"cv", report_number(plan.coverage.cv)}}},
         {"uncovered", uncovered},
         {"what_if", what_if_report(plan)},
@@ -425,9 +427,18 @@ void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
     }
 }
 
+FibreUse use_of_fibre(const WoundLayer& layer) {
+    const Surface& surface = layer.setup.mandrel.surface;
+    return fibre_use(layer.plan, layer.setup.job.tow.width_mm,
+                     area_mm2({surface.position_mm, surface.face}), layer.job.target_layers);
+}
+
 // What a layer is and what came of it.
 void add_layer_report(json& report, const WoundLayer& layer, bool written) {
     report["plan"] = plan_report(layer.plan);
+    const FibreUse use = use_of_fibre(layer);
+    report["plan"]["fibre_factor"] = report_number(use.factor);
+    report["plan"]["turn_share"] = report_number(use.turn_share);
     if (!layer.no_pattern.empty()) {
         report["plan"]["no_pattern"] = layer.no_pattern;
     }
@@ -486,7 +497,14 @@ void print_layer(std::ostream& out, const WoundLayer& layer) {
     out << "covered " << percent(plan.coverage.fraction) << " of the wall"
         << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
         << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
-        << plan.coverage.max_layers << '\n';
+        << plan.coverage.max_layers << ", over 99 % of what is in reach at least "
+        << plan.coverage.p1_layers << '\n';
+    if (plan.planner == Planner::Cover) {
+        const FibreUse use = use_of_fibre(layer);
+        out << "fibre factor " << fixed(use.factor, 2)
+            << " (1: what was asked for without gap, overlap and turn), "
+            << percent(use.turn_share, 1) << " of the fibre in turns\n";
+    }
     if (plan.pattern() != nullptr) {
         print_pattern(out, *plan.pattern(), layer.job);
     }

@@ -1,4 +1,5 @@
 """The main job on a small tee: the files of the contract, the program, and the same bytes again."""
+import collections
 import csv
 import json
 import os
@@ -52,7 +53,7 @@ class MainJob(program.ProgramTest):
             self.assertIn(key, report["mandrel"])
         plan = report["plan"]
         self.assertLessEqual(PLAN_KEYS, set(plan))
-        self.assertLessEqual({"fraction", "mean_layers", "max_layers", "cv"},
+        self.assertLessEqual({"fraction", "mean_layers", "max_layers", "p1_layers", "cv"},
                              set(plan["coverage"]))
         self.assertGreater(plan["coverage"]["fraction"], 0.5)
         for bare in plan["uncovered"]:
@@ -101,6 +102,19 @@ class MainJob(program.ProgramTest):
         names = re.findall("^o (.*)$", (out / "fibre.obj").read_text(), re.MULTILINE)
         self.assertEqual(len(names), report["plan"]["courses"] + report["plan"]["transitions"])
         self.assertEqual(set(names), {f"{kind}_{course}" for kind, course in pieces_of(out)})
+
+    def check_use_of_fibre(self, out, report):
+        """The figures of the report, of the path as it was written."""
+        spans = collections.defaultdict(list)
+        with open(out / "path.csv", newline="") as file:
+            for row in csv.DictReader(file):
+                spans[row["kind"], row["course"]].append(float(row["s_mm"]))
+        lengths = {name: max(span) - min(span) for name, span in spans.items()}
+        turns = sum(length for (kind, _), length in lengths.items() if kind == "transition")
+        plan = report["plan"]
+        self.assertAlmostEqual(plan["turn_share"], turns / sum(lengths.values()), 3)
+        layer = report["mandrel"]["area_mm2"] / 10.0  # the tow's width
+        self.assertAlmostEqual(plan["fibre_factor"], sum(lengths.values()) / layer, 2)
 
     def check_program(self, out):
         """From the first position on, the increments add up to motion.csv exactly."""
@@ -235,6 +249,7 @@ class MainJob(program.ProgramTest):
         self.assertEqual((out / "motion.csv").read_text().split("\n", 1)[0], MOTION_HEADER)
         self.assertIn("VTKFile", (out / "layup.vtu").read_text()[:200])
         self.check_layup(out, report)
+        self.check_use_of_fibre(out, report)
         self.check_program(out)
         self.check_verify(out)
         self.check_broken_programs(out)

@@ -31,6 +31,9 @@ function coverageHtml(plan: Plan | undefined): string {
     if (c.fraction !== undefined) rows.push(['Wall covered', percent(c.fraction)]);
     if (c.mean_layers !== undefined) rows.push(['Bands over a place, mean', number(c.mean_layers)]);
     if (c.max_layers !== undefined) rows.push(['Bands over a place, most', number(c.max_layers)]);
+    if (c.p1_layers !== undefined) rows.push(['Bands over 99 % of the wall in reach, at least', number(c.p1_layers)]);
+    if (plan?.fibre_factor) rows.push(['Fibre over that of the layers asked for', number(plan.fibre_factor)]);
+    if (plan?.turn_share !== undefined) rows.push(['Fibre in turns, cut off', percent(plan.turn_share)]);
     return `<table class="measures"><tbody>${rows
         .map(([k, v]) => `<tr><th scope="row">${k}</th><td class="num">${v}</td></tr>`)
         .join('')}</tbody></table>`;

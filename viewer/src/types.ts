@@ -39,7 +39,9 @@ export interface Plan {
     courses?: number;
     transitions?: number;
     fibre_length_mm?: number;
-    coverage?: { fraction?: number; mean_layers?: number; max_layers?: number };
+    coverage?: { fraction?: number; mean_layers?: number; max_layers?: number; p1_layers?: number };
+    fibre_factor?: number;
+    turn_share?: number;
     uncovered?: Uncovered[];
     planner?: string;
 }

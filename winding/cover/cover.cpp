@@ -526,7 +526,7 @@ private:
                 ++layers_[at(sample)];
             }
         }
-        plan_.coverage = measure_coverage(layers_);
+        plan_.coverage = measure_coverage(layers_, library_.reached);
         plan_.coverage.reachable = reached_share(library_.reached);
         describe_uncovered();
         plan_.face_layers = layers_per_face(mandrel_.surface, samples_, layers_);

@@ -10,9 +10,15 @@
 
 namespace meshwind {
 
-/// Fraction, mean, maximum and coefficient of variation of the layers; `reachable` is left at 0.
-/// \param layers per coverage sample, n >= 1
-[[nodiscard]] Coverage measure_coverage(std::span<const std::int32_t> layers);
+/// Fraction, mean, maximum, first percentile and coefficient of variation of the layers;
+/// `reachable` is left at 0. \param layers per coverage sample, n >= 1 \param reached per sample:
+/// whether the percentile counts it; empty: all do
+[[nodiscard]] Coverage measure_coverage(std::span<const std::int32_t> layers,
+                                        std::span<const char> reached = {});
+
+/// \param wall_mm2 area to be covered \param layers asked for, > 0
+[[nodiscard]] FibreUse fibre_use(const Plan& plan, double tow_width_mm, double wall_mm2,
+                                 double layers);
 
 /// Mean layers per face of the surface; for a face without a sample speak those of the nearest
 /// faces with samples.

@@ -16,11 +16,19 @@ struct Coverage {
     double reachable = 0.0;  ///< share that an admissible course of the library passes
     double mean_layers = 0.0;
     int max_layers = 0;
-    double cv = 0.0;  ///< standard deviation of the layers over their mean
+    int p1_layers = 0;  ///< 99 % of the wall in reach has at least so many: the first percentile
+    double cv = 0.0;    ///< standard deviation of the layers over their mean
     /// The same where a pattern is regular, of the layers averaged over a tow width.
     std::optional<double> regular_cv{};
     std::optional<double> thinnest_layers{};  ///< so averaged, and where it is regular
     std::optional<double> thickest_layers{};
+};
+
+/// What becomes of a plan's fibre.
+struct FibreUse {
+    /// All fibre over that of the layers asked for without a gap, an overlap or a turn: 1 at best.
+    double factor = 0.0;
+    double turn_share = 0.0;  ///< of all fibre, what lies in turns and is cut off
 };
 
 /// Bare wall with the rule that keeps it bare.
