@@ -121,7 +121,8 @@ TEST(OrderCourses, LaysEveryCourseOnceWithNoMoreCutsThanNeeded) {
 // A one-way course from one node to another, and a closed round that only touches one of the two:
 // one fibre lays both.
 void expect_joined(std::int32_t touched_rim, double steep_rad = 1.1) {
-    const auto member = [steep_rad](std::int32_t from, int from_sense, std::int32_t to, int to_sense) {
+    const auto member = [steep_rad](std::int32_t from, int from_sense, std::int32_t to,
+                                    int to_sense) {
         Member m;
         m.end[0] = {from, 0.3, steep_rad, from_sense};
         m.end[1] = {to, 0.9, 1.2, to_sense};
