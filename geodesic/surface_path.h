@@ -58,7 +58,8 @@ struct SlipMeasure {
     std::size_t worst_station = 0;
 };
 
-/// The cubic between two places with unit tangents, as long as their chord, beside a point.
+/// The cubic between two places with unit tangents, as long as their chord, beside a point. Of two
+/// places that are one, as on a crease, it is the first.
 struct CubicPlace {
     double share;  ///< of the chord, 0..1
     Eigen::Vector3d position_mm;
@@ -72,6 +73,9 @@ struct CubicPlace {
                                        const Eigen::Vector3d& point_mm) {
     const Eigen::Vector3d chord = b_mm - a_mm;
     const double length = chord.norm();
+    if (length == 0.0) {
+        return {0.0, a_mm, a_tangent};
+    }
     const double s = std::clamp((point_mm - a_mm).dot(chord) / (length * length), 0.0, 1.0);
     const double r = 1.0 - s;
     const Eigen::Vector3d in = length * a_tangent - chord;

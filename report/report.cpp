@@ -497,12 +497,12 @@ void print_layer(std::ostream& out, const WoundLayer& layer) {
     out << "covered " << percent(plan.coverage.fraction) << " of the wall"
         << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
         << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
-        << plan.coverage.max_layers << ", over 99 % of what is in reach at least "
-        << plan.coverage.p1_layers << '\n';
+        << plan.coverage.max_layers << ", at least " << plan.coverage.p1_layers
+        << " on 99 % of what is reachable\n";
     if (plan.planner == Planner::Cover) {
         const FibreUse use = use_of_fibre(layer);
         out << "fibre factor " << fixed(use.factor, 2)
-            << " (1: what was asked for without gap, overlap and turn), "
+            << " (1 would be the layers asked for without gaps, overlaps and turns), "
             << percent(use.turn_share, 1) << " of the fibre in turns\n";
     }
     if (plan.pattern() != nullptr) {

@@ -97,7 +97,6 @@ double worst_bridge_mm(const Run& run) {
 // tells.
 Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run& run) {
     std::array<TraceResult, 2> half;
-    course.turn_mm = 0.0;
     for (std::size_t e = 0; e < 2; ++e) {  // judged one by one: most candidates fail at one end
         half[e] = trace_half(rules, course.candidate, e == 0 ? -1.0 : 1.0, method);
         if (half[e].stop != TraceStop::Rim || half[e].rim < 0) {
@@ -109,7 +108,6 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
         if (!can_turn(rim, course.end[e], rules.turn)) {
             return Refusal::NotTurnable;
         }
-        course.turn_mm += half_turn_mm(rim, course.end[e], rules.turn);
     }
     run.seed = half[0].path.size() - 1;
     run.path = join_halves(half[0].path, half[1].path);
@@ -121,6 +119,11 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
 
 void measure_length(const CourseRules& rules, const SurfacePath& path, Member& course) {
     course.length_mm = path.back().s_mm;
+    course.turn_mm = 0.0;
+    for (const RimCrossing& end : course.end) {
+        const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(end.rim)];
+        course.turn_mm += half_turn_mm(rim, end, rules.turn);
+    }
     course.off_angle_mm =
         rules.angle_rad ? angle_kept(rules.mandrel.surface, path, *rules.angle_rad).off_mm : 0.0;
 }

@@ -153,24 +153,33 @@ TEST(OrderCourses, OpensNoFibreAtATurnThatTakesMuch) {
     expect_joined(0, 0.7);
 }
 
-// Two pairs of ends, steep and shallow. Alike with alike is less fibre, as both halves of a turn
-// are hoop at one height.
+// Ends are steep or shallow, at places drawn at random. Both halves of a turn are hoop at one
+// height, so that a shallow end beside a steep one takes two rounds more: more than any dwell.
 TEST(OrderCourses, TurnsEndsThatAreAlike) {
-    std::vector<Member> members(2);
-    std::vector<LaidCourse> laid;
-    for (std::int32_t i = 0; i < 2; ++i) {
-        Member& member = members[static_cast<std::size_t>(i)];
-        member.end[0] = {0, 0.5, i == 0 ? 1.3 : 0.8, -1};
-        member.end[1] = {0, 0.5, i == 0 ? 0.8 : 1.3, 1};
-        member.windable_forward = true;
-        laid.push_back({i, false});
+    constexpr double kSteep_rad = 0.8;
+    constexpr double kShallow_rad = 1.3;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Draw draw(seed);
+        std::vector<Member> members(4);
+        std::vector<LaidCourse> laid;
+        for (std::int32_t i = 0; i < 4; ++i) {
+            Member& member = members[static_cast<std::size_t>(i)];
+            const auto end = [&](bool steep, int sense) {
+                return RimCrossing{0, draw.between(0.0, 6.0), steep ? kSteep_rad : kShallow_rad,
+                                   sense};
+            };
+            member.end = {end(i < 2, -1), end(i % 2 == 0, 1)};
+            member.windable_forward = true;
+            laid.push_back({i, false});
+        }
+        const auto order = order_courses(test::plain_rims(1), members, laid, kRule);
+        ASSERT_EQ(order.size(), 4U);
+        for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+            EXPECT_EQ(end_of(member_of(members, order[i].course), false).angle_rad,
+                      start_of(member_of(members, order[i + 1].course), false).angle_rad);
+        }
     }
-    const auto order = order_courses(test::plain_rims(1), members, laid, kRule);
-    ASSERT_EQ(order.size(), 2U);
-    const double turn =
-        end_of(members[static_cast<std::size_t>(order[0].course.member)], false).angle_rad;
-    EXPECT_EQ(start_of(members[static_cast<std::size_t>(order[1].course.member)], false).angle_rad,
-              turn);
 }
 
 // Three rounds from one node back to it, of which each may follow one other.

@@ -1,5 +1,8 @@
 #include "winding/laminate/coverage.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace meshwind {

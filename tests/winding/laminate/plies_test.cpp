@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "core/units.h"
 #include "tests/support/fixtures.h"
@@ -119,6 +120,28 @@ TEST(Plies, OfHoopsAreOneForEachTimeRound) {
     for (std::size_t f = 0; f < w.mandrel.surface.face.size(); ++f) {
         EXPECT_GE(w.plies.of(f).size(), 2U);
         EXPECT_LE(w.plies.of(f).size(), 4U);
+    }
+}
+
+// On a crease a path has two stations at one place, and turns there: a place beside them is by the
+// first.
+TEST(Plies, HaveADirectionWherePathsCrossCreases) {
+    Wound w = wound(PatternKind::Helical, 6.0);
+    for (Piece& piece : w.plan.pieces) {
+        SurfacePath creased;
+        for (const PathPoint& point : piece.path) {
+            creased.push_back(point);
+            creased.push_back(point);
+            creased.back().tangent =
+                Eigen::AngleAxisd(0.2, point.normal).toRotationMatrix() * point.tangent;
+        }
+        piece.path = std::move(creased);
+    }
+    const Plies plies = plies_of(w.mandrel.surface, w.mandrel.surface, w.plan.pieces,
+                                 {.tow_width_mm = kTow.width_mm, .seed = 1});
+    ASSERT_FALSE(plies.ply.empty());
+    for (const Ply& ply : plies.ply) {
+        ASSERT_NEAR(ply.along.norm(), 1.0, 1e-9);
     }
 }
 
