@@ -498,7 +498,7 @@ void print_layer(std::ostream& out, const WoundLayer& layer) {
         << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
         << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
         << plan.coverage.max_layers << ", at least " << plan.coverage.p1_layers
-        << " on 99 % of what is reachable\n";
+        << (layer.import ? " on 99 % of it\n" : " on 99 % of what is reachable\n");
     if (plan.planner == Planner::Cover) {
         const FibreUse use = use_of_fibre(layer);
         out << "fibre factor " << fixed(use.factor, 2)
