@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include <Eigen/Geometry>
+
+#include "mesh/edge_table.h"
 
 namespace meshwind {
 namespace {
 
 // Longest line of sharp edges that is no crease where it ends inside the surface or closes there.
 constexpr int kFoldEdges = 4;
+
+// Largest patch of triangles that is no region of its own where one region surrounds it.
+constexpr std::size_t kSpeckFaces = 2;
 
 // A sliver waiting to take over the normal of the face it was reached from.
 struct Offer {
@@ -128,6 +134,74 @@ void drop_folds(const std::vector<std::array<std::int32_t, 3>>& faces,
     });
 }
 
+// Patches of faces bounded by sharp edges, numbered.
+std::vector<std::int32_t> patches_of(const std::vector<std::array<std::int32_t, 3>>& neighbours,
+                                     const std::vector<std::array<std::uint8_t, 3>>& flags) {
+    std::vector<std::int32_t> patch(neighbours.size(), -1);
+    std::vector<std::int32_t> stack;
+    std::int32_t count = 0;
+    for (std::size_t seed = 0; seed < patch.size(); ++seed) {
+        if (patch[seed] >= 0) {
+            continue;
+        }
+        patch[seed] = count;
+        stack.push_back(static_cast<std::int32_t>(seed));
+        while (!stack.empty()) {
+            const auto f = static_cast<std::size_t>(stack.back());
+            stack.pop_back();
+            for (std::size_t e = 0; e < 3; ++e) {
+                const std::int32_t g = neighbours[f][e];
+                if (g >= 0 && flags[f][e] == 0 && patch[static_cast<std::size_t>(g)] < 0) {
+                    patch[static_cast<std::size_t>(g)] = count;
+                    stack.push_back(g);
+                }
+            }
+        }
+        ++count;
+    }
+    return patch;
+}
+
+// A triangle or two that stand askew in one region, as where vertices have been moved, are no
+// region, and their edges no creases; nor where another such speck lies beside them.
+void drop_specks(const std::vector<std::array<std::int32_t, 3>>& neighbours,
+                 std::vector<std::array<std::uint8_t, 3>>& flags) {
+    const std::vector<std::int32_t> patch = patches_of(neighbours, flags);
+    std::vector<std::vector<std::size_t>> faces(patch.size());  // of each patch
+    for (std::size_t f = 0; f < patch.size(); ++f) {
+        faces[static_cast<std::size_t>(patch[f])].push_back(f);
+    }
+    const auto is_small = [&](std::int32_t of) {
+        return of >= 0 && faces[static_cast<std::size_t>(of)].size() <= kSpeckFaces;
+    };
+    for (std::size_t own = 0; own < faces.size() && !faces[own].empty(); ++own) {
+        if (!is_small(static_cast<std::int32_t>(own))) {
+            continue;
+        }
+        std::set<std::int32_t> small;
+        std::set<std::int32_t> large;  // -1: open edges
+        for (const std::size_t f : faces[own]) {
+            for (const std::int32_t g : neighbours[f]) {
+                const std::int32_t other = g < 0 ? -1 : patch[static_cast<std::size_t>(g)];
+                if (other != static_cast<std::int32_t>(own)) {
+                    (is_small(other) ? small : large).insert(other);
+                }
+            }
+        }
+        if (small.size() > 1 || large.size() != 1 || large.contains(-1)) {
+            continue;
+        }
+        for (const std::size_t f : faces[own]) {
+            for (std::size_t e = 0; e < 3; ++e) {
+                const auto g = static_cast<std::size_t>(neighbours[f][e]);
+                const int back = shared_edge(neighbours[g], static_cast<std::int32_t>(f));
+                flags[f][e] = 0;
+                flags[g][static_cast<std::size_t>(back)] = 0;
+            }
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> steady_normals(
@@ -189,6 +263,7 @@ std::vector<std::array<std::uint8_t, 3>> feature_edges(
             }
         }
     }
+    drop_specks(neighbours, flags);
     drop_folds(faces, neighbours, flags);
     return flags;
 }
