@@ -154,6 +154,9 @@ void measure(const TriangleSoup& soup, Rim& rim) {
     constexpr int kRounds = 8;
     constexpr double kFarOff = 4.0;       // times the median distance from the circle
     constexpr double kRoundShare = 1e-3;  // of the radius: a loop this good keeps all its points
+    // In radii: the edge of a hexagon. A longer one stands for no arc: a loop with such edges is as
+    // far off its circle as their middles are.
+    constexpr double kLongestEdge = 1.001;
     const LoopPoints loop = points_of(soup, rim.vertices);
     std::vector<double> weights = loop.weights;
     std::vector<double> off(loop.points.size());
@@ -184,8 +187,13 @@ void measure(const TriangleSoup& soup, Rim& rim) {
         fit(loop, weights, rim);
     }
     rim.circularity_mm = 0.0;
-    for (const Eigen::Vector3d& p : loop.points) {
+    for (std::size_t i = 0; i < loop.points.size(); ++i) {
+        const Eigen::Vector3d& p = loop.points[i];
+        const Eigen::Vector3d& next = loop.points[(i + 1) % loop.points.size()];
         rim.circularity_mm = std::max(rim.circularity_mm, off_circle_mm(rim, p));
+        if ((next - p).norm() > kLongestEdge * rim.radius_mm) {
+            rim.circularity_mm = std::max(rim.circularity_mm, off_circle_mm(rim, 0.5 * (p + next)));
+        }
     }
 }
 

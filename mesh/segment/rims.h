@@ -22,8 +22,9 @@ struct Rims {
 /// Loops run counter-clockwise seen along `Rim::axis` from outside. The circle is a least-squares
 /// fit in the loop's plane with each vertex weighted by the boundary length beside it, so uneven
 /// spacing does not pull; points far off it, in notches, are left out of the fit but not of the
-/// circularity. Accuracy: exact to rounding on a loop of points on a circle
-/// (tests/mesh/segment/rims_test.cpp). \pre soup is an oriented manifold, one fan per vertex
+/// circularity, which counts the middles of edges longer than the radius, too. Accuracy: exact to
+/// rounding on a loop of points on a circle (tests/mesh/segment/rims_test.cpp). \pre soup is an
+/// oriented manifold, one fan per vertex
 [[nodiscard]] Rims find_rims(const TriangleSoup& soup);
 
 /// The circle of one loop of vertices, in its order, as `find_rims` fits it.

@@ -1,5 +1,8 @@
 #include "mesh/segment/rims.h"
 
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/shapes.h"
@@ -65,6 +68,32 @@ TEST(FindRims, SmallHolesInTheWallAreNotRims) {
     const Rims rims = find_rims(soup);
     EXPECT_EQ(rims.rims.size(), 2U);
     EXPECT_EQ(rims.holes_mm.size(), 1U);
+}
+
+// Each row of facets is as long as the pipe is wide: the corners of the window lie on a circle.
+TEST(FindRims, WindowOfAFacetOrTwoIsNoCircle) {
+    TriangleSoup soup = test::tube(10.0, 60.0, 12, 3);
+    std::erase_if(soup.faces, [&](const auto& face) {
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+        for (const std::int32_t v : face) {
+            middle += soup.points_mm[static_cast<std::size_t>(v)] / 3.0;
+        }
+        return middle.z() > 20.0 && middle.z() < 40.0 && std::abs(middle.y()) < 4.0 &&
+               middle.x() > 0.0;
+    });
+    const Rims rims = find_rims(soup);
+    ASSERT_EQ(rims.rims.size(), 3U);
+    for (const Rim& rim : rims.rims) {
+        const bool is_end = std::abs(rim.axis.z()) > 0.9;
+        EXPECT_EQ(rim.circularity_mm < 1e-9, is_end);
+        EXPECT_EQ(rim.circularity_mm < 0.3 * rim.radius_mm, is_end);
+    }
+}
+
+TEST(FindRims, EndOfSixFacetsIsACircle) {
+    const Rims rims = find_rims(test::tube(10.0, 40.0, 6, 1));
+    ASSERT_EQ(rims.rims.size(), 2U);
+    EXPECT_LT(rims.rims[0].circularity_mm, 1e-9);
 }
 
 }  // namespace
