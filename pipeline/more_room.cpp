@@ -14,6 +14,9 @@ constexpr double kWorthIt = 0.01;
 // To a plan that covers so much of what it has to a fibre to spare may bring the rest.
 constexpr double kNearly = 0.95;
 
+// Fibres that are tied on where the machine cannot follow turns. Each is a stop of the machine.
+constexpr int kMostToSpare = 4;
+
 // The fewest fibres that reach what all those that were looked for do.
 int fibres_enough(const std::vector<double>& reach) {
     const auto enough = std::find_if(
@@ -40,11 +43,11 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
         return more.fibres == job.fibres && more.mandrel.extension_mm == job.mandrel.extension_mm;
     };
     // What covers and fails has turns that do not hold, and what nearly covers lacks courses
-    // between some rims. A fibre to spare need not take them, and one is tried: each more is a run
-    // of the whole job.
+    // between some rims. Fibres to spare need not take them, and they are tried once: each time is
+    // a run of the whole job.
     const bool covers = plan.coverage.fraction >= kNearly * kCoveredShare * plan.coverage.reachable;
     if (same() && fibres_free && covers && job.fibres <= enough) {
-        more.fibres = job.fibres + 1;
+        more.fibres = job.fibres + std::clamp(plan.effort.turns_refused, 1, kMostToSpare);
     }
     return same() ? std::nullopt : std::optional(std::move(more));
 }

@@ -480,8 +480,9 @@ const KeyTable<Job>& job_keys() {
             layers_key(),
             told(count("fibres", &Job::fibres, kMostFibres,
                        "continuous fibres that may be wound one after the other, each by a program "
-                       "of its own; a further one is taken only where it covers more. Where it is "
-                       "not given, and checks fail, more are tried"),
+                       "of its own; a further one is taken only where it covers more, or where "
+                       "the machine cannot follow a turn. Where it is not given, and checks fail, "
+                       "more are tried"),
                  &Job::fibres_given),
             object("eye", &Job::eye, eye_keys(), "where the delivery eye is"),
             word("redundancy", &Job::redundancy, {"central-angle", "hold", "oscillate", "optimal"},

@@ -33,14 +33,19 @@ TEST(MoreRoom, IsLongerExtensionsWhereTheyReachMore) {
 }
 
 // What covers and yet fails has turns that do not hold; what nearly covers lacks courses.
-TEST(MoreRoom, IsOneFibreToSpareWhereThePlanNearlyCovers) {
+TEST(MoreRoom, IsFibresToSpareWhereThePlanNearlyCovers) {
     Plan plan = plan_that_reaches({0.9, 0.9}, 0.9);
     EXPECT_FALSE(more_room(Job(), plan)) << "nothing is covered";
     plan.coverage.fraction = 0.89;
     const auto more = more_room(Job(), plan);
     ASSERT_TRUE(more);
     EXPECT_EQ(more->fibres, 2);
-    EXPECT_FALSE(more_room(*more, plan)) << "one is tried";
+    EXPECT_FALSE(more_room(*more, plan)) << "it is tried once";
+    plan.effort.turns_refused = 3;
+    EXPECT_EQ(more_room(Job(), plan)->fibres, 4) << "one for each turn";
+    plan.effort.turns_refused = 40;
+    EXPECT_EQ(more_room(Job(), plan)->fibres, 5) << "each stops the machine";
+    plan.effort.turns_refused = 0;
     EXPECT_FALSE(more_room(parse_job(R"({"fibres": 1})", "job"), plan));
     plan.coverage.fraction = 0.75;  // 0.81 is asked for
     EXPECT_FALSE(more_room(Job(), plan));

@@ -314,11 +314,15 @@ private:
         }
     }
 
-    // Adds what it takes to join the courses, and puts them in order.
+    // Adds what it takes to join the courses, and puts them in order. Fibres to be cut where the
+    // machine cannot follow a turn are not spent on what does not join.
     void join_to_fibres() {
-        join();
+        join(fibres());
         put_in_order();
-        keep_longest_fibres();
+        if (plan_.effort.turns_refused > 0 && fibres() > 1) {
+            join(std::max(1, fibres() - plan_.effort.turns_refused));
+            put_in_order();
+        }
     }
 
     // The courses of the plan behind those of the library.
@@ -331,7 +335,7 @@ private:
 
     // Adds proven members of the library until as many courses arrive as depart, wherever there is
     // a way.
-    void join() {
+    void join(int fibres) {
         for (int attempt = 0; attempt < kMaxJoins; ++attempt) {
             gather();
             std::vector<char> allowed = allowed_;
@@ -342,7 +346,7 @@ private:
                 selection.chosen.push_back(static_cast<std::int32_t>(i));
             }
             const std::vector<LaidCourse> laid = balance_courses(
-                members_, allowed, mandrel_.rims.size(), options_.select, fibres(), selection);
+                members_, allowed, mandrel_.rims.size(), options_.select, fibres, selection);
             if (take_proven(laid)) {
                 return;
             }
@@ -406,13 +410,12 @@ private:
                 {static_cast<std::int32_t>(library_size_ + laid.size()), course.backward});
             lateness.push_back(character_of(mandrel_.surface, course.path).lateness());
         }
-        order_ = order_to_follow(rules_, machine_, members_, laid, lateness);
-    }
-
-    void keep_longest_fibres() {
-        const std::size_t all = order_.size();
-        order_ = longest_fibres(members_, order_, static_cast<std::size_t>(fibres()));
-        plan_.effort.courses_out_of_reach = static_cast<int>(all - order_.size());
+        const auto most = static_cast<std::size_t>(fibres());
+        const auto followed = order_to_follow(rules_, machine_, members_, laid, lateness, most);
+        order_ = longest_fibres(members_, followed.courses, most);
+        plan_.effort.turns_refused = followed.turns_refused;
+        plan_.effort.courses_out_of_reach =
+            static_cast<int>(followed.courses.size() - order_.size());
     }
 
     // Whether the courses cover enough to be wound.
@@ -457,7 +460,6 @@ private:
         }
         courses_ = std::move(best);
         put_in_order();
-        keep_longest_fibres();
         lay_out(rules_, members_, order_, plan_);
     }
 
@@ -589,8 +591,7 @@ TriedPlan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles, const Co
         tried.plan.planner = Planner::Cover;
         tried.plan.failure =
             "the mandrel has no rim: courses have nowhere to turn back (a closed body needs a "
-            "polar "
-            "opening or an open end)";
+            "polar opening or an open end)";
         return tried;
     }
     return CoverPlanner(mandrel, obstacles, options, machine).run();

@@ -26,10 +26,10 @@ public:
         }
     }
 
-    std::vector<OrderedCourse> run() {
+    FollowedOrder run(std::size_t fibres) {
         std::vector<OrderedCourse> best = put_in_order();
         if (machine_ == nullptr) {
-            return best;
+            return {std::move(best), 0};
         }
         std::vector<OrderedCourse> order = best;
         std::pair<std::size_t, std::size_t> least;  // cuts, closed turns
@@ -45,7 +45,8 @@ public:
             }
             order = put_in_order();
         }
-        return best;
+        const std::size_t cut = cut_at_closed(best, fibres - std::min(fibres, least.first));
+        return {std::move(best), static_cast<int>(least.second - cut)};
     }
 
 private:
@@ -65,6 +66,18 @@ private:
         return static_cast<std::size_t>(
             std::count_if(order.begin(), order.end(),
                           [](const OrderedCourse& course) { return course.cut_after; }));
+    }
+
+    // Ends fibres at the first closed turns, `most` of them. Returns how many it did.
+    std::size_t cut_at_closed(std::vector<OrderedCourse>& order, std::size_t most) const {
+        std::size_t done = 0;
+        for (std::size_t i = 0; i + 1 < order.size() && done < most; ++i) {
+            if (!order[i].cut_after && closed_.count({order[i].course, order[i + 1].course}) != 0) {
+                order[i].cut_after = true;
+                ++done;
+            }
+        }
+        return done;
     }
 
     // Adds the turns of the order that the machine cannot follow. Returns how many they are.
@@ -107,11 +120,10 @@ private:
 
 }  // namespace
 
-std::vector<OrderedCourse> order_to_follow(const CourseRules& rules, const Windability* machine,
-                                           std::span<const Member> members,
-                                           std::span<const LaidCourse> laid,
-                                           std::span<const double> lateness) {
-    return Follower(rules, machine, members, laid, lateness).run();
+FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machine,
+                              std::span<const Member> members, std::span<const LaidCourse> laid,
+                              std::span<const double> lateness, std::size_t fibres) {
+    return Follower(rules, machine, members, laid, lateness).run(fibres);
 }
 
 }  // namespace meshwind

@@ -10,15 +10,20 @@
 
 namespace meshwind {
 
+struct FollowedOrder {
+    std::vector<OrderedCourse> courses;
+    int turns_refused = 0;  ///< left in the order although the machine cannot follow them
+};
+
 /// Orders and arranges courses (order.h, arrange.h). Where the machine cannot follow a turn from
 /// one course to the next, they are put in another order: of those that are tried, the one with the
-/// fewest cuts, and then with the fewest such turns.
+/// fewest cuts, and then with the fewest such turns. As far as more fibres are allowed they are cut
+/// at those that are left.
 /// \param machine null: each turn can be followed \param members proven
-/// \param lateness per entry of `laid`
-[[nodiscard]] std::vector<OrderedCourse> order_to_follow(const CourseRules& rules,
-                                                         const Windability* machine,
-                                                         std::span<const Member> members,
-                                                         std::span<const LaidCourse> laid,
-                                                         std::span<const double> lateness);
+/// \param lateness per entry of `laid` \param fibres that may be tied on, >= 1
+[[nodiscard]] FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machine,
+                                            std::span<const Member> members,
+                                            std::span<const LaidCourse> laid,
+                                            std::span<const double> lateness, std::size_t fibres);
 
 }  // namespace meshwind

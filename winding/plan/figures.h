@@ -71,6 +71,7 @@ struct PlanEffort {
     std::int64_t proposals = 0;    ///< weighed while the courses were annealed
     std::int64_t taken = 0;        ///< of these
     int courses_out_of_reach = 0;  ///< chosen, but no fibre joins them; left out
+    int turns_refused = 0;         ///< in the order, which the machine cannot follow
     int rejected_courses = 0;      ///< refused by the measured slip or by the machine
     std::array<std::int64_t, kRejections> rejections{};  ///< members of the library, by reason
 };

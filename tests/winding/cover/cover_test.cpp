@@ -312,6 +312,43 @@ TEST(PlanCover, TakesNoTurnThatTheMachineCannotFollow) {
     expect_continuous(plan);
 }
 
+// Behind three of its courses no other can be wound: what one fibre must not leave out, four do.
+TEST(PlanCover, CutsFibresWhereNoTurnCanBeFollowed) {
+    using Place = std::array<double, 3>;
+    const auto end_of_course = [](const Piece& course) {
+        const Vector3d& p = course.path.back().position_mm;
+        return Place{p.x(), p.y(), p.z()};
+    };
+    CoverOptions options = wide_tow();
+    for (const int fibres : {1, 4}) {
+        options.fibres = fibres;
+        std::set<Place> shut;
+        const Plan any = cover_cylinder(options);
+        for (std::size_t i = 0; i + 2 < any.pieces.size() && shut.size() < 3; ++i) {
+            if (any.pieces[i + 1].kind == PieceKind::Transition) {
+                shut.insert(end_of_course(any.pieces[i]));
+            }
+        }
+        test::AnyMachine machine;
+        machine.follow_rule = [&](std::span<const Piece> pieces) {
+            const bool turn = pieces.size() == 3 && pieces[1].kind == PieceKind::Transition;
+            return turn && shut.count(end_of_course(pieces[0])) != 0 ? Rejection::FreeLength
+                                                                     : Rejection::None;
+        };
+        const Plan plan = cover_cylinder(options, &machine);
+        EXPECT_GE(plan.courses, any.courses);
+        EXPECT_LE(plan.fibres, fibres);
+        int refused = 0;
+        for (std::size_t i = 0; i + 1 < plan.pieces.size(); ++i) {
+            const bool turn = plan.pieces[i + 1].kind == PieceKind::Transition;
+            refused += turn && shut.count(end_of_course(plan.pieces[i])) != 0 ? 1 : 0;
+        }
+        EXPECT_EQ(plan.effort.turns_refused, refused);
+        // A fibre may end behind one of them.
+        EXPECT_EQ(refused, fibres == 1 ? 2 : 0);
+    }
+}
+
 // Whatever is put in their place, courses are refused: the plan with the fewest of them stands.
 TEST(PlanCover, EndsWhereEveryPlanIsRefused) {
     int asked = 0;
