@@ -25,7 +25,7 @@ meshwind::Surface torus(double edge_mm) {
         meshwind::make_mandrel("torus", {}, {.edge_mm = edge_mm, .irregular = true});
     const auto neighbours = meshwind::face_neighbours(soup.faces);
     const auto feature =
-        meshwind::feature_edges(soup.faces, meshwind::steady_normals(soup, neighbours), neighbours);
+        meshwind::feature_edges(soup, meshwind::steady_normals(soup, neighbours), neighbours);
     const std::vector<std::int32_t> region(soup.faces.size(), 0);
     const meshwind::Rims rims = meshwind::find_rims(soup);
     return meshwind::freeze_surface(soup,

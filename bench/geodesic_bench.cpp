@@ -48,7 +48,7 @@ Parts parts_of(const char* kind, const meshwind::MakeValues& values, double edge
     parts.soup = meshwind::make_mandrel(kind, values, {.edge_mm = edge_mm, .irregular = true});
     const auto neighbours = meshwind::face_neighbours(parts.soup.faces);
     parts.feature = meshwind::feature_edges(
-        parts.soup.faces, meshwind::steady_normals(parts.soup, neighbours), neighbours);
+        parts.soup, meshwind::steady_normals(parts.soup, neighbours), neighbours);
     parts.region.assign(parts.soup.faces.size(), 0);
     parts.rims = meshwind::find_rims(parts.soup);
     return parts;

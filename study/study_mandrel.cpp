@@ -108,7 +108,7 @@ StudyMandrel file_study(Mandrel mandrel) {
 
 Surface frozen_surface(const TriangleSoup& soup) {
     const auto neighbours = face_neighbours(soup.faces);
-    const auto feature = feature_edges(soup.faces, steady_normals(soup, neighbours), neighbours);
+    const auto feature = feature_edges(soup, steady_normals(soup, neighbours), neighbours);
     const Rims rims = find_rims(soup);
     const std::vector<std::int32_t> region(soup.faces.size(), 0);
     return freeze_surface(soup, {.feature = feature, .region = region, .rim = rims.of_edge});

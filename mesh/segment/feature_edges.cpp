@@ -17,8 +17,10 @@ namespace {
 // Longest line of sharp edges that is no crease where it ends inside the surface or closes there.
 constexpr int kFoldEdges = 4;
 
-// Largest patch of triangles that is no region of its own where one region surrounds it.
+// Largest patch of triangles that is no region of its own where one region surrounds it, and how
+// large each of them may be beside the largest triangle next to it: it is a sliver.
 constexpr std::size_t kSpeckFaces = 2;
+constexpr double kSpeckArea = 0.25;
 
 // A sliver waiting to take over the normal of the face it was reached from.
 struct Offer {
@@ -162,9 +164,17 @@ std::vector<std::int32_t> patches_of(const std::vector<std::array<std::int32_t, 
     return patch;
 }
 
-// A triangle or two that stand askew in one region, as where vertices have been moved, are no
+double area_mm2_of(const TriangleSoup& soup, std::size_t f) {
+    const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
+        return soup.points_mm[static_cast<std::size_t>(soup.faces[f][i])];
+    };
+    return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+}
+
+// Slivers that stand askew in one region, one or two, as where vertices have been moved, are no
 // region, and their edges no creases; nor where another such speck lies beside them.
-void drop_specks(const std::vector<std::array<std::int32_t, 3>>& neighbours,
+void drop_specks(const TriangleSoup& soup,
+                 const std::vector<std::array<std::int32_t, 3>>& neighbours,
                  std::vector<std::array<std::uint8_t, 3>>& flags) {
     const std::vector<std::int32_t> patch = patches_of(neighbours, flags);
     std::vector<std::vector<std::size_t>> faces(patch.size());  // of each patch
@@ -180,15 +190,21 @@ void drop_specks(const std::vector<std::array<std::int32_t, 3>>& neighbours,
         }
         std::set<std::int32_t> small;
         std::set<std::int32_t> large;  // -1: open edges
+        double own_mm2 = 0.0;
+        double beside_mm2 = 0.0;
         for (const std::size_t f : faces[own]) {
+            own_mm2 = std::max(own_mm2, area_mm2_of(soup, f));
             for (const std::int32_t g : neighbours[f]) {
                 const std::int32_t other = g < 0 ? -1 : patch[static_cast<std::size_t>(g)];
                 if (other != static_cast<std::int32_t>(own)) {
                     (is_small(other) ? small : large).insert(other);
+                    beside_mm2 = std::max(
+                        beside_mm2, g < 0 ? 0.0 : area_mm2_of(soup, static_cast<std::size_t>(g)));
                 }
             }
         }
-        if (small.size() > 1 || large.size() != 1 || large.contains(-1)) {
+        if (small.size() > 1 || large.size() != 1 || large.contains(-1) ||
+            own_mm2 > kSpeckArea * beside_mm2) {
             continue;
         }
         for (const std::size_t f : faces[own]) {
@@ -250,8 +266,7 @@ std::vector<Eigen::Vector3d> steady_normals(
 }
 
 std::vector<std::array<std::uint8_t, 3>> feature_edges(
-    const std::vector<std::array<std::int32_t, 3>>& faces,
-    const std::vector<Eigen::Vector3d>& normals,
+    const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
     const std::vector<std::array<std::int32_t, 3>>& neighbours) {
     const double limit = std::cos(kFeatureAngleRad);
     std::vector<std::array<std::uint8_t, 3>> flags(normals.size(), {0, 0, 0});
@@ -263,8 +278,8 @@ std::vector<std::array<std::uint8_t, 3>> feature_edges(
             }
         }
     }
-    drop_specks(neighbours, flags);
-    drop_folds(faces, neighbours, flags);
+    drop_specks(soup, neighbours, flags);
+    drop_folds(soup.faces, neighbours, flags);
     return flags;
 }
 

@@ -26,11 +26,10 @@ inline constexpr double kSliverHeightShare = 2e-5;
 
 /// Per face and edge 1 where the dihedral of the steady normals reaches `kFeatureAngleRad`; open
 /// edges are not creases, nor are a few such edges in a row that end or close inside the surface,
-/// nor those around a triangle or two that one region surrounds: both are folds of facets too
+/// nor those around a sliver or two that one region surrounds: both are folds of facets too
 /// coarse or too uneven for a round wall. Symmetric over each edge.
 [[nodiscard]] std::vector<std::array<std::uint8_t, 3>> feature_edges(
-    const std::vector<std::array<std::int32_t, 3>>& faces,
-    const std::vector<Eigen::Vector3d>& normals,
+    const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
     const std::vector<std::array<std::int32_t, 3>>& neighbours);
 
 }  // namespace meshwind

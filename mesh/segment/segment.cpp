@@ -518,7 +518,7 @@ Segmentation segment(const TriangleSoup& soup) {
         make_regions(s, facts);
         look_around(soup, normals, facts, face_area, visibility, s.regions);
     };
-    s.feature = feature_edges(soup.faces, normals, s.neighbours);
+    s.feature = feature_edges(soup, normals, s.neighbours);
     const std::vector<std::int32_t> flat_end = flat_ends(soup, s.neighbours, normals, face_area);
     s.region = label_faces(s, flat_end);
     survey();

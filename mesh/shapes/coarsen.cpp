@@ -25,7 +25,7 @@ constexpr float kWorstAspect = 5.0F;
 
 void mark_creases(OpenTriMesh& mesh, const TriangleSoup& soup) {
     const auto neighbours = face_neighbours(soup.faces);
-    const auto feature = feature_edges(soup.faces, steady_normals(soup, neighbours), neighbours);
+    const auto feature = feature_edges(soup, steady_normals(soup, neighbours), neighbours);
     for (std::size_t f = 0; f < soup.faces.size(); ++f) {
         for (std::size_t e = 0; e < 3; ++e) {
             if (feature[f][e] == 0) {

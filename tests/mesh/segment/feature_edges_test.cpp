@@ -51,8 +51,7 @@ TriangleSoup plate_with_box() {
 int count(const TriangleSoup& soup) {
     const auto neighbours = face_neighbours(soup.faces);
     int sharp = 0;
-    for (const auto& face :
-         feature_edges(soup.faces, steady_normals(soup, neighbours), neighbours)) {
+    for (const auto& face : feature_edges(soup, steady_normals(soup, neighbours), neighbours)) {
         sharp += face[0] + face[1] + face[2];
     }
     return sharp;
