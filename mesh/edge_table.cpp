@@ -59,6 +59,34 @@ std::vector<std::array<std::int32_t, 3>> face_neighbours(
     return neighbours;
 }
 
+std::vector<std::int32_t> patches_of(
+    const std::vector<std::array<std::int32_t, 3>>& neighbours,
+    const std::function<bool(std::size_t face, std::size_t edge)>& parted) {
+    std::vector<std::int32_t> patch(neighbours.size(), -1);
+    std::vector<std::size_t> stack;
+    std::int32_t count = 0;
+    for (std::size_t seed = 0; seed < patch.size(); ++seed) {
+        if (patch[seed] >= 0) {
+            continue;
+        }
+        patch[seed] = count;
+        stack.push_back(seed);
+        while (!stack.empty()) {
+            const std::size_t f = stack.back();
+            stack.pop_back();
+            for (std::size_t e = 0; e < 3; ++e) {
+                const std::int32_t g = neighbours[f][e];
+                if (g >= 0 && patch[static_cast<std::size_t>(g)] < 0 && !parted(f, e)) {
+                    patch[static_cast<std::size_t>(g)] = count;
+                    stack.push_back(static_cast<std::size_t>(g));
+                }
+            }
+        }
+        ++count;
+    }
+    return patch;
+}
+
 int shared_edge(const std::array<std::int32_t, 3>& neighbours, std::int32_t neighbour) {
     for (int e = 0; e < 3; ++e) {
         if (neighbours[static_cast<std::size_t>(e)] == neighbour) {

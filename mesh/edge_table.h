@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct EdgeUse {
 /// Per face and edge the face on the other side, -1 where the edge does not have exactly two uses.
 [[nodiscard]] std::vector<std::array<std::int32_t, 3>> face_neighbours(
     std::span<const std::array<std::int32_t, 3>> faces);
+
+/// Per face the number of its patch: faces that hang together over edges that are not parted, by
+/// their first face from 0 on. \param parted whether patches end at an edge of a face; asked from
+/// either side, and the same there
+[[nodiscard]] std::vector<std::int32_t> patches_of(
+    const std::vector<std::array<std::int32_t, 3>>& neighbours,
+    const std::function<bool(std::size_t face, std::size_t edge)>& parted);
 
 /// Edge of `face` that it shares with `neighbour`, given the neighbours of `face`; -1 when none.
 [[nodiscard]] int shared_edge(const std::array<std::int32_t, 3>& neighbours,

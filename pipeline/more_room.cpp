@@ -47,7 +47,8 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
     // a run of the whole job.
     const bool covers = plan.coverage.fraction >= kNearly * kCoveredShare * plan.coverage.reachable;
     if (same() && fibres_free && covers && job.fibres <= enough) {
-        more.fibres = job.fibres + std::clamp(plan.effort.turns_refused, 1, kMostToSpare);
+        const int spare = std::clamp(plan.effort.turns_refused, 1, kMostToSpare);
+        more.fibres = std::min(job.fibres + spare, kMostFibres);
     }
     return same() ? std::nullopt : std::optional(std::move(more));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <queue>
 #include <set>
 #include <tuple>
@@ -17,8 +18,9 @@ namespace {
 // Longest line of sharp edges that is no crease where it ends inside the surface or closes there.
 constexpr int kFoldEdges = 4;
 
-// Largest patch of triangles that is no region of its own where one region surrounds it, and how
-// large each of them may be beside the largest triangle next to it: it is a sliver.
+// Triangles of a patch that is no region of its own where one region surrounds it, at most, and
+// their area as a share of that of the largest beside them. Specks of a mesh of 1.7 mm2 on average
+// had 0.33 mm2 at most; a larger facet that stands askew is a spike, and round walls have none.
 constexpr std::size_t kSpeckFaces = 2;
 constexpr double kSpeckArea = 0.25;
 
@@ -136,78 +138,53 @@ void drop_folds(const std::vector<std::array<std::int32_t, 3>>& faces,
     });
 }
 
-// Patches of faces bounded by sharp edges, numbered.
-std::vector<std::int32_t> patches_of(const std::vector<std::array<std::int32_t, 3>>& neighbours,
-                                     const std::vector<std::array<std::uint8_t, 3>>& flags) {
-    std::vector<std::int32_t> patch(neighbours.size(), -1);
-    std::vector<std::int32_t> stack;
-    std::int32_t count = 0;
-    for (std::size_t seed = 0; seed < patch.size(); ++seed) {
-        if (patch[seed] >= 0) {
-            continue;
-        }
-        patch[seed] = count;
-        stack.push_back(static_cast<std::int32_t>(seed));
-        while (!stack.empty()) {
-            const auto f = static_cast<std::size_t>(stack.back());
-            stack.pop_back();
-            for (std::size_t e = 0; e < 3; ++e) {
-                const std::int32_t g = neighbours[f][e];
-                if (g >= 0 && flags[f][e] == 0 && patch[static_cast<std::size_t>(g)] < 0) {
-                    patch[static_cast<std::size_t>(g)] = count;
-                    stack.push_back(g);
-                }
-            }
-        }
-        ++count;
-    }
-    return patch;
-}
-
-double area_mm2_of(const TriangleSoup& soup, std::size_t f) {
-    const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
-        return soup.points_mm[static_cast<std::size_t>(soup.faces[f][i])];
-    };
-    return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
-}
-
 // Slivers that stand askew in one region, one or two, as where vertices have been moved, are no
 // region, and their edges no creases; nor where another such speck lies beside them.
 void drop_specks(const TriangleSoup& soup,
                  const std::vector<std::array<std::int32_t, 3>>& neighbours,
                  std::vector<std::array<std::uint8_t, 3>>& flags) {
-    const std::vector<std::int32_t> patch = patches_of(neighbours, flags);
-    std::vector<std::vector<std::size_t>> faces(patch.size());  // of each patch
-    for (std::size_t f = 0; f < patch.size(); ++f) {
-        faces[static_cast<std::size_t>(patch[f])].push_back(f);
+    const std::vector<std::int32_t> patch =
+        patches_of(neighbours, [&](std::size_t f, std::size_t e) { return flags[f][e] != 0; });
+    std::vector<std::size_t> size(patch.size(), 0);  // of each patch
+    for (const std::int32_t p : patch) {
+        ++size[static_cast<std::size_t>(p)];
     }
-    const auto is_small = [&](std::int32_t of) {
-        return of >= 0 && faces[static_cast<std::size_t>(of)].size() <= kSpeckFaces;
+    const auto is_small = [&](std::int32_t p) {
+        return size[static_cast<std::size_t>(p)] <= kSpeckFaces;
     };
-    for (std::size_t own = 0; own < faces.size() && !faces[own].empty(); ++own) {
-        if (!is_small(static_cast<std::int32_t>(own))) {
-            continue;
+    std::map<std::int32_t, std::vector<std::size_t>> small_patches;
+    for (std::size_t f = 0; f < patch.size(); ++f) {
+        if (is_small(patch[f])) {
+            small_patches[patch[f]].push_back(f);
         }
+    }
+    const auto is_speck = [&](std::int32_t own, const std::vector<std::size_t>& faces) {
         std::set<std::int32_t> small;
-        std::set<std::int32_t> large;  // -1: open edges
+        std::set<std::int32_t> large;
         double own_mm2 = 0.0;
         double beside_mm2 = 0.0;
-        for (const std::size_t f : faces[own]) {
-            own_mm2 = std::max(own_mm2, area_mm2_of(soup, f));
+        for (const std::size_t f : faces) {
+            own_mm2 = std::max(own_mm2, area_mm2(soup.points_mm, soup.faces[f]));
             for (const std::int32_t g : neighbours[f]) {
-                const std::int32_t other = g < 0 ? -1 : patch[static_cast<std::size_t>(g)];
-                if (other != static_cast<std::int32_t>(own)) {
+                if (g < 0) {
+                    return false;
+                }
+                const std::int32_t other = patch[static_cast<std::size_t>(g)];
+                if (other != own) {
                     (is_small(other) ? small : large).insert(other);
-                    beside_mm2 = std::max(
-                        beside_mm2, g < 0 ? 0.0 : area_mm2_of(soup, static_cast<std::size_t>(g)));
+                    beside_mm2 =
+                        std::max(beside_mm2,
+                                 area_mm2(soup.points_mm, soup.faces[static_cast<std::size_t>(g)]));
                 }
             }
         }
-        if (small.size() > 1 || large.size() != 1 || large.contains(-1) ||
-            own_mm2 > kSpeckArea * beside_mm2) {
+        return large.size() == 1 && small.size() <= 1 && own_mm2 <= kSpeckArea * beside_mm2;
+    };
+    for (const auto& [own, faces] : small_patches) {
+        if (!is_speck(own, faces)) {
             continue;
         }
-        for (const std::size_t f : faces[own]) {
+        for (const std::size_t f : faces) {
             for (std::size_t e = 0; e < 3; ++e) {
                 const auto g = static_cast<std::size_t>(neighbours[f][e]);
                 const int back = shared_edge(neighbours[g], static_cast<std::int32_t>(f));

@@ -49,32 +49,10 @@ std::size_t at(std::int32_t index) {
 // Regions are bounded by feature edges; each flat end is one with all that stands on it.
 std::vector<std::int32_t> label_faces(const Segmentation& s,
                                       const std::vector<std::int32_t>& flat_end) {
-    const auto parts = [&](std::size_t f, std::size_t e, std::size_t g) {
-        return flat_end[f] != flat_end[g] || (flat_end[f] < 0 && s.feature[f][e] != 0);
-    };
-    std::vector<std::int32_t> label(s.neighbours.size(), -1);
-    std::int32_t count = 0;
-    std::vector<std::int32_t> stack;
-    for (std::size_t seed = 0; seed < label.size(); ++seed) {
-        if (label[seed] >= 0) {
-            continue;
-        }
-        label[seed] = count;
-        stack.push_back(static_cast<std::int32_t>(seed));
-        while (!stack.empty()) {
-            const std::size_t f = at(stack.back());
-            stack.pop_back();
-            for (std::size_t e = 0; e < 3; ++e) {
-                const std::int32_t g = s.neighbours[f][e];
-                if (g >= 0 && label[at(g)] < 0 && !parts(f, e, at(g))) {
-                    label[at(g)] = count;
-                    stack.push_back(g);
-                }
-            }
-        }
-        ++count;
-    }
-    return label;
+    return patches_of(s.neighbours, [&](std::size_t f, std::size_t e) {
+        return flat_end[f] != flat_end[at(s.neighbours[f][e])] ||
+               (flat_end[f] < 0 && s.feature[f][e] != 0);
+    });
 }
 
 // Renumbers labels by area, largest first; equal areas keep the order of their first face.

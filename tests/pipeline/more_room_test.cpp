@@ -45,6 +45,11 @@ TEST(MoreRoom, IsFibresToSpareWhereThePlanNearlyCovers) {
     EXPECT_EQ(more_room(Job(), plan)->fibres, 4) << "one for each turn";
     plan.effort.turns_refused = 40;
     EXPECT_EQ(more_room(Job(), plan)->fibres, 5) << "each stops the machine";
+    Job many;
+    many.fibres = 7;
+    plan.reach_of_fibres = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.9};
+    EXPECT_EQ(more_room(many, plan)->fibres, kMostFibres);
+    plan.reach_of_fibres = {0.9, 0.9};
     plan.effort.turns_refused = 0;
     EXPECT_FALSE(more_room(parse_job(R"({"fibres": 1})", "job"), plan));
     plan.coverage.fraction = 0.75;  // 0.81 is asked for
