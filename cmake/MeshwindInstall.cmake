@@ -34,5 +34,5 @@ configure_package_config_file(
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/meshwindConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/meshwindConfig.cmake ${PROJECT_BINARY_DIR}/meshwindConfigVersion.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/FindNettle.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindGLPK.cmake ${CMAKE_CURRENT_LIST_DIR}/FindNettle.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/meshwind)

@@ -54,7 +54,8 @@ enum class Stream : std::uint64_t {
     Ground = 5,
     Annealing = 6,
     Otherwise = 7,
-    Wishes = 8
+    Wishes = 8,
+    Judging = 9
 };
 
 /// The seed of a stream.

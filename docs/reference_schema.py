@@ -6,7 +6,7 @@ from reference_pages import wrapped
 MADE = "made by docs/make_reference.py; do not edit"
 KNOWN = {"type", "description", "enum", "const", "default", "oneOf", "properties", "required", "additionalProperties",
          "items", "minItems", "maxItems", "minimum", "maximum", "exclusiveMinimum", "minLength", "pattern", "not",
-         "allOf", "$ref", "$schema", "title", "definitions", "$defs"}
+         "allOf", "anyOf", "$ref", "$schema", "title", "definitions", "$defs"}
 
 
 class _Page:
@@ -132,6 +132,9 @@ class _Page:
                     out.append(f"- {words}, {self.demands(rule[part], path)}.")
         for way in [node["oneOf"]] if "oneOf" in node and "properties" in node else []:
             out.append("- Either " + ", or ".join(self.keys(path + n for n in w["required"]) for w in way) + ".")
+        if "anyOf" in node and "properties" in node:
+            out.append("- Either " + ", or ".join(self.keys(path + n for n in w["required"]) for w in node["anyOf"]) +
+                       ".")
         return out
 
 

@@ -166,10 +166,9 @@ private:
     void check_tow() const {
         for (const LayerJob& layer : job_.layers) {
             const LayerKind kind = layer.kind;
-            const bool free_angle =
-                kind == LayerKind::Cover || (kind == LayerKind::Auto && !layer.angle_deg);
+            const bool free_angle = kind == LayerKind::Cover || (is_any(kind) && !layer.angle_deg);
             const bool by_angle =
-                kind == LayerKind::Helical || kind == LayerKind::Polar || kind == LayerKind::Auto;
+                kind == LayerKind::Helical || kind == LayerKind::Polar || is_any(kind);
             const bool counts = free_angle || (by_angle && !layer.pattern);
             const double most = free_angle ? kMostOfGirthWithoutAngle : kMostOfGirth;
             if (counts && tow_of_girth(task_) > most) {
@@ -193,6 +192,11 @@ private:
         return cap_mm(body, end) != (end == 0 ? 0.0 : body.meridian.length_mm());
     }
 
+    // Patterns where there are some, else courses.
+    [[nodiscard]] static bool is_any(LayerKind kind) {
+        return kind == LayerKind::Auto || kind == LayerKind::Wall;
+    }
+
     // Patterns need both ends of a body of revolution; courses need some rim.
     [[nodiscard]] bool pattern_kind(LayerKind kind) const {
         return kind == LayerKind::Helical || kind == LayerKind::Polar || kind == LayerKind::Lattice;
@@ -209,8 +213,8 @@ private:
                                           [this](const Rim& rim) { return has_room(rim); });
         for (std::size_t i = 0; i < job_.layers.size(); ++i) {
             const LayerKind kind = job_.layers[i].kind;
-            const bool courses = kind == LayerKind::Cover || kind == LayerKind::Auto;
-            if (any_room || !courses || (kind == LayerKind::Auto && turns_itself)) {
+            const bool courses = kind == LayerKind::Cover || is_any(kind);
+            if (any_room || !courses || (is_any(kind) && turns_itself)) {
                 continue;
             }
             if (eye_ && !mandrel_.rims.empty() && beyond_travel()) {
@@ -358,7 +362,7 @@ private:
         for (const LayerJob& layer : job_.layers) {
             const bool fits = pattern_kind(layer.kind)         ? !found_.body || patterns_fit()
                               : layer.kind == LayerKind::Cover ? courses_fit()
-                              : layer.kind == LayerKind::Auto  ? patterns_fit() || courses_fit()
+                              : is_any(layer.kind)             ? patterns_fit() || courses_fit()
                                                                : hoops_fit(layer.kind);
             if (!fits) {
                 refuse_travel();

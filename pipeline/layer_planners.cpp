@@ -18,6 +18,9 @@ constexpr double kFirstAngle_deg = 45.0;
 constexpr double kLastAngle_deg = 80.0;
 constexpr double kAngleStep_deg = 5.0;
 
+// A whole number of layers is meant, not one more.
+constexpr double kSameLayers = 1e-9;
+
 TriedPlan untried(Plan plan) {
     return {std::move(plan), nullptr};
 }
@@ -39,6 +42,11 @@ PatternKind pattern_of(LayerKind kind) {
         default:
             return PatternKind::Helical;
     }
+}
+
+// Circuits lie in both hands: a cover of theirs is two layers.
+double covers_of(double target_layers) {
+    return std::max(1.0, std::ceil(0.5 * target_layers - kSameLayers));
 }
 
 PatternWish wish_of(const PatternJob& job) {
@@ -88,7 +96,8 @@ Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) 
     PatternOptions pattern;
     pattern.kind = kind;
     pattern.angle_rad = angle_rad;
-    pattern.layers = task.layer.target_layers;
+    pattern.layers =
+        kind == PatternKind::Hoop ? task.layer.target_layers : covers_of(task.layer.target_layers);
     pattern.tow = task.tow();
     pattern.turn.extension_mm = job.mandrel.extension_mm;
     if (kind == PatternKind::Hoop && task.options.bare != nullptr) {
@@ -154,7 +163,7 @@ TriedPlan plan_elbow_layer(const LayerTask& task) {
     if (layer.angle_deg) {
         elbow.angle_rad = rad_from_deg(*layer.angle_deg);
     }
-    elbow.layers = layer.target_layers;
+    elbow.layers = covers_of(layer.target_layers);
     elbow.tow = task.tow();
     elbow.turn.extension_mm = task.setup.job.mandrel.extension_mm;
     elbow.context = task.options.context;
@@ -189,6 +198,7 @@ TriedPlan plan_cover_layer(const LayerTask& task) {
     cover.fibres = setup.job.fibres;
     cover.context = task.options.context;
     cover.least_covered = task.options.least_covered;
+    cover.stage = task.options.stage;
     return plan_cover(setup.mandrel, *setup.obstacles, cover, &task.machine);
 }
 

@@ -1,5 +1,6 @@
 #include "pipeline/plan_layer.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -102,12 +103,18 @@ PlannedLayer plan_in_patterns(const LayerTask& task, std::string_view why) {
 PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer, const Windability& machine,
                         const LayerPlanOptions& options) {
     options.context.report_progress("plan", 0.0);
-    const LayerTask task{setup, layer, machine, options};
+    LayerJob asked = layer;
+    const bool fills = options.stage != nullptr && options.stage->everywhere < 1.0;
+    if (options.stage != nullptr) {  // what a pattern may lay of it, or else courses
+        asked.kind = fills ? LayerKind::Cover : LayerKind::Auto;
+        asked.target_layers = std::max(1.0, options.stage->everywhere);
+    }
+    const LayerTask task{setup, asked, machine, options};
     const std::string_view why_patterns = traits_of(setup.job.mandrel.turn).why_patterns;
     if (!why_patterns.empty()) {
         return plan_in_patterns(task, why_patterns);
     }
-    return layer.kind == LayerKind::Auto ? plan_best(task) : plan_asked_for(task);
+    return asked.kind == LayerKind::Auto ? plan_best(task) : plan_asked_for(task);
 }
 
 }  // namespace meshwind

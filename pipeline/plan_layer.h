@@ -7,6 +7,7 @@
 #include "core/run_context.h"
 #include "pipeline/job/job.h"
 #include "pipeline/setup.h"
+#include "winding/laminate/stage_ask.h"
 #include "winding/plan/windability.h"
 
 namespace meshwind {
@@ -18,9 +19,10 @@ struct LayerPlanOptions {
     RunContext context{};
     /// What the layers before lie on: hoops lie on its cylinder, elbows keep its line.
     const Mandrel* bare = nullptr;
-    double build_up_mm = 0.0;      ///< of the layers before at most
-    const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
-    double least_covered = 0.0;    ///< as in CoverOptions
+    double build_up_mm = 0.0;         ///< of the layers before at most
+    const Plan* before = nullptr;     ///< of the layer before: its fibre goes on where it can
+    double least_covered = 0.0;       ///< as in CoverOptions
+    const StageAsk* stage = nullptr;  ///< of a layer of kind Wall
 };
 
 /// A cover of a body that has patterns is planned on a job's own account only where the wall is no
@@ -37,7 +39,8 @@ struct PlannedLayer {
 /// A plan of the layer on the setup's mandrel, by the planners of layer_planners.h. `auto` takes a
 /// pattern where the part has one that covers kCoveredShare of it and that the machine winds, else
 /// courses that cover it; where the part has patterns and none is taken the context is told why,
-/// and a wall of more than kMostTowSquares is not covered. \pre the layer is not imported
+/// and a wall of more than kMostTowSquares is not covered. A stage of a wall is a pattern, as of
+/// `auto`, while most of the wall asks for more, else a cover. \pre the layer is not imported
 [[nodiscard]] PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer,
                                       const Windability& machine,
                                       const LayerPlanOptions& options = {});

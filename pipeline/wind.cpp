@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/text/digest.h"
 #include "core/text/text_number.h"
@@ -178,6 +179,11 @@ private:
         if (options_.import) {
             return;
         }
+        for (std::size_t i = 0; i < setup.job.layers.size(); ++i) {
+            if (setup.job.layers[i].kind == LayerKind::Wall) {
+                require_wall(setup.mandrel, setup.job, i, files.job);
+            }
+        }
         const PlannedTask task{setup.machine, setup.envelope, setup.mandrel,
                                setup.job,     files.machine,  files.job};
         require_can_be_wound(task);
@@ -187,14 +193,23 @@ private:
         }
     }
 
-    // Winds the last layer that is there; adds the next one where there is one and this one can be
-    // wound on.
+    // Winds the last layer that is there, a layer of the job or a stage of its wall; adds the next
+    // one where there is one and this one can be wound on.
     bool wind_next() {
         const std::size_t number = run_.layers.size() - 1;
         WoundLayer& layer = run_.layers.back();
         const std::vector<LayerJob>& jobs = layer.setup.job.layers;
-        layer.job = jobs[number];
+        layer.job = jobs[job_layer_];
+        if (layer.job.kind == LayerKind::Wall && !wall_) {
+            wall_.emplace(layer.setup.mandrel, layer.setup.job, job_layer_, options_.context.seed,
+                          options_.files.job);
+            run_.walls.push_back({number, number, wall_->figures()});
+        }
+        std::optional<StageAsk> stage;
         WindLayerOptions options;
+        if (wall_) {
+            options.stage = &stage.emplace(wall_->next());
+        }
         options.suffix = layer_suffix(number);
         options.header = header_;
         options.import = import_of(options_, layer.job);
@@ -209,14 +224,22 @@ private:
             }
         }
         options.context = options_.context;
-        if (jobs.size() > 1) {
+        if (jobs.size() > 1 || wall_) {
             options.context.progress = [&](const std::string& step, double share) {
                 options_.context.report_progress(layer_words(number) + ", " + step, share);
             };
         }
         options.stage_done = [this](const char* stage) { watch_.stage(stage); };
-        options.least_covered = options_.least_covered;
+        options.least_covered = number == 0 ? options_.least_covered : 0.0;
         wind_layer(layer, options);
+        if (wall_ && wall_->laid() && !layer.plan.failure.empty()) {
+            return give_up_stage();
+        }
+        if (wall_ && wall_->stages() > 0 && !layer.plan.failure.empty()) {
+            layer.checks.back().words += "; the " + counted(wall_->stages(), "stage") +
+                                         " before it can be wound, which are " +
+                                         fixed(wall_->layers_so_far(), 1) + " layers of the wall";
+        }
         if (number == 0 && !options_.import) {
             propose_mends(layer);
         }
@@ -227,11 +250,52 @@ private:
             }
             run_.checks.push_back(std::move(check));
         }
-        if (!layer.plan.failure.empty() || options_.import || jobs.size() == 1) {
+        if (!layer.plan.failure.empty() || options_.import) {
+            return false;
+        }
+        if (wall_) {
+            end_stage(layer, number);
+        }
+        job_layer_ += wall_ ? 0 : 1;
+        run_.complete = job_layer_ == jobs.size();
+        if (run_.complete && number == 0) {
             return false;
         }
         layer.build_up_mm = build_up_of(layer);
-        return number + 1 < jobs.size() && grow_next(layer, number + 1);
+        return !run_.complete && grow_next(layer, number + 1);
+    }
+
+    // A wall is laid but for a few places, for which there are no courses. What is next in the job
+    // lies on the same mandrel.
+    bool give_up_stage() {
+        end_wall();
+        ++job_layer_;
+        run_.complete = job_layer_ == run_.layers.front().setup.job.layers.size();
+        WoundLayer again;
+        again.setup = std::move(run_.layers.back().setup);
+        run_.layers.pop_back();
+        if (!run_.complete) {
+            run_.layers.push_back(std::move(again));
+        }
+        return !run_.complete;
+    }
+
+    void end_wall() {
+        const WoundWall& wall = run_.walls.back();
+        Check& check = run_.checks.emplace_back(wall_check(wall.figures));
+        check.name += layer_suffix(wall.first);
+        wall_.reset();
+    }
+
+    // What lies there now, and the wall's check where that was the last stage.
+    void end_stage(const WoundLayer& layer, std::size_t number) {
+        wall_->enter(layer.setup.mandrel.surface, layer.plan);
+        WoundWall& wall = run_.walls.back();
+        wall.last = number;
+        wall.figures = wall_->figures();
+        if (wall_->done()) {
+            end_wall();
+        }
     }
 
     // What may help where little of the bare mandrel is covered.
@@ -281,7 +345,9 @@ private:
     const WindOptions& options_;
     Run run_;
     Stopwatch watch_;
-    ProgramHeader header_;  // of the layer that is wound
+    ProgramHeader header_;            // of the layer that is wound
+    std::size_t job_layer_ = 0;       // of the job, that is wound
+    std::optional<WallStages> wall_;  // while that is one
 };
 
 const Plan& first_plan(const Run& run) {
@@ -311,7 +377,7 @@ bool is_better(const Run& run, const Run& than) {
 // themselves.
 bool fails_by_chance(const Run& run) {
     const Plan& plan = first_plan(run);
-    return plan.planner == Planner::Cover && run.planned() && !run.passed() &&
+    return plan.planner == Planner::Cover && run.walls.empty() && run.planned() && !run.passed() &&
            plan.coverage.fraction >= kCoversMost * plan.coverage.reachable;
 }
 
@@ -471,7 +537,7 @@ bool Run::planned() const {
             return false;
         }
     }
-    return layers.back().import || layers.size() == layers.front().setup.job.layers.size();
+    return layers.back().import || complete;
 }
 
 Run wind(Mandrel mandrel, const Machine& machine, const Job& job, const WindOptions& options) {

@@ -14,6 +14,7 @@
 #include "pipeline/imported_plan.h"
 #include "pipeline/job/job.h"
 #include "pipeline/setup.h"
+#include "pipeline/wall/wall_stages.h"
 #include "pipeline/wind_layer.h"
 #include "postproc/verify/verify.h"
 
@@ -32,6 +33,13 @@ struct WindOptions {
     double least_covered = 0.0;
 };
 
+/// A layer of the job that was wound in stages.
+struct WoundWall {
+    std::size_t first = 0;  ///< of Run::layers, to `last` inclusive
+    std::size_t last = 0;
+    WallFigures figures{};
+};
+
 /// Everything that was found.
 struct Run {
     std::vector<WoundLayer> layers;  ///< >= 1, in winding order, as far as they could be wound
@@ -39,8 +47,10 @@ struct Run {
     std::vector<Check> checks;
     std::vector<std::string> remarks;  ///< what may be meant otherwise, one line each
     std::map<std::string, double> timing_s;
+    std::vector<WoundWall> walls;  ///< of the job's layers of kind Wall
     std::uint64_t seed = 1;
-    bool usable = false;  ///< the programs may be run: all was planned and passed, or by force
+    bool complete = false;  ///< every layer that the job asks for has been come to
+    bool usable = false;    ///< the programs may be run: all was planned and passed, or by force
 
     /// Every layer that the job asks for has a plan.
     [[nodiscard]] bool planned() const;

@@ -54,6 +54,7 @@ private:
             plan.bare = options_.bare;
             plan.build_up_mm = options_.build_up_mm;
             plan.least_covered = options_.least_covered;
+            plan.stage = options_.stage;
             plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;
             planned = plan_layer(setup_, layer_.job, machine, plan);
         }
@@ -83,7 +84,7 @@ private:
         check_fibres();
         if (layer_.import) {
             check_import();
-        } else {
+        } else if (options_.stage == nullptr) {
             check_coverage();
         }
         for (std::size_t fibre = 0; fibre < layer_.programs.size(); ++fibre) {

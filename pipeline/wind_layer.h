@@ -14,6 +14,7 @@
 #include "pipeline/layer_machine.h"
 #include "pipeline/setup.h"
 #include "postproc/verify/verify.h"
+#include "winding/laminate/stage_ask.h"
 #include "winding/plan/plan.h"
 
 namespace meshwind {
@@ -43,6 +44,7 @@ struct WindLayerOptions {
     const Mandrel* bare = nullptr;       ///< under all layers; none for the first
     double build_up_mm = 0.0;            ///< of the layers before at most
     double least_covered = 0.0;          ///< as in CoverOptions
+    const StageAsk* stage = nullptr;     ///< of a layer of kind Wall
     RunContext context{};
     std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
 };

@@ -437,7 +437,9 @@ FibreUse use_of_fibre(const WoundLayer& layer) {
 void add_layer_report(json& report, const WoundLayer& layer, bool written) {
     report["plan"] = plan_report(layer.plan);
     const FibreUse use = use_of_fibre(layer);
-    report["plan"]["fibre_factor"] = report_number(use.factor);
+    if (layer.job.kind != LayerKind::Wall) {  // whose stages count together
+        report["plan"]["fibre_factor"] = report_number(use.factor);
+    }
     report["plan"]["turn_share"] = report_number(use.turn_share);
     if (!layer.no_pattern.empty()) {
         report["plan"]["no_pattern"] = layer.no_pattern;
@@ -499,7 +501,7 @@ void print_layer(std::ostream& out, const WoundLayer& layer) {
         << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
         << plan.coverage.max_layers << ", at least " << plan.coverage.p1_layers
         << (layer.import ? " on 99 % of it\n" : " on 99 % of what is reachable\n");
-    if (plan.planner == Planner::Cover) {
+    if (plan.planner == Planner::Cover && layer.job.kind != LayerKind::Wall) {
         const FibreUse use = use_of_fibre(layer);
         out << "fibre factor " << fixed(use.factor, 2)
             << " (1 would be the layers asked for without gaps, overlaps and turns), "
@@ -531,6 +533,9 @@ json report_of(const Run& run, const std::map<std::string, double>& timing_s) {
                    {"eye", eye_report(first.setup)},
                    {"remarks", run.remarks},
                    {"timing_s", timing_s}};
+    if (!run.walls.empty()) {
+        add_walls_report(report, run);
+    }
     if (run.layers.size() == 1) {
         add_layer_report(report, first, run.usable);
     } else {
@@ -556,6 +561,7 @@ void print_summary(std::ostream& out, const Run& run, const std::filesystem::pat
     if (run.layers.size() > 1) {
         print_laminate(out, run);
     }
+    print_walls(out, run);
     print_checks(out, run.checks);
     if (!run.usable) {
         out << "no program written\n";

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "mesh/triangle_soup.h"
@@ -84,6 +85,38 @@ LayerFigures figures_of_all(const Run& run) {
     return all;
 }
 
+json wall_report(const WoundWall& wall) {
+    const WallFigures& figures = wall.figures;
+    json thin = json::array();
+    for (const ThinRegion& region : figures.thin) {
+        const Eigen::Vector3d& at = region.at_mm;
+        thin.push_back({{"region", region.region},
+                        {"below", report_number(region.below_share)},
+                        {"lacks_mm", report_number(region.most_lacking_mm)},
+                        {"position_mm",
+                         {report_number(at.x()), report_number(at.y()), report_number(at.z())}}});
+    }
+    json report = {{"first_layer", wall.first + 1},
+                   {"last_layer", wall.last + 1},
+                   {"stages", figures.stages},
+                   {"asked_layers", report_number(figures.asked_layers)},
+                   {"reachable", report_number(figures.reachable)},
+                   {"below", report_number(figures.below_share)},
+                   {"mean_over_asked", report_number(figures.mean_ratio)},
+                   {"p1_over_asked", report_number(figures.p1_ratio)},
+                   {"cv", report_number(figures.cv)},
+                   {"fibre_m", report_number(figures.fibre_mm / kMmPerM)},
+                   {"turn_share", report_number(figures.turn_share)},
+                   {"fibre_factor", report_number(figures.fibre_factor)},
+                   {"thin", thin}};
+    if (figures.least_factor > 0.0) {
+        report["bound"] = {
+            {"least_factor", report_number(figures.least_factor)},
+            {"gap", report_number(figures.fibre_factor / figures.least_factor - 1.0)}};
+    }
+    return report;
+}
+
 void print_row(std::ostream& out, const std::string& name, const std::string& angle,
                const LayerFigures& figures) {
     out << "  " << std::left << std::setw(22) << name << std::right << std::setw(10) << angle
@@ -119,6 +152,36 @@ LayerFigures figures_of(const WoundLayer& layer) {
         plan.fibre_length_mm * tow.width_mm * tow.thickness_mm / kMm3PerCm3 * tow.density_g_cm3;
     figures.time_s = layer.duration_s();
     return figures;
+}
+
+void add_walls_report(json& report, const Run& run) {
+    json walls = json::array();
+    for (const WoundWall& wall : run.walls) {
+        walls.push_back(wall_report(wall));
+    }
+    report["walls"] = std::move(walls);
+}
+
+void print_walls(std::ostream& out, const Run& run) {
+    for (const WoundWall& wall : run.walls) {
+        const WallFigures& figures = wall.figures;
+        if (figures.stages == 0) {
+            continue;
+        }
+        out << "wall of " << fixed(figures.asked_layers, 1) << " layers in "
+            << counted(figures.stages, "stage") << ": " << fixed(figures.mean_ratio, 2)
+            << " times that on average, " << percent(figures.below_share, 2)
+            << " of what is reachable is thinner, " << fixed(figures.p1_ratio, 2)
+            << " times that or more on 99 % of it\n"
+            << "  " << fixed(figures.fibre_mm / kMmPerM, 1) << " m of fibre, "
+            << percent(figures.turn_share, 1) << " of it in turns: factor "
+            << fixed(figures.fibre_factor, 2)
+            << " (1 would be the layers asked for without gaps, overlaps and turns)";
+        if (figures.least_factor > 0.0) {
+            out << "; no plan of single courses takes less than " << fixed(figures.least_factor, 2);
+        }
+        out << '\n';
+    }
 }
 
 void add_laminate_report(json& report, const Run& run) {

@@ -27,6 +27,12 @@ struct LayerFigures {
 /// figures.
 void add_laminate_report(nlohmann::json& report, const Run& run);
 
+/// Adds "walls": those of the job's layers that are walls, as they lie there.
+void add_walls_report(nlohmann::json& report, const Run& run);
+
+/// Of each wall: how thick it is, what it took, and how little it could take.
+void print_walls(std::ostream& out, const Run& run);
+
 /// A line for each layer and one for all.
 void print_laminate(std::ostream& out, const Run& run);
 

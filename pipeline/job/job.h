@@ -23,7 +23,7 @@ namespace meshwind {
 /// part under 10 units.
 enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
 
-enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice };
+enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice, Wall };
 
 /// Who decides the mandrel's turn where several would do; docs/post.md.
 enum class RedundancyRule { CentralAngle, Hold, Oscillate, Optimal };
@@ -40,6 +40,31 @@ struct PatternJob {
     double band_offset_mm = 0.0;             ///< > 0: distance of bands; 0: the tow's width
 };
 
+/// How thick a wall is to be at least: one of both.
+struct WallAmount {
+    std::optional<double> layers{};        ///< > 0, of the tow
+    std::optional<double> thickness_mm{};  ///< > 0
+};
+
+/// A part of a wall with a thickness of its own: one of the places.
+struct WallPart {
+    struct Box {
+        Eigen::Vector3d least;
+        Eigen::Vector3d most;
+    };
+    std::optional<std::int32_t> region{};
+    std::optional<Box> box{};                ///< in the file's frame and units
+    std::optional<Eigen::Vector3d> point{};  ///< in the file's frame and units
+    std::optional<std::int32_t> rim{};
+    std::optional<double> within_mm{};  ///< of the point or rim
+    WallAmount amount{};
+};
+
+struct WallJob {
+    WallAmount amount{};
+    std::vector<WallPart> parts{};  ///< of several that hold a place the last one counts
+};
+
 /// A table of landing points (postproc/tables/landing_csv.h).
 struct LandingText {
     std::filesystem::path file;  ///< named in messages
@@ -53,6 +78,7 @@ struct LayerJob {
     double target_layers = 1.0;       ///< > 0; how often each place is to be covered
     std::optional<PatternJob> pattern{};   ///< Helical, Polar and Lattice layers only
     std::optional<LatticeWish> lattice{};  ///< set for Lattice layers and no others
+    std::optional<WallJob> wall{};         ///< set for Wall layers and no others
     std::string file;      ///< landing points of an Imported layer; empty for all others
     LandingText points{};  ///< what that file holds, once read (pipeline/load_inputs.h)
 };
@@ -119,7 +145,8 @@ struct JobSetting {
 /// \param name file name for messages
 /// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
 ///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced,
-///         job.pins_unused, json.no_such_place (of a setting); each with file and JSON pointer
+///         job.pins_unused, job.wall_amount, job.wall_place, job.wall_unused, json.no_such_place
+///         (of a setting); each with file and JSON pointer
 [[nodiscard]] Job parse_job(std::string_view text, const std::string& name,
                             std::span<const JobSetting> settings = {});
 

@@ -10,11 +10,8 @@ Friction friction_of(const Job& job, std::size_t layer) {
 }
 
 Friction most_friction_of(const Job& job) {
-    double most = 0.0;
-    for (std::size_t layer = 0; layer < job.layers.size(); ++layer) {
-        most = std::max(most, friction_of(job, layer).holds());
-    }
-    return most;
+    const bool on_fibre = job.layers.size() > 1 || job.layers.front().kind == LayerKind::Wall;
+    return std::max(friction_of(job, 0).holds(), friction_of(job, on_fibre ? 1 : 0).holds());
 }
 
 }  // namespace meshwind

@@ -1,6 +1,7 @@
 #include "pipeline/job/job_keys.h"
 
 #include "pipeline/job/job_ranges.h"
+#include "pipeline/job/wall_keys.h"
 
 namespace meshwind {
 namespace {
@@ -355,13 +356,18 @@ Key<LayerJob> file_key() {
          }});
 }
 
-const KeyTable<LayerJob>& layer_keys() {
-    static const KeyTable<LayerJob> kTable = {
+bool has_plies_or_thickness(const LayerJob& layer) {
+    return is_lattice(layer) || layer.kind == LayerKind::Wall;
+}
+
+KeyTable<LayerJob> make_layer_keys() {
+    return {
         {
             word("kind", &LayerJob::kind, layer_words(),
                  "helical, polar and hoop: patterns on bodies of revolution, helical on elbows, "
                  "too; lattice: an open grid of ribs on bodies of revolution; cover: courses on "
-                 "anything; imported: landing points made elsewhere; auto: a pattern where the "
+                 "anything; wall: a thickness, in as many patterns or covers as it takes; "
+                 "imported: landing points made elsewhere; auto: a pattern where the "
                  "mandrel is a body of revolution or an elbow that one covers, else cover"),
             number("angle", &LayerJob::angle_deg, {.min = 0.0, .max = 90.0},
                    "wanted winding angle: degrees from the axial direction of the pipe under the "
@@ -381,9 +387,10 @@ const KeyTable<LayerJob>& layer_keys() {
                 key.schema["default"] = LatticeWish{}.plies;
                 return key;
             }(),
-            only_if<LayerJob>([](const LayerJob& layer) { return !is_lattice(layer); },
+            only_if<LayerJob>([](const LayerJob& layer) { return !has_plies_or_thickness(layer); },
                               "job.pattern_unused",
-                              "a lattice is wound \"plies\" times; write that",
+                              "a lattice is wound \"plies\" times, a wall has \"layers\" or "
+                              "\"thickness\"; write that",
                               number("target_layers", &LayerJob::target_layers, kLayersRange,
                                      "how often each place is to be covered; a cover rounds it "
                                      "up")),
@@ -396,6 +403,7 @@ const KeyTable<LayerJob>& layer_keys() {
                     "job.file_missing",
                     "an imported layer needs \"file\", the CSV of its landing points");
             }
+            check_wall(object, layer);
         },
         schema_rules(R"({"allOf": [
           {"if": {"required": ["kind"], "properties": {"kind": {"const": "imported"}}},
@@ -409,8 +417,23 @@ const KeyTable<LayerJob>& layer_keys() {
                                       {"required": ["plies"]}]}}},
           {"if": {"not": {"required": ["kind"],
                           "properties": {"kind": {"enum": ["helical", "polar", "lattice"]}}}},
-           "then": {"not": {"required": ["pattern"]}}}
+           "then": {"not": {"required": ["pattern"]}}},
+          {"if": {"required": ["kind"], "properties": {"kind": {"const": "wall"}}},
+           "then": {"not": {"required": ["target_layers"]},
+                    "oneOf": [{"required": ["layers"]}, {"required": ["thickness"]}]},
+           "else": {"not": {"anyOf": [{"required": ["layers"]}, {"required": ["thickness"]},
+                                      {"required": ["parts"]}]}}}
         ]})")};
+}
+
+const KeyTable<LayerJob>& layer_keys() {
+    static const KeyTable<LayerJob> kTable = [] {
+        KeyTable<LayerJob> table = make_layer_keys();
+        for (Key<LayerJob>& key : wall_keys()) {
+            table.keys.push_back(std::move(key));
+        }
+        return table;
+    }();
     return kTable;
 }
 
@@ -466,8 +489,8 @@ SchemaJson forced_turn_rule() {
 }  // namespace
 
 const Words& layer_words() {
-    static const Words kWords = {"auto",  "helical",  "hoop",   "polar",
-                                 "cover", "imported", "lattice"};
+    static const Words kWords = {"auto",  "helical",  "hoop",    "polar",
+                                 "cover", "imported", "lattice", "wall"};
     return kWords;
 }
 

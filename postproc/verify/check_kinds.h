@@ -18,6 +18,12 @@ inline constexpr CheckKind kCoverage{"coverage",
                                      "Coverage",
                                      "wall under at least one layer",
                                      {at_least("fraction", "limit", "of the wall")}};
+inline constexpr CheckKind kWall{
+    "wall",
+    "Wall",
+    "wall in reach that is as thick as asked for",
+    {at_most("below", "limit", "too thin"), told("mean", "Mean, of what was asked for"),
+     told("p1", "On 99 %")}};
 inline constexpr CheckKind kImport{"import",
                                    "Import",
                                    "how far the landing points were from the mandrel",

@@ -171,6 +171,30 @@ TEST(Job, LatticesReachTheirFields) {
     EXPECT_EQ(read_job(kCorpus / "valid/lattice_filled.json").layers.front().lattice->series, 0);
 }
 
+TEST(Job, WallsReachTheirFields) {
+    const LayerJob plain = read_job(kCorpus / "valid/wall_layers.json").layers.front();
+    EXPECT_EQ(plain.kind, LayerKind::Wall);
+    ASSERT_TRUE(plain.wall.has_value());
+    EXPECT_EQ(plain.wall->amount.layers, 4.0);
+    EXPECT_FALSE(plain.wall->amount.thickness_mm.has_value());
+    EXPECT_TRUE(plain.wall->parts.empty());
+    const LayerJob all = read_job(kCorpus / "valid/wall_all_keys.json").layers.front();
+    EXPECT_EQ(all.angle_deg, 55.0);
+    EXPECT_EQ(all.wall->amount.thickness_mm, 2.5);
+    const std::vector<WallPart>& parts = all.wall->parts;
+    ASSERT_EQ(parts.size(), 4U);
+    EXPECT_EQ(parts[0].region, 3);
+    EXPECT_EQ(parts[0].amount.layers, 12.0);
+    ASSERT_TRUE(parts[1].box.has_value());
+    EXPECT_EQ(parts[1].box->least, Eigen::Vector3d(-10.0, 0.0, 5.5));
+    EXPECT_EQ(parts[1].box->most, Eigen::Vector3d(10.0, 20.0, 30.0));
+    EXPECT_EQ(parts[1].amount.thickness_mm, 3.0);
+    EXPECT_EQ(parts[2].point, Eigen::Vector3d(1.0, 2.0, 3.0));
+    EXPECT_EQ(parts[2].within_mm, 40.0);
+    EXPECT_EQ(parts[3].rim, 2);
+    EXPECT_EQ(parts[3].within_mm, 12.5);
+}
+
 TEST(Job, RedundancyLeftOutIsTheBestThatTheRuleLeaves) {
     EXPECT_EQ(parse_job("{}", "").redundancy, RedundancyRule::Optimal);
     EXPECT_EQ(parse_job(R"({"eye": {"rule": "cylinder", "radius": 250}})", "").redundancy,

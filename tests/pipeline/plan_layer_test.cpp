@@ -132,10 +132,14 @@ TEST(PlanLayer, BandsLieEvenlyAroundAndTheFibreCloses) {
     EXPECT_LT(plan.worst_joint_mm, kOnWall_mm);
 }
 
+// Circuits lie in both hands: up to two layers are one cover of theirs.
 TEST(PlanLayer, TwoCoversTakeTwiceTheFibre) {
     LayerJob layer = layer_of(LayerKind::Helical, 50.0);
     const Plan one = planned(layer);
+    EXPECT_GE(one.coverage.mean_layers, 2.0 * (1.0 - kSampled));
     layer.target_layers = 2.0;
+    EXPECT_EQ(planned(layer).pattern()->pattern.circuits, one.pattern()->pattern.circuits);
+    layer.target_layers = 3.5;
     const Plan two = planned(layer);
     ASSERT_EQ(two.failure, "");
     // Whole numbers of circuits, and bands that may overlap by a quarter.

@@ -308,6 +308,64 @@ TEST(Wind, TheNextLayerIsWoundOnTheOneBefore) {
     EXPECT_TRUE(steps.contains("layer 1, plan") && steps.contains("layer 2, plan"));
 }
 
+// Of a pipe it is patterns, each on the one before. What is asked for is there nearly everywhere,
+// and hardly more: circuits are a whole number, which may lay a quarter more.
+TEST(Wind, AWallIsWoundInStagesUntilItIsThick) {
+    Job job = quick_job(LayerKind::Wall);
+    job.layers.front().wall = WallJob{.amount = {.thickness_mm = 2.0}};
+    job.layers.push_back(quick_job(LayerKind::Hoop).layers.front());
+    const meshwind::Run run = wind(small_pipe(), shipped("six_axis"), job);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_TRUE(run.usable);
+    ASSERT_EQ(run.layers.size(), 3U);  // 4 % of 30 mm are four layers a stage; then the hoops
+    ASSERT_EQ(run.walls.size(), 1U);
+    EXPECT_EQ(run.walls.front().first, 0U);
+    EXPECT_EQ(run.walls.front().last, 1U);
+    const WallFigures& figures = run.walls.front().figures;
+    EXPECT_EQ(figures.asked_layers, 8.0);
+    EXPECT_LE(figures.below_share, kMostBelow);
+    EXPECT_GE(figures.mean_ratio, 1.0);
+    EXPECT_LE(figures.mean_ratio, 1.25);
+    EXPECT_EQ(check_of(run, "wall").numbers.at("below"), figures.below_share);
+    const double grown_mm =
+        run.layers[2].setup.mandrel.surface.position_mm.front().head<2>().norm();
+    EXPECT_GE(grown_mm, kPipeRadius_mm + 2.0 - kOnWall_mm);
+    EXPECT_LE(grown_mm, kPipeRadius_mm + 2.5);
+}
+
+// Courses know what lies there: two stages of covers leave less bare than they would alone, and the
+// bound is below what they take.
+TEST(Wind, StagesOfACoverFillWhatLacks) {
+    const auto tee = [](const Job&) {
+        const MakeValues sizes{{"run-length", 240.0}, {"branch-length", 140.0}};
+        return build_mandrel(make_mandrel("tee", sizes, {.edge_mm = 8.0}), "tee");
+    };
+    Job job = quick_job(LayerKind::Wall);
+    job.mandrel.extension_mm = 120.0;
+    job.mandrel.extension_given = true;
+    job.fibres_given = true;
+    job.tow.width_mm = 14.0;
+    job.tow.friction = 0.3;
+    job.tow.thickness_mm = 0.8;  // 4 % of the branch's 40 mm: two layers a stage
+    job.layers.front().wall = WallJob{.amount = {.layers = 4.0}};
+    const meshwind::Run run = wind(tee, shipped("six_axis"), job);
+    EXPECT_TRUE(run.planned());
+    ASSERT_GE(run.layers.size(), 2U);
+    ASSERT_EQ(run.walls.size(), 1U);
+    const WallFigures& figures = run.walls.front().figures;
+    EXPECT_EQ(figures.stages, static_cast<int>(run.layers.size()));
+    double fibre_mm = 0.0;
+    for (const WoundLayer& layer : run.layers) {
+        EXPECT_EQ(layer.plan.planner, Planner::Cover);
+        fibre_mm += layer.plan.fibre_length_mm;
+    }
+    EXPECT_NEAR(figures.fibre_mm, fibre_mm, 1e-6 * fibre_mm);
+    EXPECT_GT(figures.least_factor, 1.0);
+    EXPECT_GT(figures.fibre_factor, figures.least_factor);
+    EXPECT_EQ(check_of(run, "wall").ok, figures.below_share <= kMostBelow);
+    EXPECT_LT(figures.below_share, 0.1);
+}
+
 // The pattern of an `auto` layer is wound on trial before it is taken: as the one that is kept.
 TEST(Wind, AnAutoLayerGoesOnWhereTheSpindleStands) {
     Job job = quick_job();

@@ -61,10 +61,6 @@ constexpr double kNudgeRange = 16.0;
 // Neighbours are turned by this much at most, on some of the proposals.
 constexpr double kBesideTurn_rad = 0.02;
 
-// What fibre in turns costs, against 1 for a layer too many. Of 0.1, 0.4, 1, 1.5 and 3 this left
-// the least fibre on four tees and wyes that were covered as well as before.
-constexpr double kTurnShare = 1.5;
-
 // What each fibre beyond the first costs that is allowed, as a share of what a course covers:
 // somebody has to cut it and tie it on.
 constexpr double kCutShare = 0.5;
@@ -73,8 +69,8 @@ constexpr double kCutShare = 0.5;
 // covers. Among families the layers are more even, too.
 constexpr double kAloneShare = 0.5;
 
-// Layers from which on more make no difference.
-constexpr std::size_t kMostLayers = 64;
+// Layers off the target from which on more make no difference.
+constexpr std::int32_t kMostOff = 64;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
@@ -186,11 +182,10 @@ private:
     };
 
     void weigh(double bare) {
-        const double wanted = options_.select.target_layers + 1.0;
-        for (std::size_t l = 0; l < kMostLayers; ++l) {
-            const double off = static_cast<double>(l) - wanted;
-            const int missing = options_.select.target_layers - static_cast<int>(l);
-            cost_[l] = off * off + bare * std::max(0, missing);
+        for (std::size_t i = 0; i < cost_.size(); ++i) {
+            const std::int32_t over = static_cast<std::int32_t>(i) - kMostOff;
+            const double off = over - options_.beyond_layers;
+            cost_[i] = off * off + bare * std::max(0, -over);
         }
     }
 
@@ -211,7 +206,7 @@ private:
 
     // Of the fibre of a course's turns.
     [[nodiscard]] double turn_cost(const Member& member) const {
-        return kTurnShare * member.turn_mm * rules_.tow.width_mm / samples_.area_mm2;
+        return options_.turn_share * member.turn_mm * rules_.tow.width_mm / samples_.area_mm2;
     }
 
     // Of fibre off the wanted winding angle.
@@ -220,8 +215,13 @@ private:
                samples_.area_mm2;
     }
 
-    [[nodiscard]] double cost(std::int32_t layers) const {
-        return cost_[std::min(at(layers), kMostLayers - 1)];
+    // Of a sample by the layers that it has over its target.
+    [[nodiscard]] double cost(std::int32_t over) const {
+        return cost_[at(std::clamp(over, -kMostOff, kMostOff) + kMostOff)];
+    }
+
+    [[nodiscard]] std::int32_t over(std::int32_t sample) const {
+        return layers_[at(sample)] - options_.select.target(sample);
     }
 
     [[nodiscard]] CourseShape shape_of(const PlacedCourse& course) const {
@@ -251,16 +251,16 @@ private:
         if (proposal.out) {
             const PlacedCourse& course = courses_[*proposal.out];
             for (const std::int32_t sample : course.member.footprint) {
-                const std::int32_t layers = layers_[at(sample)] + scratch.shift[at(sample)]--;
-                sum += cost(layers - 1) - cost(layers);
+                const std::int32_t now = over(sample) + scratch.shift[at(sample)]--;
+                sum += cost(now - 1) - cost(now);
             }
             sum -= turn_cost(course.member) + angle_cost(course.member);
             joints.add(course.member, course.backward, -1);
         }
         if (proposal.in) {
             for (const std::int32_t sample : proposal.in->member.footprint) {
-                const std::int32_t layers = layers_[at(sample)] + scratch.shift[at(sample)]++;
-                sum += cost(layers + 1) - cost(layers);
+                const std::int32_t now = over(sample) + scratch.shift[at(sample)]++;
+                sum += cost(now + 1) - cost(now);
             }
             sum += turn_cost(proposal.in->member) + angle_cost(proposal.in->member);
             joints.add(proposal.in->member, proposal.in->backward, 1);
@@ -286,12 +286,13 @@ private:
 
     // A sample, rather one short of layers.
     [[nodiscard]] std::size_t needy_place(Draws& draws) const {
-        std::size_t best = draws.below(samples_.size());
-        for (int i = 0; i < kPlacesTried && layers_[best] >= options_.select.target_layers; ++i) {
-            const std::size_t place = draws.below(samples_.size());
-            best = layers_[place] < layers_[best] ? place : best;
+        const auto draw = [&] { return static_cast<std::int32_t>(draws.below(samples_.size())); };
+        std::int32_t best = draw();
+        for (int i = 0; i < kPlacesTried && over(best) >= 0; ++i) {
+            const std::int32_t place = draw();
+            best = over(place) < over(best) ? place : best;
         }
-        return best;
+        return at(best);
     }
 
     [[nodiscard]] Candidate fresh(Draws& draws) const {
@@ -450,8 +451,7 @@ private:
         double sum = 0.0;
         if (out) {
             for (const std::int32_t sample : courses_[*out].member.footprint) {
-                const std::int32_t layers = layers_[at(sample)];
-                sum += cost(layers - 1) - cost(layers);
+                sum += cost(over(sample) - 1) - cost(over(sample));
             }
         }
         return sum;
@@ -467,9 +467,9 @@ private:
         }
         std::vector<float> saving(strip.sample.size());
         for (std::size_t i = 0; i < saving.size(); ++i) {
-            const std::size_t sample = at(strip.sample[i]);
-            const std::int32_t layers = layers_[sample] + scratch.shift[sample];
-            saving[i] = static_cast<float>(cost(layers) - cost(layers + 1));
+            const std::int32_t sample = strip.sample[i];
+            const std::int32_t now = over(sample) + scratch.shift[at(sample)];
+            saving[i] = static_cast<float>(cost(now) - cost(now + 1));
         }
         if (out) {
             forget(courses_[*out], scratch);
@@ -566,8 +566,8 @@ private:
     std::span<const char> allowed_;
     std::vector<PlacedCourse>& courses_;
     const AnnealOptions& options_;
-    std::array<double, kMostLayers> cost_{};
-    double typical_ = 1.0;  // samples that a course covers
+    std::array<double, 2 * kMostOff + 1> cost_{};  // by layers over the target, from -kMostOff
+    double typical_ = 1.0;                         // samples that a course covers
     double heat_ = 0.0;
     std::vector<std::int32_t> layers_;  // per sample
     Joints joints_;

@@ -14,8 +14,9 @@
 namespace meshwind {
 
 struct AnnealOptions {
-    SelectOptions select{};
-    int fibres = 1;            ///< that may lay the courses
+    SelectOptions select{};      ///< its targets are those of the ground's samples
+    double beyond_layers = 1.0;  ///< an even cover has so many more than its target
+    int fibres = 1;              ///< that may lay the courses
     double fibre_share = 1.2;  ///< what each beyond them costs, as a share of what a course covers
     std::uint64_t seed = 1;
     std::int64_t proposals = 100'000;
@@ -27,6 +28,9 @@ struct AnnealOptions {
     /// as the chance falls: first all is made even, then the last holes are closed.
     double bare_hot = 45.0;
     double bare_cold = 180.0;
+    /// What fibre in turns costs, against 1 for a layer too many. Of 0.1, 0.4, 1, 1.5 and 3 this
+    /// left the least fibre on four tees and wyes that were covered as well as before.
+    double turn_share = 1.5;
     /// True where courses may lead; empty: anywhere.
     std::function<bool(const NodePair&)> way{};
     /// The last word on a course that is about to be taken, which it may make exact; false where
@@ -43,11 +47,12 @@ struct AnnealEffort {
 
 /// Simulated annealing over the courses themselves, not over a fixed library: courses are moved
 /// sideways, turned, steered otherwise, replaced, set one band beside another, added and dropped.
-/// The objective is the square of the layers' distance from one more than the target, summed over
-/// the samples, with `bare` for each layer short of the target, the fibre of the turns, and what
-/// keeps the courses from being joined to so few fibres. Bare places are mended by members of the
-/// library, too. \param courses changed in place; footprints are those of `rules` again at the end
-/// Proposals are drawn and judged in parallel, in groups; the same for any number of threads.
+/// The objective is the square of the layers' distance from `beyond_layers` more than the target,
+/// summed over the samples, with `bare` for each layer short of the target, the fibre of the turns,
+/// and what keeps the courses from being joined to so few fibres. Bare places are mended by members
+/// of the library, too. \param courses changed in place; footprints are those of `rules` again at
+/// the end Proposals are drawn and judged in parallel, in groups; the same for any number of
+/// threads.
 AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
                     std::span<const Member> library, std::span<const char> allowed,
                     std::vector<PlacedCourse>& courses, const AnnealOptions& options);

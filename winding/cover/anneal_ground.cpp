@@ -1,5 +1,7 @@
 #include "winding/cover/anneal_ground.h"
 
+#include <utility>
+
 #include "core/parallel.h"
 #include "mesh/nearest.h"
 #include "winding/cover/fit.h"
@@ -19,9 +21,9 @@ std::size_t at(std::int32_t i) {
 
 }  // namespace
 
-AnnealGround::AnnealGround(const CourseRules& rules, const CoverageSamples& measured,
-                           double spacing_mm, std::span<const Member> library, std::uint64_t seed)
-    : samples(sample_surface(rules.mandrel.surface, spacing_mm, seed)),
+AnnealGround::AnnealGround(const CourseRules& rules, CoverageSamples weighed,
+                           const CoverageSamples& measured, std::span<const Member> library)
+    : samples(std::move(weighed)),
       footprints(rules.mandrel.surface, samples, rules.tow.width_mm),
       strips(rules.mandrel.surface, samples, kStripBands * rules.tow.width_mm),
       passing(samples.size()),

@@ -15,9 +15,9 @@ namespace meshwind {
 /// What courses are weighed on: samples of its own, others than those that coverage is measured on,
 /// so that what is found to be even was not made so for the very places that are measured.
 struct AnnealGround {
-    /// \param measured samples of the members' footprints \param spacing_mm of samples
-    AnnealGround(const CourseRules& rules, const CoverageSamples& measured, double spacing_mm,
-                 std::span<const Member> library, std::uint64_t seed);
+    /// \param weighed the samples \param measured those of the members' footprints
+    AnnealGround(const CourseRules& rules, CoverageSamples weighed, const CoverageSamples& measured,
+                 std::span<const Member> library);
 
     CoverageSamples samples;
     FootprintFinder footprints;

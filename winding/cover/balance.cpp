@@ -116,7 +116,7 @@ private:
         const Member& member = members_[at(i)];
         double waste = 0.0;
         for (const std::int32_t sample : member.footprint) {
-            waste += std::max(0, selection_.layers[at(sample)] - options_.target_layers + 1);
+            waste += std::max(0, selection_.layers[at(sample)] - options_.target(sample) + 1);
         }
         // Overlap counts as a share of the member's own fibre.
         const auto own = static_cast<double>(std::max<std::size_t>(1, member.footprint.size()));
@@ -233,7 +233,7 @@ private:
             }
             const std::int64_t bared = std::count_if(
                 member.footprint.begin(), member.footprint.end(), [&](std::int32_t sample) {
-                    return selection_.layers[at(sample)] <= options_.target_layers;
+                    return selection_.layers[at(sample)] <= options_.target(sample);
                 });
             if (best == kNone || bared < least) {
                 best = c;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -15,33 +15,23 @@
 #include "winding/cover/anneal.h"
 #include "winding/cover/fibre_routes.h"
 #include "winding/cover/grow.h"
+#include "winding/cover/join.h"
 #include "winding/cover/lay_out.h"
 #include "winding/cover/order_to_follow.h"
-#include "winding/cover/prove_ways.h"
+#include "winding/cover/prove.h"
 #include "winding/cover/uncovered.h"
 #include "winding/cover/what_if.h"
 #include "winding/laminate/course_character.h"
 #include "winding/laminate/coverage.h"
-#include "winding/laminate/families.h"
-#include "winding/laminate/wound_angle.h"
+#include "winding/laminate/measure_plan.h"
 
 namespace meshwind {
 namespace {
-
-// Samples per band width: a gap of a quarter band is seen. With 2.5 what is covered on samples that
-// were planned on is 0.7 % more than what is covered on others, with 4 it is 0.25 %.
-constexpr double kSamplesPerBand = 4.0;
-
-// On a wall so large that this would take more samples, they lie further apart.
-constexpr double kMaxSamples = 6e5;
 
 // Proposals of the annealing at an effort of 1, and of each that follows where courses had to be
 // given up.
 constexpr std::int64_t kProposals = 30'000;
 constexpr std::int64_t kMendingProposals = 4'000;
-
-// Times that courses are added to join the others, each time some that the machine refuses.
-constexpr int kMaxJoins = 200;
 
 // Routes of so many fibres are looked for, at most.
 constexpr std::size_t kRoutesLookedFor = 9;
@@ -57,6 +47,20 @@ constexpr std::size_t kMostSpares = 200;
 // Where courses reach less of the wall nothing is planned: what comes of it is no part.
 constexpr double kWorthPlanning = 0.5;
 
+// In stages of a wall fibre in turns is dearer than in a cover of its own, a layer short of the
+// target too in the last one, and cheaper where later stages fill thin places.
+constexpr double kWallTurnShare = 6.0;
+constexpr double kLastBare = 2.0;
+constexpr double kEarlyBare = 0.3;
+
+// Share of the wall in reach that may stay short once thin places are filled, less than in the end
+// for courses given up later; what does not hold makes room for others so many times.
+constexpr double kShareFilledTo = 0.65 * kMostBelow;
+constexpr int kMostFills = 10;
+
+// Courses that come of the bound are moved, but not thrown about: AnnealOptions::hot.
+constexpr double kStartedHot = 0.02;
+
 // Attempts that refuse as many courses as before, or more, before no others are put there.
 constexpr int kMostInVain = 2;
 
@@ -71,8 +75,8 @@ public:
         : mandrel_(mandrel),
           options_(options),
           machine_(machine),
-          samples_(sample_surface(mandrel.surface, sample_spacing_mm(mandrel, options),
-                                  seed_of(Stream::Sampling, options.context.seed))),
+          select_(options.select),
+          samples_(samples(options.stage ? &options.stage->measured : nullptr, Stream::Sampling)),
           footprints_(mandrel.surface, samples_, options.tow.width_mm),
           lifted_(mandrel.surface),
           rules_{mandrel,
@@ -87,6 +91,9 @@ public:
         rules_.angle_rad = options.angle_rad;
         rules_.lifted = &lifted_;
         rules_.free_fibre.clearance_mm += margin::kCandidates_mm;
+        if (options.stage != nullptr) {
+            select_.targets = options.stage->measured.layers;
+        }
         plan_.planner = Planner::Cover;
         plan_.effort.seed = options.context.seed;
         plan_.effort.effort = options.context.effort;
@@ -106,14 +113,18 @@ public:
             rejection_.assign(members_.size(), Rejection::NotPlanned);
             return fail(hardly_reachable());
         }
-        ground_.emplace(rules_, samples_, sample_spacing_mm(mandrel_, options_), members_,
-                        seed_of(Stream::Ground, options_.context.seed));
+        ground_.emplace(
+            rules_, samples(options_.stage ? &options_.stage->weighed : nullptr, Stream::Ground),
+            samples_, members_);
         library_size_ = members_.size();
         allowed_.assign(members_.size(), 1);
         rejection_.assign(members_.size(), Rejection::None);
+        if (options_.stage != nullptr && options_.stage->stages_left > 0) {
+            confirm_reach();
+        }
         find_routes();
         choose();
-        anneal_proven(false);
+        improve();
         keep_what_winds();
         if (!covers_enough()) {
             return fail("courses cover only " + fixed(100.0 * plan_.coverage.fraction, 1) +
@@ -135,9 +146,11 @@ private:
         return {std::move(plan_), nullptr};
     }
 
-    static double sample_spacing_mm(const Mandrel& mandrel, const CoverOptions& options) {
-        const double area = area_mm2({mandrel.surface.position_mm, mandrel.surface.face});
-        return std::max(options.tow.width_mm / kSamplesPerBand, std::sqrt(area / kMaxSamples));
+    // Those of a stage, or as a plan of its own has them.
+    [[nodiscard]] CoverageSamples samples(const AskedPlaces* stage, Stream stream) const {
+        return stage != nullptr ? samples_at(mandrel_.surface, stage->at)
+                                : plan_samples(mandrel_.surface, options_.tow.width_mm,
+                                               options_.context.seed, stream);
     }
 
     void tell(const char* step, double share) const {
@@ -235,14 +248,31 @@ private:
         }
     }
 
-    // The members of the library that cover best and hold.
+    // Those to begin with that hold.
     void choose() {
-        const Selection first =
-            select_courses(members_, allowed_, samples_.size(), options_.select, {});
-        for (const std::int32_t i : first.chosen) {
-            courses_.push_back(placed(i, !members_[at(i)].windable_forward));
+        FirstChoice first = choose_first(members_, allowed_, library_.reached,
+                                         2 * mandrel_.rims.size(), select_, options_.stage);
+        plan_.bound = first.bound;
+        for (const LaidCourse& course : first.courses) {
+            courses_.push_back(placed(course.member, course.backward));
         }
         keep_proven();
+    }
+
+    // Places that no course which holds passes are not in reach.
+    void confirm_reach() {
+        tell("prove", 0.0);
+        for (const auto& [member, rejection] :
+             prove_at_scarce_places(members_, samples_.size(),
+                                    [this](PlacedCourse& course) { return prove(course); })) {
+            strike_off(at(member), rejection);
+        }
+        library_.reached.assign(samples_.size(), 0);
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            for (const std::int32_t sample : members_[i].footprint) {
+                library_.reached[at(sample)] |= allowed_[i];
+            }
+        }
     }
 
     [[nodiscard]] PlacedCourse placed(std::int32_t member, bool backward) const {
@@ -251,17 +281,22 @@ private:
                 false};
     }
 
-    void keep_proven() {
+    // \param members that the courses are, where those that do not hold are not to be tried again
+    void keep_proven(std::span<const std::int32_t> members = {}) {
         std::vector<Rejection> found(courses_.size());
         tell("prove", 0.0);
-        parallel_for(courses_.size(), 1,
-                     [&](std::size_t i, std::size_t) { found[i] = prove(courses_[i]); });
+        parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
+            found[i] = members.empty() ? prove(courses_[i]) : prove_and_wind(courses_[i]);
+        });
         std::vector<PlacedCourse> proven;
         for (std::size_t i = 0; i < found.size(); ++i) {
             if (found[i] == Rejection::None) {
                 proven.push_back(std::move(courses_[i]));
-            } else {
-                note_refused(courses_[i].member, found[i]);
+                continue;
+            }
+            note_refused(courses_[i].member, found[i]);
+            if (!members.empty() && allowed_[at(members[i])] != 0) {
+                strike_off(at(members[i]), found[i]);
             }
         }
         courses_ = std::move(proven);
@@ -269,7 +304,16 @@ private:
 
     void anneal_proven(bool mending) {
         AnnealOptions annealing;
-        annealing.select = options_.select;
+        annealing.select = select_;
+        if (options_.stage != nullptr) {
+            const double bare = last_stage() ? kLastBare : kEarlyBare;
+            annealing.select.targets = options_.stage->weighed.layers;
+            annealing.beyond_layers = options_.stage->beyond_layers;
+            annealing.bare_hot *= bare;
+            annealing.bare_cold *= bare;
+            annealing.hot = kStartedHot;
+            annealing.turn_share = kWallTurnShare;
+        }
         annealing.fibres = fibres();
         annealing.fibre_share = fibres_to_spare() ? kDearFibre : annealing.fibre_share;
         annealing.seed = seed_of(Stream::Annealing, options_.context.seed) + (++annealings_ << 32U);
@@ -296,6 +340,47 @@ private:
         plan_.effort.taken += effort.accepted;
     }
 
+    [[nodiscard]] bool last_stage() const {
+        return options_.stage && options_.stage->stages_left < 2;
+    }
+
+    // The last thin places take courses for their sake. Behind the last stage nothing is made even.
+    void improve() {
+        if (options_.stage == nullptr || options_.stage->stages_left > 0) {
+            anneal_proven(false);
+        }
+        if (last_stage()) {
+            fill();
+        }
+    }
+
+    // In place of courses given up. Annealing would take out again what fills thin places.
+    void replace_lost() {
+        if (last_stage()) {
+            fill();
+        } else {
+            anneal_proven(true);
+        }
+    }
+
+    void fill() {
+        for (int round = 0; round < kMostFills; ++round) {
+            const std::vector<std::int32_t> members = fill_thin_places(
+                std::span(members_).first(library_size_), allowed_, library_.reached,
+                layers_of(courses_, samples_.size()), select_, kShareFilledTo);
+            if (members.empty()) {
+                return;
+            }
+            std::vector<PlacedCourse> before = std::exchange(courses_, {});
+            for (const std::int32_t i : members) {
+                courses_.push_back(placed(i, !members_[at(i)].windable_forward));
+            }
+            keep_proven(members);
+            std::move(courses_.begin(), courses_.end(), std::back_inserter(before));
+            courses_ = std::move(before);
+        }
+    }
+
     // Replaces the courses whose own programs do not lay them as planned.
     void keep_what_winds() {
         tell("prove", 0.0);
@@ -310,7 +395,7 @@ private:
         }
         if (!refused.empty()) {
             give_up(refused);
-            anneal_proven(true);
+            replace_lost();
         }
     }
 
@@ -325,73 +410,17 @@ private:
         }
     }
 
-    // The courses of the plan behind those of the library.
-    void gather() {
-        members_.resize(library_size_);
-        for (const PlacedCourse& course : courses_) {
-            members_.push_back(course.member);
-        }
-    }
-
     // Adds proven members of the library until as many courses arrive as depart, wherever there is
     // a way.
     void join(int fibres) {
-        for (int attempt = 0; attempt < kMaxJoins; ++attempt) {
-            gather();
-            std::vector<char> allowed = allowed_;
-            allowed.resize(members_.size(), 0);
-            Selection selection;
-            selection.layers = layers_of(courses_);
-            for (std::size_t i = library_size_; i < members_.size(); ++i) {
-                selection.chosen.push_back(static_cast<std::int32_t>(i));
-            }
-            const std::vector<LaidCourse> laid = balance_courses(
-                members_, allowed, mandrel_.rims.size(), options_.select, fibres, selection);
-            if (take_proven(laid)) {
-                return;
-            }
-        }
-    }
-
-    // The courses become what is laid, if all that is new holds; else what does not is struck off
-    // the library.
-    bool take_proven(const std::vector<LaidCourse>& laid) {
-        std::vector<PlacedCourse> taken(laid.size());
-        std::vector<Rejection> found(laid.size(), Rejection::None);
-        parallel_for(laid.size(), 1, [&](std::size_t i, std::size_t) {
-            const auto& [member, backward] = laid[i];
-            if (at(member) >= library_size_) {
-                taken[i] = courses_[at(member) - library_size_];
-            } else if (const auto before = joining_.find({member, backward});
-                       before != joining_.end()) {
-                taken[i] = before->second;
-            } else {
-                taken[i] = placed(member, backward);
-                found[i] = prove_and_wind(taken[i]);
-            }
-        });
-        for (std::size_t i = 0; i < laid.size(); ++i) {
-            const auto& [number, backward] = laid[i];
-            if (at(number) >= library_size_) {
-                continue;
-            }
-            if (found[i] == Rejection::None) {
-                joining_.try_emplace({number, backward}, taken[i]);
-                continue;
-            }
-            Member& member = members_[at(number)];
-            (backward ? member.windable_backward : member.windable_forward) = false;
-            if (!member.windable_forward && !member.windable_backward &&
-                allowed_[at(number)] != 0) {
-                strike_off(at(number), found[i]);
-            }
-        }
-        const bool all = std::all_of(found.begin(), found.end(),
-                                     [](Rejection r) { return r == Rejection::None; });
-        if (all) {
-            courses_ = std::move(taken);
-        }
-        return all;
+        const auto place = [this](const LaidCourse& course, PlacedCourse& in_place) {
+            in_place = placed(course.member, course.backward);
+            return prove_and_wind(in_place);
+        };
+        const auto strike = [this](std::size_t member, Rejection why) { strike_off(member, why); };
+        joiner_.join({members_, library_size_, std::span(allowed_).first(library_size_),
+                      mandrel_.rims.size(), samples_.size(), select_, fibres, place, strike},
+                     courses_);
     }
 
     void strike_off(std::size_t member, Rejection reason) {
@@ -402,7 +431,7 @@ private:
     }
 
     void put_in_order() {
-        gather();
+        gather(courses_, library_size_, members_);
         std::vector<LaidCourse> laid;
         std::vector<double> lateness;
         for (const PlacedCourse& course : courses_) {
@@ -420,7 +449,7 @@ private:
 
     // Whether the courses cover enough to be wound.
     bool covers_enough() {
-        std::vector<std::int32_t> layers = layers_of(courses_);
+        std::vector<std::int32_t> layers = layers_of(courses_, samples_.size());
         Coverage coverage = measure_coverage(layers);
         coverage.reachable = reached_share(library_.reached);
         if (coverage.fraction >= options_.least_covered * coverage.reachable) {
@@ -445,7 +474,7 @@ private:
             if (!trial_ || trial_->refused.empty()) {
                 return;
             }
-            const auto refused = refused_courses(*trial_);
+            const auto refused = refused_courses(*trial_, plan_, order_, library_size_);
             trial_.reset();
             const bool better = best.empty() || refused.size() < least;
             in_vain += better ? 0 : 1;
@@ -455,7 +484,7 @@ private:
             }
             give_up(refused);
             if (in_vain < kMostInVain) {
-                anneal_proven(true);
+                replace_lost();
             }
         }
         courses_ = std::move(best);
@@ -466,21 +495,6 @@ private:
     // Null where there is no machine, or nothing to wind.
     [[nodiscard]] std::unique_ptr<TrialWinding> wind_all() const {
         return machine_ != nullptr && !order_.empty() ? machine_->wind_all(plan_) : nullptr;
-    }
-
-    // The courses that the machine refuses, or whose turn it refuses; in order, each once.
-    [[nodiscard]] std::vector<std::pair<std::size_t, Rejection>> refused_courses(
-        const TrialWinding& trial) const {
-        std::vector<std::pair<std::size_t, Rejection>> courses;
-        const std::vector<std::size_t> course_of = courses_of(plan_.pieces);
-        for (const std::size_t piece : trial.refused) {
-            const std::size_t course = course_of[piece];
-            courses.emplace_back(at(order_[course].course.member) - library_size_,
-                                 Rejection::InItsPlace);
-        }
-        std::sort(courses.begin(), courses.end());
-        courses.erase(std::unique(courses.begin(), courses.end()), courses.end());
-        return courses;
     }
 
     void give_up(const std::vector<std::pair<std::size_t, Rejection>>& refused) {
@@ -509,17 +523,6 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<std::int32_t> layers_of(
-        const std::vector<PlacedCourse>& courses) const {
-        std::vector<std::int32_t> layers(samples_.size(), 0);
-        for (const PlacedCourse& course : courses) {
-            for (const std::int32_t sample : course.member.footprint) {
-                ++layers[at(sample)];
-            }
-        }
-        return layers;
-    }
-
     void measure() {
         layers_.assign(samples_.size(), 0);
         for (const OrderedCourse& laid : order_) {
@@ -532,18 +535,15 @@ private:
         plan_.coverage.reachable = reached_share(library_.reached);
         describe_uncovered();
         plan_.face_layers = layers_per_face(mandrel_.surface, samples_, layers_);
-        std::vector<const SurfacePath*> courses;
-        for (const Piece& piece : plan_.pieces) {
-            if (piece.kind == PieceKind::Course) {
-                courses.push_back(&piece.path);
-            }
-        }
-        plan_.places = places_of(mandrel_.surface, courses);
-        plan_.family = families_of(courses, options_.tow.width_mm);
-        plan_.angle = wound_angles(mandrel_.surface, courses, options_.angle_rad);
+        describe_courses(mandrel_.surface, options_.tow.width_mm, options_.angle_rad, plan_);
     }
 
+    // Of a stage it is its wall that says where it is thin.
     void describe_uncovered() {
+        if (options_.stage != nullptr) {
+            plan_.reached = library_.reached;
+            return;
+        }
         layers_.resize(samples_.size(), 0);
         members_.resize(rejection_.size());
         for (auto& [footprint, reason] : refused_) {
@@ -557,6 +557,7 @@ private:
     const Mandrel& mandrel_;
     const CoverOptions& options_;
     const Windability* machine_;
+    SelectOptions select_;
     CoverageSamples samples_;
     FootprintFinder footprints_;
     LiftedWall lifted_;
@@ -570,8 +571,7 @@ private:
     std::vector<PlacedCourse> courses_;                 // the plan, not in order
     std::vector<FibreRoute> routes_;                    // one for each fibre
     std::vector<std::vector<LaidCourse>> spare_links_;  // per link: in its place, the best last
-    std::map<std::pair<std::int32_t, bool>, PlacedCourse>
-        joining_;  // members that have been proven to join others, by direction
+    CourseJoiner joiner_;
     std::vector<OrderedCourse> order_;  // of the pool
     std::vector<std::int32_t> layers_;  // per sample
     std::uint64_t annealings_ = 0;

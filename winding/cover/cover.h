@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "core/run_context.h"
-#include "winding/cover/prove.h"
+#include "winding/cover/library.h"
 #include "winding/cover/select.h"
+#include "winding/laminate/stage_ask.h"
 #include "winding/plan/windability.h"
 
 namespace meshwind {
@@ -19,6 +20,7 @@ struct CoverOptions {
     TurnRule turn;  ///< friction and band are taken from `tow`
     FreeFibreRule free_fibre;
     SelectOptions select;
+    const StageAsk* stage = nullptr;    ///< a stage of a wall, which says what lacks where
     int fibres = 1;                     ///< that the plan may take, >= 1
     std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
     RunContext context{};               ///< `effort`: how long courses are annealed

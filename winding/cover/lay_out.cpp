@@ -121,4 +121,19 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
     plan.courses = static_cast<int>(order.size());
 }
 
+std::vector<std::pair<std::size_t, Rejection>> refused_courses(const TrialWinding& trial,
+                                                               const Plan& plan,
+                                                               std::span<const OrderedCourse> order,
+                                                               std::size_t library_size) {
+    std::vector<std::pair<std::size_t, Rejection>> courses;
+    const std::vector<std::size_t> course_of = courses_of(plan.pieces);
+    for (const std::size_t piece : trial.refused) {
+        const std::size_t course = course_of[piece];
+        courses.emplace_back(at(order[course].course.member) - library_size, Rejection::InItsPlace);
+    }
+    std::sort(courses.begin(), courses.end());
+    courses.erase(std::unique(courses.begin(), courses.end()), courses.end());
+    return courses;
+}
+
 }  // namespace meshwind

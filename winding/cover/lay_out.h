@@ -1,11 +1,15 @@
 /// From courses in their order to the pieces of a plan.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "winding/cover/library.h"
 #include "winding/cover/order.h"
 #include "winding/plan/plan.h"
+#include "winding/plan/windability.h"
 
 namespace meshwind {
 
@@ -25,5 +29,11 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
 /// \param pieces the course of `member`
 void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
                     std::vector<Piece>& pieces);
+
+/// Courses of a plan that a trial refuses, or whose turns it refuses: by their place behind the
+/// library's members, in order, each once. \param order what the plan was laid out from
+[[nodiscard]] std::vector<std::pair<std::size_t, Rejection>> refused_courses(
+    const TrialWinding& trial, const Plan& plan, std::span<const OrderedCourse> order,
+    std::size_t library_size);
 
 }  // namespace meshwind

@@ -12,6 +12,16 @@ namespace meshwind {
 
 using Eigen::Vector3d;
 
+std::vector<std::int32_t> layers_of(std::span<const PlacedCourse> courses, std::size_t samples) {
+    std::vector<std::int32_t> layers(samples, 0);
+    for (const PlacedCourse& course : courses) {
+        for (const std::int32_t sample : course.member.footprint) {
+            ++layers[static_cast<std::size_t>(sample)];
+        }
+    }
+    return layers;
+}
+
 std::size_t seed_station(const PlacedCourse& course) {
     // Not just the first in the seed's face: a course may pass that several times.
     const SurfacePoint& seed = course.member.candidate.seed;

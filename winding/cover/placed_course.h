@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/margins.h"
 #include "winding/cover/library.h"
@@ -20,6 +23,10 @@ struct CourseMove {
 /// Steering of new courses as shares of the friction: geodesic, and three strengths to either side.
 inline constexpr std::array<double, 7> kSteering = {
     0.0, 0.31, -0.31, 0.62, -0.62, margin::kCoverSteering, -margin::kCoverSteering};
+
+/// Layers per sample that courses lay. \param samples their number
+[[nodiscard]] std::vector<std::int32_t> layers_of(std::span<const PlacedCourse> courses,
+                                                  std::size_t samples);
 
 /// The station of a course's seed, where its two steerings meet.
 [[nodiscard]] std::size_t seed_station(const PlacedCourse& course);

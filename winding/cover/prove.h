@@ -1,7 +1,16 @@
-/// The last word on a course before it enters a plan.
+/// The last word on courses before they enter a plan; which ways between nodes (balance.h) and
+/// which scarce places are open to the machine.
 #pragma once
 
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "winding/cover/fibre_routes.h"
+#include "winding/cover/grow.h"
 #include "winding/cover/placed_course.h"
+#include "winding/plan/plan.h"
 #include "winding/plan/windability.h"
 
 namespace meshwind {
@@ -12,5 +21,29 @@ namespace meshwind {
 /// that of `rules`, windable in this direction alone; on others it is unchanged.
 [[nodiscard]] Rejection prove_course(const CourseRules& rules, const Windability* machine,
                                      PlacedCourse& course);
+
+struct ProvenWays {
+    KnownWays known;                                          ///< the open ones
+    std::vector<std::pair<std::int32_t, Rejection>> refused;  ///< members that do not hold
+};
+
+/// Proves a few courses of each way, and more of those of which none holds. \param ways of the
+/// members \param prove the last word on a course; thread-safe \param progress told a share
+[[nodiscard]] ProvenWays prove_ways(std::span<const Member> members, const Ways& ways,
+                                    const std::function<Rejection(PlacedCourse&)>& prove,
+                                    const std::function<void(double share)>& progress);
+
+/// Proves the members that pass a place which few members pass, and notes for each direction that
+/// does not hold that it is not windable. \return those that hold neither way \param samples their
+/// number
+[[nodiscard]] std::vector<std::pair<std::int32_t, Rejection>> prove_at_scarce_places(
+    std::span<Member> members, std::size_t samples,
+    const std::function<Rejection(PlacedCourse&)>& prove);
+
+/// The courses besides `route.links[stage]` that lead from that stage to the next, the best last:
+/// proven ones, then others.
+[[nodiscard]] std::vector<LaidCourse> spare_links(std::span<const Member> members, const Ways& ways,
+                                                  const KnownWays& known, const FibreRoute& route,
+                                                  std::size_t stage);
 
 }  // namespace meshwind

@@ -4,12 +4,17 @@
 #include <cmath>
 #include <queue>
 
+#include "winding/bound/fibre_bound.h"
+
 namespace meshwind {
 namespace {
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
+
+// A course that fills less than this share of what it covers is too dear for any wall.
+constexpr double kLeastFill = 0.005;
 
 struct Gain {
     std::int64_t fresh = 0;  // samples still short of the target
@@ -41,10 +46,10 @@ private:
         double waste = 0.0;
         for (const std::int32_t sample : member.footprint) {
             const std::int32_t layers = selection_.layers[at(sample)];
-            if (layers < options_.target_layers) {
+            if (layers < options_.target(sample)) {
                 ++gain.fresh;
             } else {
-                waste += 1.0 + layers - options_.target_layers;
+                waste += 1.0 + layers - options_.target(sample);
             }
         }
         const double off = static_cast<double>(member.footprint.size()) * member.off_angle_mm /
@@ -102,7 +107,7 @@ private:
             const auto& footprint = members_[at(i)].footprint;
             const auto missed =
                 std::count_if(footprint.begin(), footprint.end(), [&](std::int32_t sample) {
-                    return selection_.layers[at(sample)] < options_.target_layers;
+                    return selection_.layers[at(sample)] < options_.target(sample);
                 });
             if (missed > 0 &&
                 static_cast<double>(missed) >=
@@ -127,6 +132,76 @@ Selection select_courses(std::span<const Member> members, std::span<const char> 
                          std::size_t samples, const SelectOptions& options,
                          std::span<const std::int32_t> kept) {
     return Selector(members, allowed, samples, options).run(kept);
+}
+
+std::vector<std::int32_t> fill_thin_places(std::span<const Member> members,
+                                           std::span<const char> allowed,
+                                           std::span<const char> reached,
+                                           std::vector<std::int32_t> layers,
+                                           const SelectOptions& options, double most_short) {
+    double in_reach = 0.0;
+    double lacking = 0.0;
+    const auto lacks = [&](std::int32_t sample) {
+        return reached[at(sample)] == 0 ? 0 : options.target(sample) - layers[at(sample)];
+    };
+    for (std::int32_t i = 0; at(i) < layers.size(); ++i) {
+        in_reach += reached[at(i)];
+        lacking += lacks(i) > 0 ? 1.0 : 0.0;
+    }
+    // A layer helps the more, the fewer lack with it.
+    const auto gain = [&](std::int32_t i) {
+        const Member& member = members[at(i)];
+        double sum = 0.0;
+        for (const std::int32_t sample : member.footprint) {
+            const std::int32_t lack = lacks(sample);
+            sum += lack > 0 ? 1.0 / lack : 0.0;
+        }
+        const double least = kLeastFill * static_cast<double>(member.footprint.size());
+        return sum < least ? 0.0 : sum / (member.length_mm + member.turn_mm);
+    };
+    std::vector<std::int32_t> taken;
+    std::vector<char> open(allowed.begin(), allowed.end());
+    while (lacking > most_short * in_reach) {
+        std::int32_t best = -1;
+        double most = 0.0;
+        for (std::int32_t i = 0; at(i) < members.size(); ++i) {
+            const double value = open[at(i)] != 0 ? gain(i) : 0.0;
+            if (value > most) {
+                most = value;
+                best = i;
+            }
+        }
+        if (best < 0) {
+            break;
+        }
+        taken.push_back(best);
+        open[at(best)] = 0;
+        for (const std::int32_t sample : members[at(best)].footprint) {
+            lacking -= lacks(sample) == 1 ? 1.0 : 0.0;
+            ++layers[at(sample)];
+        }
+    }
+    return taken;
+}
+
+FirstChoice choose_first(std::span<const Member> members, std::span<const char> allowed,
+                         std::span<const char> reached, std::size_t nodes,
+                         const SelectOptions& options, const StageAsk* stage) {
+    FirstChoice first;
+    if (stage != nullptr && stage->stages_left == 0) {
+        return first;  // thin places are filled one by one
+    }
+    if (stage != nullptr) {
+        const FibreBound bound =
+            bound_fibre({members, allowed, stage->left, reached, nodes, kMostBelow});
+        first.bound = {bound.least_mm, bound.solved_mm, bound.turns_mm};
+        first.courses = whole_courses(bound, 1.0 / stage->stages_left);
+        return first;
+    }
+    for (const std::int32_t i : select_courses(members, allowed, reached.size(), options).chosen) {
+        first.courses.push_back({i, !members[at(i)].windable_forward});
+    }
+    return first;
 }
 
 }  // namespace meshwind

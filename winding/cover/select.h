@@ -2,16 +2,22 @@
 /// fibre.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "winding/laminate/stage_ask.h"
 #include "winding/plan/course.h"
+#include "winding/plan/figures.h"
 
 namespace meshwind {
 
 struct SelectOptions {
     int target_layers = 1;  ///< each reachable sample is to be covered at least this often
+    /// The same per sample, below 0 where more than enough lies; empty: `target_layers` everywhere.
+    std::span<const std::int32_t> targets{};
     /// What a sample already covered costs against what a new one earns: fibre laid over fibre is
     /// wasted and makes the wall uneven.
     double overlap_weight = 0.35;
@@ -19,6 +25,10 @@ struct SelectOptions {
     double least_gain_share = 0.01;
     /// What fibre off the wanted winding angle costs, against 1 for a layer too many.
     double angle_weight = 4.0;
+
+    [[nodiscard]] std::int32_t target(std::int32_t sample) const {
+        return targets.empty() ? target_layers : targets[static_cast<std::size_t>(sample)];
+    }
 };
 
 /// Which members are laid, and how often each coverage sample is covered by them.
@@ -35,5 +45,26 @@ struct Selection {
                                        std::span<const char> allowed, std::size_t samples,
                                        const SelectOptions& options = {},
                                        std::span<const std::int32_t> kept = {});
+
+/// Members that bring most samples to their target, for their fibre, until no more of those in
+/// reach than a share are short of it, or none helps. \param reached per sample \param layers per
+/// sample, what lies there \return members, each once
+[[nodiscard]] std::vector<std::int32_t> fill_thin_places(
+    std::span<const Member> members, std::span<const char> allowed, std::span<const char> reached,
+    std::vector<std::int32_t> layers, const SelectOptions& options, double most_short);
+
+/// Courses to begin with, each the way that it is wound.
+struct FirstChoice {
+    std::vector<LaidCourse> courses;
+    std::optional<LeastFibre> bound;  ///< of a stage of a wall
+};
+
+/// By select_courses(). For a stage of a wall: whole courses for its share of the fractions with
+/// which what is left of the wall takes least fibre (winding/bound/); none behind the last stage.
+/// \param reached per sample \param nodes 2 for each rim \param stage null: none
+[[nodiscard]] FirstChoice choose_first(std::span<const Member> members,
+                                       std::span<const char> allowed, std::span<const char> reached,
+                                       std::size_t nodes, const SelectOptions& options,
+                                       const StageAsk* stage);
 
 }  // namespace meshwind

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/parallel.h"
-#include "core/random.h"
 #include "mesh/nearest.h"
 #include "mesh/triangle_soup.h"
 #include "winding/laminate/course_character.h"
@@ -18,8 +17,11 @@
 namespace meshwind {
 namespace {
 
-// Samples per tow width, and most of them: as planned coverage is measured on.
+// Samples per tow width. With 2.5 what is covered on samples that were planned on is 0.7 % more
+// than what is covered on others, with 4 it is 0.25 %.
 constexpr double kSamplesPerTow = 4.0;
+
+// On a wall so large that this would take more samples, they lie further apart.
 constexpr double kMaxSamples = 6e5;
 
 constexpr std::size_t kChunk = 256;
@@ -101,11 +103,12 @@ void measure_regular(const PlanZones& zones, const CoverageSamples& samples,
 
 }  // namespace
 
-CoverageSamples plan_samples(const Surface& surface, double tow_width_mm, std::uint64_t seed) {
+CoverageSamples plan_samples(const Surface& surface, double tow_width_mm, std::uint64_t seed,
+                             Stream stream) {
     const double area = area_mm2({surface.position_mm, surface.face});
     const double spacing_mm =
         std::max(tow_width_mm / kSamplesPerTow, std::sqrt(area / kMaxSamples));
-    return sample_surface(surface, spacing_mm, seed_of(Stream::Sampling, seed));
+    return sample_surface(surface, spacing_mm, seed_of(stream, seed));
 }
 
 SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i, double tow_width_mm) {
@@ -141,6 +144,28 @@ SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i, doubl
     return path;
 }
 
+std::vector<std::int32_t> layers_of_courses(const Surface& wall, const CoverageSamples& samples,
+                                            std::span<const Piece> pieces, double tow_width_mm) {
+    const FootprintFinder footprints(wall, samples, tow_width_mm);
+    std::vector<std::vector<std::int32_t>> footprint(pieces.size());
+    parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        FootprintFinder::Scratch scratch = footprints.make_scratch();
+        for (std::size_t i = begin; i < end; ++i) {
+            if (pieces[i].kind == PieceKind::Course) {
+                footprint[i] =
+                    footprints.footprint(course_with_ends(pieces, i, tow_width_mm), scratch);
+            }
+        }
+    });
+    std::vector<std::int32_t> layers(samples.size(), 0);
+    for (const std::vector<std::int32_t>& course : footprint) {
+        for (const std::int32_t sample : course) {
+            ++layers[static_cast<std::size_t>(sample)];
+        }
+    }
+    return layers;
+}
+
 Coverage coverage_of_fibre(const Surface& surface, const Surface& wall, double tow_width_mm,
                            std::uint64_t seed, const SurfacePath& fibre) {
     const CoverageSamples samples = plan_samples(surface, tow_width_mm, seed);
@@ -153,38 +178,30 @@ Coverage coverage_of_fibre(const Surface& surface, const Surface& wall, double t
     return measure_coverage(layers);
 }
 
+void describe_courses(const Surface& wall, double tow_width_mm, std::optional<double> wish_rad,
+                      Plan& plan) {
+    std::vector<const SurfacePath*> courses;
+    for (const Piece& piece : plan.pieces) {
+        if (piece.kind == PieceKind::Course) {
+            courses.push_back(&piece.path);
+        }
+    }
+    plan.angle = wound_angles(wall, courses, wish_rad);
+    plan.places = places_of(wall, courses);
+    plan.family = families_of(courses, tow_width_mm);
+}
+
 void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
                   std::uint64_t seed, const PlanZones& zones, Plan& plan) {
     const CoverageSamples samples = plan_samples(surface, tow_width_mm, seed);
-    const FootprintFinder footprints(wall, samples, tow_width_mm);
-    std::vector<std::vector<std::int32_t>> footprint(plan.pieces.size());
-    parallel_for(plan.pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
-        FootprintFinder::Scratch scratch = footprints.make_scratch();
-        for (std::size_t i = begin; i < end; ++i) {
-            if (plan.pieces[i].kind == PieceKind::Course) {
-                footprint[i] =
-                    footprints.footprint(course_with_ends(plan.pieces, i, tow_width_mm), scratch);
-            }
-        }
-    });
-    std::vector<std::int32_t> layers(samples.size(), 0);
-    std::vector<const SurfacePath*> courses;
-    for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
-        if (plan.pieces[i].kind == PieceKind::Course) {
-            courses.push_back(&plan.pieces[i].path);
-        }
-        for (const std::int32_t sample : footprint[i]) {
-            ++layers[static_cast<std::size_t>(sample)];
-        }
-    }
+    const std::vector<std::int32_t> layers =
+        layers_of_courses(wall, samples, plan.pieces, tow_width_mm);
     plan.coverage = coverage_where(zones.asked_for, samples, layers);
     if (zones.regular) {
         measure_regular(zones, samples, layers, tow_width_mm, plan.coverage);
     }
     plan.face_layers = layers_per_face(surface, samples, layers);
-    plan.angle = wound_angles(wall, courses, std::nullopt);
-    plan.places = places_of(wall, courses);
-    plan.family = families_of(courses, tow_width_mm);
+    describe_courses(wall, tow_width_mm, std::nullopt, plan);
 }
 
 }  // namespace meshwind

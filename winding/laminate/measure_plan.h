@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "core/random.h"
 #include "mesh/surface.h"
 #include "winding/laminate/samples.h"
 #include "winding/plan/plan.h"
@@ -26,21 +29,34 @@ struct PlanZones {
     std::function<double(const Eigen::Vector3d& position_mm)> meant{};
 };
 
-/// The samples that a plan's coverage is measured on: four to a tow width each way.
-/// \param seed of the plan
+/// The samples that a plan's coverage is measured on: four to a tow width each way, so that a gap
+/// of a quarter is seen. \param seed of the plan \param stream Sampling, or that of others in their
+/// number
 [[nodiscard]] CoverageSamples plan_samples(const Surface& surface, double tow_width_mm,
-                                           std::uint64_t seed);
+                                           std::uint64_t seed, Stream stream = Stream::Sampling);
 
 /// The path of course `i` with as much of the turns before and after it as its band still covers
 /// wall from.
 [[nodiscard]] SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i,
                                            double tow_width_mm);
 
+/// Layers that the courses of a plan lay at each sample, with their ends. \param wall as in
+/// measure_plan()
+[[nodiscard]] std::vector<std::int32_t> layers_of_courses(const Surface& wall,
+                                                          const CoverageSamples& samples,
+                                                          std::span<const Piece> pieces,
+                                                          double tow_width_mm);
+
 /// Coverage by a fibre as it lies, with its turns. \param wall what the stations' faces are of, as
 /// in measure_plan() \return `reachable` is left at 0
 [[nodiscard]] Coverage coverage_of_fibre(const Surface& surface, const Surface& wall,
                                          double tow_width_mm, std::uint64_t seed,
                                          const SurfacePath& fibre);
+
+/// Fills in winding angles, places in the order and families of a plan's courses. \param wall as in
+/// measure_plan() \param wish_rad wanted winding angle
+void describe_courses(const Surface& wall, double tow_width_mm, std::optional<double> wish_rad,
+                      Plan& plan);
 
 /// Fills in coverage, layers per face, winding angles and places of a plan's courses.
 /// \param surface what is to be covered \param wall what the stations' faces are of: the surface,

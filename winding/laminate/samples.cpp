@@ -197,6 +197,18 @@ CoverageSamples sample_surface(const Surface& surface, double spacing_mm, std::u
     return samples;
 }
 
+CoverageSamples samples_at(const Surface& surface, std::vector<SurfacePoint> places) {
+    CoverageSamples samples;
+    for (const SurfacePoint& place : places) {
+        samples.position_mm.push_back(position_mm(surface, place));
+        samples.normal.push_back(smooth_normal(surface, place));
+    }
+    samples.area_mm2 = area_mm2({surface.position_mm, surface.face}) /
+                       static_cast<double>(std::max<std::size_t>(1, places.size()));
+    samples.at = std::move(places);
+    return samples;
+}
+
 SampledFaces sampled_faces(const Surface& surface, const CoverageSamples& samples) {
     const auto at = [](std::int32_t face) { return static_cast<std::size_t>(face); };
     SampledFaces faces;

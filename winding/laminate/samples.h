@@ -27,6 +27,9 @@ struct CoverageSamples {
 [[nodiscard]] CoverageSamples sample_surface(const Surface& surface, double spacing_mm,
                                              std::uint64_t seed);
 
+/// Samples at given places: those of another surface with the same triangles, say.
+[[nodiscard]] CoverageSamples samples_at(const Surface& surface, std::vector<SurfacePoint> places);
+
 /// Samples that speak for each face: of how many and of which faces.
 struct SampledFaces {
     std::vector<std::int32_t> samples;  ///< per face: how many lie on it

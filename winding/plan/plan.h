@@ -28,12 +28,14 @@ struct Plan {
         0.0;  ///< largest step between the end of a piece and the start of the next
     Coverage coverage;
     std::vector<Uncovered> uncovered;
+    std::vector<char> reached;  ///< per place of a stage's ask (stage_ask.h): 1 or 0; or empty
     std::vector<double> face_layers;   ///< per face of the surface: mean layers
     std::vector<WhatIf> what_if;       ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;     ///< per rim
     std::vector<PinRing> pins{};       ///< that the turns need, at most one ring per rim
     std::vector<std::int32_t> family;  ///< per course in winding order (families.h)
     WoundAngles angle;                 ///< of the courses
+    std::optional<LeastFibre> bound;   ///< of a stage of a wall
     Places places;                     ///< of junctions and hoops in the winding order
     PlanDetails details;
     PlanEffort effort;

@@ -23,7 +23,8 @@ struct Scene : test::CourseScene {
 
     [[nodiscard]] std::vector<PlacedCourse> annealed(const AnnealOptions& options,
                                                      std::vector<PlacedCourse> courses = {}) const {
-        const AnnealGround ground(rules, samples, kSpacing_mm, members, 3);
+        const AnnealGround ground(rules, sample_surface(rules.mandrel.surface, kSpacing_mm, 3),
+                                  samples, members);
         anneal(rules, ground, members, allowed, courses, options);
         return courses;
     }

@@ -42,6 +42,46 @@ TEST(SelectCourses, DropsWhatHasBecomeSuperfluous) {
     EXPECT_EQ(selection.layers, std::vector<std::int32_t>(10, 1));
 }
 
+// A place that asks for nothing more is waste from the first layer on.
+TEST(SelectCourses, AsksOfEachSampleWhatItLacks) {
+    const std::vector<Member> members{covering(0, 4), covering(5, 9), covering(0, 9, 150.0)};
+    std::vector<std::int32_t> targets(10, 0);
+    std::fill_n(targets.begin(), 5, 1);
+    const std::vector<char> all{1, 1, 1};
+    EXPECT_EQ(chosen(members, all, 10, {.targets = targets}), (Indices{0}));
+    targets.assign(10, 1);
+    EXPECT_EQ(chosen(members, all, 10, {.targets = targets}), (Indices{2}));
+}
+
+TEST(FillThinPlaces, TakesWhatBringsMostPlacesToTheirTarget) {
+    const std::vector<Member> members{covering(0, 1), covering(0, 4), covering(3, 9)};
+    const std::vector<char> all{1, 1, 1};
+    const std::vector<char> reached(10, 1);
+    const std::vector<std::int32_t> targets(10, 2);
+    // Samples 0 to 3 lack a layer, 4 lacks two, and the others none.
+    const std::vector<std::int32_t> layers{1, 1, 1, 1, 0, 2, 2, 2, 2, 2};
+    const auto filled = [&](double most_short, const std::vector<char>& allowed) {
+        return fill_thin_places(members, allowed, reached, layers, {.targets = targets},
+                                most_short);
+    };
+    // The second brings four of them there, and sample 4 with the third.
+    EXPECT_EQ(filled(0.1, all), (Indices{1}));
+    EXPECT_EQ(filled(0.0, all), (Indices{1, 2}));
+    EXPECT_EQ(filled(0.0, {1, 0, 0}), (Indices{0}));
+    EXPECT_EQ(filled(0.5, all), Indices{});
+}
+
+TEST(FillThinPlaces, LeavesWhatIsOutOfReach) {
+    const std::vector<Member> members{covering(0, 4)};
+    std::vector<char> reached(5, 0);
+    const std::vector<char> allowed{1};
+    EXPECT_EQ(fill_thin_places(members, allowed, reached, std::vector<std::int32_t>(5, 0), {}, 0.0),
+              Indices{});
+    reached[2] = 1;
+    EXPECT_EQ(fill_thin_places(members, allowed, reached, std::vector<std::int32_t>(5, 0), {}, 0.0),
+              Indices{0});
+}
+
 TEST(SelectCourses, GivesTiesToTheLowerIndex) {
     const std::vector<Member> members{covering(0, 4), covering(0, 4), covering(5, 9),
                                       covering(5, 9)};

@@ -1,0 +1,53 @@
+/// Linear programmes whose columns are added as they are found to pay.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshwind {
+
+/// An entry of a column.
+struct RowEntry {
+    int row = 0;
+    double value = 0.0;
+};
+
+/// Least cost of columns x >= 0 with `least <= A x <= most` in each row. By GLPK's primal simplex
+/// method; by how much its answer breaks a bound is computed here.
+class LinearProgramme {
+public:
+    struct Row {
+        double least = 0.0;
+        double most = 0.0;
+    };
+
+    /// \param rows n >= 1; infinities where a side is open
+    explicit LinearProgramme(std::span<const Row> rows);
+    ~LinearProgramme();
+    LinearProgramme(const LinearProgramme&) = delete;
+    LinearProgramme& operator=(const LinearProgramme&) = delete;
+    LinearProgramme(LinearProgramme&&) = delete;
+    LinearProgramme& operator=(LinearProgramme&&) = delete;
+
+    /// \param most upper bound of the column, may be infinite \param entries each row at most once
+    /// \return its number, in the order in which they are added
+    int add_column(double cost, double most, std::span<const RowEntry> entries);
+
+    struct Solution {
+        bool optimal = false;
+        double cost = 0.0;
+        std::vector<double> x;      ///< per column
+        std::vector<double> price;  ///< per row: what one more of its bound costs
+        /// Largest breach of a row or column by x, computed from the columns as they were given.
+        double worst_breach = 0.0;
+    };
+    /// The first call from nothing, each further one from where the last ended.
+    [[nodiscard]] Solution solve();
+
+private:
+    struct Model;
+    std::unique_ptr<Model> model_;
+};
+
+}  // namespace meshwind

@@ -1,0 +1,167 @@
+// The least fibre of small libraries, known by hand.
+#include "winding/bound/fibre_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+
+namespace meshwind {
+namespace {
+
+// The bound stops within this share of what is found.
+constexpr double kNear = 0.011;
+
+// From rim `from` to rim `to`, which it circles the same way on arrival as on departure there.
+Member course(std::int32_t first, std::int32_t last, double length_mm, std::int32_t from = 0,
+              std::int32_t to = 1) {
+    Member member;
+    member.length_mm = length_mm;
+    member.windable_forward = true;
+    member.end[0].rim = from;
+    member.end[0].sense = -1;
+    member.end[1].rim = to;
+    member.end[1].sense = 1;
+    for (std::int32_t i = first; i <= last; ++i) {
+        member.footprint.push_back(i);
+    }
+    return member;
+}
+
+struct Problem {
+    std::vector<Member> library;
+    std::vector<char> allowed = std::vector<char>(library.size(), 1);
+    std::vector<std::int32_t> asked = std::vector<std::int32_t>(10, 1);
+    std::vector<char> reached = std::vector<char>(asked.size(), 1);
+    double most_below = 0.0;
+
+    [[nodiscard]] FibreBound bound() const {
+        return bound_fibre({library, allowed, asked, reached, 4, most_below});
+    }
+};
+
+double times_laid(const FibreBound& bound, std::size_t i) {
+    return bound.forward[i] + bound.backward[i];
+}
+
+// Three courses of 100 mm that each cover two thirds: each one half is enough.
+TEST(FibreBound, TakesCoursesInFractions) {
+    Problem problem{{course(0, 5, 100.0), course(3, 8, 100.0), course(6, 8, 100.0)}};
+    problem.library[2].footprint = {0, 1, 2, 6, 7, 8};
+    for (Member& member : problem.library) {
+        member.end[1] = member.end[0];
+        member.end[1].sense = 1;  // back to where it came from
+    }
+    problem.asked.assign(9, 1);
+    problem.reached.assign(9, 1);
+    const FibreBound bound = problem.bound();
+    EXPECT_NEAR(bound.solved_mm, 150.0, kNear * 150.0);
+    EXPECT_LE(bound.least_mm, bound.solved_mm * (1.0 + 1e-9));
+    EXPECT_GE(bound.least_mm, bound.solved_mm * (1.0 - kNear));
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(times_laid(bound, i), 0.5, 0.01);
+    }
+}
+
+// Fibre that is led to the second rim has to come back: a course that covers nothing is laid too.
+TEST(FibreBound, LeadsAsMuchFibreToANodeAsAwayFromIt) {
+    Problem problem{{course(0, 9, 100.0), course(0, -1, 70.0)}};
+    std::swap(problem.library[1].end[0].rim, problem.library[1].end[1].rim);
+    ASSERT_EQ(nodes_of(problem.library[0], false).second,
+              nodes_of(problem.library[1], false).first);
+    const FibreBound bound = problem.bound();
+    EXPECT_NEAR(bound.least_mm, 170.0, kNear * 170.0);
+    EXPECT_NEAR(times_laid(bound, 1), 1.0, 0.01);
+}
+
+// One sample in ten is dear: it may lack where a tenth of the layers may.
+TEST(FibreBound, LeavesOutWhatMayLack) {
+    Problem problem{{course(0, 8, 100.0, 0, 0), course(9, 9, 500.0, 0, 0)}};
+    EXPECT_NEAR(problem.bound().least_mm, 600.0, kNear * 600.0);
+    problem.most_below = 0.1;
+    const FibreBound bound = problem.bound();
+    EXPECT_NEAR(bound.least_mm, 100.0, kNear * 100.0);
+    problem.most_below = 0.05;  // half a layer of the dear sample
+    EXPECT_NEAR(problem.bound().least_mm, 350.0, kNear * 350.0);
+}
+
+TEST(FibreBound, AsksNothingOfPlacesOutOfReachAndTakesOnlyWhatIsAllowed) {
+    Problem problem{{course(0, 8, 100.0, 0, 0), course(0, 8, 40.0, 0, 0)}};
+    problem.reached.back() = 0;
+    problem.allowed[1] = 0;
+    EXPECT_NEAR(problem.bound().least_mm, 100.0, kNear * 100.0);
+    problem.allowed[1] = 1;
+    EXPECT_NEAR(problem.bound().least_mm, 40.0, kNear * 40.0);
+}
+
+// Twice the layers take twice the fibre, and turns count.
+TEST(FibreBound, GrowsWithTheLayers) {
+    Problem problem{{course(0, 5, 90.0, 0, 0), course(4, 9, 90.0, 0, 0)}};
+    problem.library[0].turn_mm = 10.0;
+    problem.library[1].turn_mm = 10.0;
+    EXPECT_NEAR(problem.bound().least_mm, 200.0, kNear * 200.0);
+    EXPECT_NEAR(problem.bound().turns_mm, 20.0, 1e-6);
+    problem.asked.assign(10, 3);
+    EXPECT_NEAR(problem.bound().least_mm, 600.0, kNear * 600.0);
+}
+
+// No choice of whole courses that covers all takes less: looked for at random.
+TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
+    constexpr std::uint64_t kSeed = 5;
+    Problem problem;
+    for (std::uint64_t k = 0; k < 60; ++k) {
+        Member& member = problem.library.emplace_back(course(0, -1, 0.0, 0, 0));
+        member.length_mm = 50.0 + 100.0 * random_unit(kSeed, 3 * k);
+        const auto first = static_cast<std::int32_t>(random_bits(kSeed, 3 * k + 1) % 36);
+        for (std::int32_t i = first; i < first + 5; ++i) {
+            member.footprint.push_back(i);
+        }
+    }
+    problem.allowed.assign(problem.library.size(), 1);
+    problem.asked.assign(40, 0);
+    problem.reached.assign(40, 1);
+    for (const Member& member : problem.library) {
+        for (const std::int32_t sample : member.footprint) {
+            problem.asked[static_cast<std::size_t>(sample)] = 2;
+        }
+    }
+    const double least_mm = problem.bound().least_mm;
+    EXPECT_GT(least_mm, 0.0);
+    for (std::uint64_t trial = 0; trial < 500; ++trial) {
+        std::vector<std::int32_t> lacks = problem.asked;
+        double fibre_mm = 0.0;
+        for (std::uint64_t draw = 0;
+             std::any_of(lacks.begin(), lacks.end(), [](std::int32_t l) { return l > 0; });
+             ++draw) {
+            const Member& member =
+                problem.library[random_bits(kSeed + 1, trial * 100'000 + draw) % 60];
+            const auto gain = std::count_if(
+                member.footprint.begin(), member.footprint.end(),
+                [&](std::int32_t i) { return lacks[static_cast<std::size_t>(i)] > 0; });
+            if (gain > static_cast<std::ptrdiff_t>(draw < 500 ? 3 : 0)) {
+                fibre_mm += member.length_mm;
+                for (const std::int32_t i : member.footprint) {
+                    --lacks[static_cast<std::size_t>(i)];
+                }
+            }
+        }
+        EXPECT_LE(least_mm, fibre_mm);
+    }
+}
+
+TEST(FibreBound, RoundsToWholeCoursesByTheirSum) {
+    FibreBound bound;
+    bound.forward = {0.3, 0.3, 0.0, 2.0};
+    bound.backward = {0.0, 0.3, 0.2, 0.0};
+    // Sums of 0.8, 1.1, 1.4, 1.6 and 3.6, from 0.5.
+    const std::vector<LaidCourse> all{{1, false}, {3, false}, {3, false}};
+    EXPECT_EQ(whole_courses(bound, 1.0), all);
+    EXPECT_EQ(whole_courses(bound, 0.0), std::vector<LaidCourse>{});
+    EXPECT_EQ(whole_courses(bound, 10.0).size(), 31U);
+}
+
+}  // namespace
+}  // namespace meshwind

@@ -1,0 +1,45 @@
+/// The least fibre that a wall takes of the courses of a library, by linear programming.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "winding/plan/course.h"
+
+namespace meshwind {
+
+/// What the least fibre is sought for. References outlive the call.
+struct BoundTask {
+    std::span<const Member> library;
+    std::span<const char> allowed;        ///< per member
+    std::span<const std::int32_t> asked;  ///< per sample: layers
+    std::span<const char> reached;        ///< per sample: others ask for nothing
+    std::size_t nodes = 0;                ///< 2 for each rim
+    /// Share of the samples that may have less than they ask for.
+    double most_below = 0.0;
+};
+
+struct FibreBound {
+    /// No plan of courses of the library takes less fibre, turns included: mm. It is that of a dual
+    /// solution whose feasibility is computed here, so it holds however well it was solved.
+    double least_mm = 0.0;
+    double solved_mm = 0.0;  ///< the least found, by courses in fractions; 0 where none was
+    double turns_mm = 0.0;   ///< of that, fibre in turns
+    /// How often each member is laid there, forward and backward; per member.
+    std::vector<double> forward;
+    std::vector<double> backward;
+    std::vector<double> worth_mm;  ///< per sample: what one more layer there takes of fibre
+};
+
+/// Courses in fractions, each as often as is best: every sample of a subset gets its layers, but
+/// for `most_below` of all layers, and as much fibre arrives at a node as leaves it. Columns are
+/// added while some pay; a bound for fewer samples and for fractions is one for plans as well.
+[[nodiscard]] FibreBound bound_fibre(const BoundTask& task);
+
+/// Whole courses for a share of those fractions: in the order of the library, one more each time
+/// that their sum passes a half, so that like courses share their roundings.
+[[nodiscard]] std::vector<LaidCourse> whole_courses(const FibreBound& bound, double share);
+
+}  // namespace meshwind

@@ -1,0 +1,85 @@
+#include "winding/cover/join.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/parallel.h"
+#include "winding/cover/balance.h"
+
+namespace meshwind {
+namespace {
+
+// Times that courses are added to join the others, each time some that the machine refuses.
+constexpr int kMaxJoins = 200;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+void gather(std::span<const PlacedCourse> courses, std::size_t library_size,
+            std::vector<Member>& members) {
+    members.resize(library_size);
+    for (const PlacedCourse& course : courses) {
+        members.push_back(course.member);
+    }
+}
+
+void CourseJoiner::join(const JoinTask& task, std::vector<PlacedCourse>& courses) {
+    for (int attempt = 0; attempt < kMaxJoins; ++attempt) {
+        gather(courses, task.library_size, task.members);
+        std::vector<char> allowed(task.allowed.begin(), task.allowed.end());
+        allowed.resize(task.members.size(), 0);
+        Selection selection;
+        selection.layers = layers_of(courses, task.samples);
+        for (std::size_t i = task.library_size; i < task.members.size(); ++i) {
+            selection.chosen.push_back(static_cast<std::int32_t>(i));
+        }
+        const std::vector<LaidCourse> laid =
+            balance_courses(task.members, allowed, task.rims, task.select, task.fibres, selection);
+        if (take_proven(task, laid, courses)) {
+            return;
+        }
+    }
+}
+
+// The courses become what is laid, if all that is new holds.
+bool CourseJoiner::take_proven(const JoinTask& task, std::span<const LaidCourse> laid,
+                               std::vector<PlacedCourse>& courses) {
+    std::vector<PlacedCourse> taken(laid.size());
+    std::vector<Rejection> found(laid.size(), Rejection::None);
+    parallel_for(laid.size(), 1, [&](std::size_t i, std::size_t) {
+        const std::size_t member = at(laid[i].member);
+        if (member >= task.library_size) {
+            taken[i] = courses[member - task.library_size];
+        } else if (const auto before = proven_.find(laid[i]); before != proven_.end()) {
+            taken[i] = before->second;
+        } else {
+            found[i] = task.place(laid[i], taken[i]);
+        }
+    });
+    for (std::size_t i = 0; i < laid.size(); ++i) {
+        const std::size_t number = at(laid[i].member);
+        if (number >= task.library_size) {
+            continue;
+        }
+        if (found[i] == Rejection::None) {
+            proven_.try_emplace(laid[i], taken[i]);
+            continue;
+        }
+        Member& member = task.members[number];
+        (laid[i].backward ? member.windable_backward : member.windable_forward) = false;
+        if (!member.windable_forward && !member.windable_backward && task.allowed[number] != 0) {
+            task.strike_off(number, found[i]);
+        }
+    }
+    const bool all =
+        std::all_of(found.begin(), found.end(), [](Rejection r) { return r == Rejection::None; });
+    if (all) {
+        courses = std::move(taken);
+    }
+    return all;
+}
+
+}  // namespace meshwind

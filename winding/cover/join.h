@@ -1,0 +1,50 @@
+/// Joining courses to few fibres by further members of the library.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "winding/cover/placed_course.h"
+#include "winding/cover/select.h"
+#include "winding/plan/course.h"
+#include "winding/plan/rejection.h"
+
+namespace meshwind {
+
+/// What joining needs of a plan.
+struct JoinTask {
+    std::vector<Member>& members;  ///< the library, behind which the plan's courses are put
+    std::size_t library_size = 0;
+    std::span<const char> allowed;  ///< per member of the library
+    std::size_t rims = 0;
+    std::size_t samples = 0;
+    const SelectOptions& select;
+    int fibres = 1;
+    /// Puts a member of the library in its place and proves it. Thread-safe.
+    std::function<Rejection(const LaidCourse&, PlacedCourse&)> place;
+    /// Told of an allowed member that holds neither way.
+    std::function<void(std::size_t member, Rejection)> strike_off;
+};
+
+/// Puts the plan's courses behind those of the library.
+void gather(std::span<const PlacedCourse> courses, std::size_t library_size,
+            std::vector<Member>& members);
+
+/// Keeps what it has proven for the next time.
+class CourseJoiner {
+public:
+    /// Adds members that hold until as many courses arrive as depart, wherever there is a way
+    /// (balance.h); those that do not hold are noted in the library. \param courses the plan's
+    void join(const JoinTask& task, std::vector<PlacedCourse>& courses);
+
+private:
+    [[nodiscard]] bool take_proven(const JoinTask& task, std::span<const LaidCourse> laid,
+                                   std::vector<PlacedCourse>& courses);
+
+    std::map<LaidCourse, PlacedCourse> proven_;
+};
+
+}  // namespace meshwind
