@@ -35,7 +35,8 @@ struct FibreBound {
 
 /// Courses in fractions, each as often as is best: every sample of a subset gets its layers, but
 /// for `most_below` of all layers, and as much fibre arrives at a node as leaves it. Columns are
-/// added while some pay; a bound for fewer samples and for fractions is one for plans as well.
+/// added while some pay; a bound for fractions is one for plans as well, as far as they leave
+/// no larger share below on the subset than on all.
 [[nodiscard]] FibreBound bound_fibre(const BoundTask& task);
 
 /// Whole courses for a share of those fractions: in the order of the library, one more each time
