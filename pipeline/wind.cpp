@@ -235,10 +235,8 @@ private:
         if (wall_ && wall_->laid() && !layer.plan.failure.empty()) {
             return give_up_stage();
         }
-        if (wall_ && wall_->stages() > 0 && !layer.plan.failure.empty()) {
-            layer.checks.back().words += "; the " + counted(wall_->stages(), "stage") +
-                                         " before it can be wound, which are " +
-                                         fixed(wall_->layers_so_far(), 1) + " layers of the wall";
+        if (!layer.plan.failure.empty()) {
+            layer.checks.back().words += so_far();
         }
         if (number == 0 && !options_.import) {
             propose_mends(layer);
@@ -263,6 +261,15 @@ private:
         }
         layer.build_up_mm = build_up_of(layer);
         return !run_.complete && grow_next(layer, number + 1);
+    }
+
+    // Of a wall that cannot be finished, what of it can be wound.
+    [[nodiscard]] std::string so_far() const {
+        return !wall_ || wall_->stages() == 0
+                   ? std::string()
+                   : "; the " + counted(wall_->stages(), "stage") +
+                         " before can be wound, which are " + fixed(wall_->layers_so_far(), 1) +
+                         " layers of the wall";
     }
 
     // A wall is laid but for a few places, for which there are no courses. What is next in the job
@@ -317,8 +324,8 @@ private:
         try {
             next.setup = setup_for(setup, thicken(setup.mandrel, layer.build_up_mm), number);
         } catch (const InputError& error) {
-            Check& check = run_.checks.emplace_back(check_kind::kPlan, false,
-                                                    layer_words(number) + ": " + error.what());
+            Check& check = run_.checks.emplace_back(
+                check_kind::kPlan, false, layer_words(number) + ": " + error.what() + so_far());
             check.name += layer_suffix(number);
             return false;
         }

@@ -77,6 +77,12 @@ inline std::string number_text(double value) {
     return digits;
 }
 
+/// As JsonValue::vector3() reads it.
+inline std::string vector_text(const Eigen::Vector3d& vector) {
+    return "[" + number_text(vector[0]) + "," + number_text(vector[1]) + "," +
+           number_text(vector[2]) + "]";
+}
+
 /// In quotes, with what JSON escapes.
 inline std::string string_text(std::string_view raw) {
     return nlohmann::json(raw).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -12,11 +12,6 @@ constexpr std::string_view kFillWord = "fill";
 
 // Mandrel.
 
-std::string vector_text(const Eigen::Vector3d& vector) {
-    return "[" + number_text(vector[0]) + "," + number_text(vector[1]) + "," +
-           number_text(vector[2]) + "]";
-}
-
 Key<Job::MandrelJob> axis_key() {
     const SchemaJson vector = vector_schema();
     const SchemaJson axis = {{"type", "object"},

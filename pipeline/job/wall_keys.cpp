@@ -19,10 +19,6 @@ WallJob& wall_of(LayerJob& layer) {
     return layer.wall ? *layer.wall : layer.wall.emplace();
 }
 
-std::string vector_text(const Eigen::Vector3d& v) {
-    return "[" + number_text(v.x()) + "," + number_text(v.y()) + "," + number_text(v.z()) + "]";
-}
-
 void check_amount(const JsonObject& object, const WallAmount& amount) {
     if (amount.layers.has_value() == amount.thickness_mm.has_value()) {
         object.value().fail("job.wall_amount",

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "core/random.h"
 #include "core/text/text_number.h"
 #include "mesh/nearest.h"
+#include "mesh/segment/rims.h"
 #include "mesh/triangle_soup.h"
 #include "postproc/verify/check_kinds.h"
 #include "winding/laminate/coverage.h"
@@ -47,18 +47,6 @@ int layers_of_a_stage(const Mandrel& bare, double tow_thickness_mm) {
         layers = std::min(layers, kMostGrowth * rim.radius_mm / tow_thickness_mm);
     }
     return std::max(1, static_cast<int>(layers));
-}
-
-double distance_mm(const std::vector<Eigen::Vector3d>& corners, const Eigen::Vector3d& point) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Eigen::Vector3d& a = corners[i];
-        const Eigen::Vector3d along = corners[(i + 1) % corners.size()] - a;
-        const double share =
-            std::clamp((point - a).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
-        least = std::min(least, (a + share * along - point).norm());
-    }
-    return least;
 }
 
 // What a job's wall asks for, on its mandrel.
@@ -135,11 +123,7 @@ private:
         if (part.point) {
             return (bare_.file_to_mandrel * *part.point - position).norm() <= *part.within_mm;
         }
-        std::vector<Eigen::Vector3d> corners;
-        for (const std::int32_t v : bare_.rims[at(*part.rim)].vertices) {
-            corners.push_back(bare_.surface.position_mm[at(v)]);
-        }
-        return distance_mm(corners, position) <= *part.within_mm;
+        return off_circle_mm(bare_.rims[at(*part.rim)], position) <= *part.within_mm;
     }
 
     const Mandrel& bare_;
@@ -239,15 +223,15 @@ StageAsk WallStages::next() const {
     StageAsk ask;
     ask.measured = asked_of(measured_);
     ask.weighed = asked_of(weighed_);
-    ask.first = stages_ == 0;
     ask.stages_left = std::max(0, planned_stages_ - stages_);
     ask.beyond_layers =
         ask.stages_left > 1 ? 0.0 : std::max(1.0, kBeyondOfRoot * std::sqrt(most_asked_));
     const std::int32_t thinnest = *std::min_element(measured_.asked.begin(), measured_.asked.end());
     std::vector<double> layers;
     for (std::size_t i = 0; i < measured_.at.size(); ++i) {
-        const bool in_reach = ask.first || reached_[i] != 0;
+        const bool in_reach = stages_ == 0 || reached_[i] != 0;
         ask.left.push_back(in_reach ? measured_.asked[i] - measured_.laid[i] : 0);
+        ask.measured.layers[i] = std::min(ask.measured.layers[i], ask.left[i]);
         if (in_reach && measured_.asked[i] == thinnest) {
             layers.push_back(ask.measured.layers[i]);
         }
@@ -261,8 +245,8 @@ void WallStages::enter(const Surface& surface, const Plan& plan) {
     lay(surface, plan, tow_width_mm_, weighed_);
     lay(surface, plan, tow_width_mm_, judged_);
     note_reach(plan);
-    if (stages_ == 0 && plan.bound) {
-        least_mm_ = plan.bound->least_mm;
+    if (stages_ == 0) {
+        least_mm_ = plan.least_fibre_mm.value_or(0.0);
     }
     const FibreUse use = fibre_use(plan, tow_width_mm_, area_mm2_, 1.0);
     fibre_mm_ += plan.fibre_length_mm;

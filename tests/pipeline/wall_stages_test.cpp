@@ -56,7 +56,6 @@ TEST(WallStages, ShareTheLayersAmongStages) {
     const WallStages stages = stages_of({.amount = {.layers = 10.0}});
     ASSERT_FALSE(stages.done());
     const StageAsk ask = stages.next();
-    EXPECT_TRUE(ask.first);
     EXPECT_EQ(ask.stages_left, 3);
     EXPECT_EQ(ask.everywhere, 4.0);  // 10 / 3, rounded up
     EXPECT_EQ(mean_of(ask.measured.layers), 4.0);
@@ -158,8 +157,10 @@ TEST(WallStages, CountAsReachedWhatEachStageReaches) {
     plan.reached.assign(places, 1);
     stages.enter(pipe().surface, plan);
     std::fill_n(plan.reached.begin(), places / 2, 0);
+    EXPECT_EQ(mean_of(stages.next().left), 8.0);
     stages.enter(pipe().surface, plan);
     EXPECT_NEAR(stages.figures().reachable, 0.5, 0.05);
+    EXPECT_NEAR(mean_of(stages.next().left), 4.0, 1e-9);  // nothing is asked for elsewhere
     EXPECT_TRUE(stages.laid());
     EXPECT_TRUE(stages.done());  // the last one brought nothing
 }

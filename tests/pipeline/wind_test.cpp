@@ -333,9 +333,8 @@ TEST(Wind, AWallIsWoundInStagesUntilItIsThick) {
     EXPECT_LE(grown_mm, kPipeRadius_mm + 2.5);
 }
 
-// Courses know what lies there: two stages of covers leave less bare than they would alone, and the
-// bound is below what they take.
-TEST(Wind, StagesOfACoverFillWhatLacks) {
+// The figures of a wall are those of all its stages, and the bound is below what they take.
+TEST(Wind, AWallOfCoversCountsAllItsStages) {
     const auto tee = [](const Job&) {
         const MakeValues sizes{{"run-length", 240.0}, {"branch-length", 140.0}};
         return build_mandrel(make_mandrel("tee", sizes, {.edge_mm = 8.0}), "tee");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 
 #include "core/linear_programme.h"
 #include "core/parallel.h"
@@ -18,6 +17,9 @@ constexpr std::size_t kMostRows = 800;
 constexpr std::size_t kColumnsOfARound = 300;
 constexpr int kMostRounds = 60;
 
+// A column pays where it is worth more than it costs by this share of that: not by rounding.
+constexpr double kPays = 1e-7;
+
 // The bound is good enough within this share of what has been found.
 constexpr double kGoodEnough = 0.01;
 
@@ -30,8 +32,7 @@ std::size_t at(std::int32_t i) {
 
 class BoundFinder {
 public:
-    explicit BoundFinder(const BoundTask& task)
-        : task_(task), row_(task.asked.size(), -1), asked_(0.0) {
+    explicit BoundFinder(const BoundTask& task) : task_(task), row_(task.asked.size(), -1) {
         choose_rows();
         fill_columns();
     }
@@ -50,8 +51,9 @@ public:
             if (!solution.optimal) {
                 break;
             }
-            const std::vector<double> reduced = reduced_costs(solution.price);
-            bound.least_mm = std::max(bound.least_mm, bound_of(solution.price, reduced));
+            const std::vector<double> price = feasible(solution.price);
+            const std::vector<double> reduced = reduced_costs(price);
+            bound.least_mm = std::max(bound.least_mm, bound_of(price, reduced));
             if (bound.least_mm >= (1.0 - kGoodEnough) * solution.cost ||
                 !add_best(programme, reduced)) {
                 break;
@@ -88,9 +90,9 @@ private:
     }
 
     void fill_columns() {
-        covers_.resize(task_.library.size());
-        for (std::size_t i = 0; i < task_.library.size(); ++i) {
-            const Member& member = task_.library[i];
+        covers_.resize(task_.members.size());
+        for (std::size_t i = 0; i < task_.members.size(); ++i) {
+            const Member& member = task_.members[i];
             if (task_.allowed[i] == 0) {
                 continue;
             }
@@ -141,14 +143,14 @@ private:
         double length_mm = 0.0;
         double covered = 0.0;
         for (const Column& column : columns_) {
-            length_mm += task_.library[at(column.member)].length_mm;
+            length_mm += task_.members[at(column.member)].length_mm;
             covered += static_cast<double>(covers_[at(column.member)].size());
         }
         return length_mm / std::max(1.0, covered);
     }
 
     [[nodiscard]] double cost(const Column& column) const {
-        const Member& member = task_.library[at(column.member)];
+        const Member& member = task_.members[at(column.member)];
         return member.length_mm + member.turn_mm;
     }
 
@@ -161,7 +163,7 @@ private:
                 entries.push_back({row, 1.0});
             }
         }
-        const auto [from, to] = nodes_of(task_.library[at(column.member)], column.backward);
+        const auto [from, to] = nodes_of(task_.members[at(column.member)], column.backward);
         if (from != to) {
             entries.push_back({static_cast<int>(rows_.size() + from), -1.0});
             entries.push_back({static_cast<int>(rows_.size() + to), 1.0});
@@ -188,7 +190,7 @@ private:
                 for (const std::int32_t row : covers_[at(column.member)]) {
                     worth += price[at(row)];
                 }
-                const auto [from, to] = nodes_of(task_.library[at(column.member)], column.backward);
+                const auto [from, to] = nodes_of(task_.members[at(column.member)], column.backward);
                 worth += price[rows_.size() + to] - price[rows_.size() + from];
                 reduced[k] = cost(column) - worth;
             }
@@ -196,23 +198,33 @@ private:
         return reduced;
     }
 
-    // Value of the prices once they are made small enough for every column to be worth no more than
-    // it costs.
+    // The prices as the dual programme wants them, whatever rounding says: no layer is worth less
+    // than nothing, and what may lack is worth something.
+    [[nodiscard]] std::vector<double> feasible(std::vector<double> price) const {
+        double& budget = price[static_cast<std::size_t>(budget_row())];
+        budget = std::min(0.0, budget);
+        for (std::size_t r = 0; r < rows_.size(); ++r) {
+            price[r] = std::max(0.0, price[r]);
+        }
+        return price;
+    }
+
+    // Value of feasible prices once they are made small enough for every column to be worth no more
+    // than it costs.
     [[nodiscard]] double bound_of(std::span<const double> price,
                                   std::span<const double> reduced) const {
         double scale = 1.0;
         for (std::size_t k = 0; k < columns_.size(); ++k) {
-            const double costs = cost(columns_[k]);
-            const double worth = costs - reduced[k];
-            if (worth > costs) {
-                scale = std::min(scale, costs / worth);
+            if (reduced[k] < 0.0) {
+                const double costs = cost(columns_[k]);
+                scale = std::min(scale, costs / (costs - reduced[k]));
             }
         }
-        // A lack is bought for the budget's price, so that no layer is worth more than that.
-        const double lack = std::max(0.0, -price[static_cast<std::size_t>(budget_row())]);
+        // A layer that lacks is bought for the budget's price: it counts no more than that.
+        const double lack = -price[static_cast<std::size_t>(budget_row())];
         double value = -lack * task_.most_below * asked_;
         for (std::size_t r = 0; r < rows_.size(); ++r) {
-            value += task_.asked[rows_[r]] * std::clamp(price[r], 0.0, lack);
+            value += task_.asked[rows_[r]] * std::min(price[r], lack);
         }
         return scale * value;
     }
@@ -221,7 +233,7 @@ private:
     bool add_best(LinearProgramme& programme, std::span<const double> reduced) {
         std::vector<std::size_t> paying;
         for (std::size_t k = 0; k < columns_.size(); ++k) {
-            if (columns_[k].number < 0 && reduced[k] < -1e-7 * cost(columns_[k])) {
+            if (columns_[k].number < 0 && reduced[k] < -kPays * cost(columns_[k])) {
                 paying.push_back(k);
             }
         }
@@ -240,8 +252,8 @@ private:
     }
 
     void take(const LinearProgramme::Solution& solution, FibreBound& bound) const {
-        bound.forward.assign(task_.library.size(), 0.0);
-        bound.backward.assign(task_.library.size(), 0.0);
+        bound.forward.assign(task_.members.size(), 0.0);
+        bound.backward.assign(task_.members.size(), 0.0);
         for (const Column& column : columns_) {
             if (column.number < 0) {
                 continue;
@@ -249,18 +261,14 @@ private:
             const double x = solution.x[static_cast<std::size_t>(column.number)];
             (column.backward ? bound.backward : bound.forward)[at(column.member)] = x;
             bound.solved_mm += x * cost(column);
-            bound.turns_mm += x * task_.library[at(column.member)].turn_mm;
-        }
-        bound.worth_mm.assign(task_.asked.size(), 0.0);
-        for (std::size_t r = 0; r < rows_.size(); ++r) {
-            bound.worth_mm[rows_[r]] = solution.price[r];
+            bound.turns_mm += x * task_.members[at(column.member)].turn_mm;
         }
     }
 
     const BoundTask& task_;
     std::vector<std::int32_t> row_;                  // per sample, -1: none
     std::vector<std::size_t> rows_;                  // their samples
-    double asked_;                                   // layers of all rows
+    double asked_ = 0.0;                             // layers of all rows
     std::vector<std::vector<std::int32_t>> covers_;  // per member: rows, one for each layer
     std::vector<Column> columns_;
 };

@@ -12,7 +12,7 @@ namespace meshwind {
 
 /// What the least fibre is sought for. References outlive the call.
 struct BoundTask {
-    std::span<const Member> library;
+    std::span<const Member> members;      ///< the library
     std::span<const char> allowed;        ///< per member
     std::span<const std::int32_t> asked;  ///< per sample: layers
     std::span<const char> reached;        ///< per sample: others ask for nothing
@@ -30,7 +30,6 @@ struct FibreBound {
     /// How often each member is laid there, forward and backward; per member.
     std::vector<double> forward;
     std::vector<double> backward;
-    std::vector<double> worth_mm;  ///< per sample: what one more layer there takes of fibre
 };
 
 /// Courses in fractions, each as often as is best: every sample of a subset gets its layers, but

@@ -89,10 +89,12 @@ public:
           allowed_(allowed),
           courses_(courses),
           options_(options),
-          layers_(ground.samples.size(), 0),
           joints_(2 * rules.mandrel.rims.size()),
           scratch_(*this) {
         weigh(options.bare_hot);
+        for (std::size_t i = 0; i < ground.samples.size(); ++i) {
+            over_.push_back(-options.select.target(static_cast<std::int32_t>(i)));
+        }
         const std::unique_ptr<Scratch> scratch = scratch_.take();
         for (PlacedCourse& course : courses) {
             course.member.footprint = ground.footprints.footprint(course.path, scratch->footprint);
@@ -191,7 +193,7 @@ private:
 
     void lay(const PlacedCourse& course, int times) {
         for (const std::int32_t sample : course.member.footprint) {
-            layers_[at(sample)] += times;
+            over_[at(sample)] += times;
         }
         joints_.add(course.member, course.backward, times);
     }
@@ -218,10 +220,6 @@ private:
     // Of a sample by the layers that it has over its target.
     [[nodiscard]] double cost(std::int32_t over) const {
         return cost_[at(std::clamp(over, -kMostOff, kMostOff) + kMostOff)];
-    }
-
-    [[nodiscard]] std::int32_t over(std::int32_t sample) const {
-        return layers_[at(sample)] - options_.select.target(sample);
     }
 
     [[nodiscard]] CourseShape shape_of(const PlacedCourse& course) const {
@@ -251,7 +249,7 @@ private:
         if (proposal.out) {
             const PlacedCourse& course = courses_[*proposal.out];
             for (const std::int32_t sample : course.member.footprint) {
-                const std::int32_t now = over(sample) + scratch.shift[at(sample)]--;
+                const std::int32_t now = over_[at(sample)] + scratch.shift[at(sample)]--;
                 sum += cost(now - 1) - cost(now);
             }
             sum -= turn_cost(course.member) + angle_cost(course.member);
@@ -259,7 +257,7 @@ private:
         }
         if (proposal.in) {
             for (const std::int32_t sample : proposal.in->member.footprint) {
-                const std::int32_t now = over(sample) + scratch.shift[at(sample)]++;
+                const std::int32_t now = over_[at(sample)] + scratch.shift[at(sample)]++;
                 sum += cost(now + 1) - cost(now);
             }
             sum += turn_cost(proposal.in->member) + angle_cost(proposal.in->member);
@@ -286,13 +284,12 @@ private:
 
     // A sample, rather one short of layers.
     [[nodiscard]] std::size_t needy_place(Draws& draws) const {
-        const auto draw = [&] { return static_cast<std::int32_t>(draws.below(samples_.size())); };
-        std::int32_t best = draw();
-        for (int i = 0; i < kPlacesTried && over(best) >= 0; ++i) {
-            const std::int32_t place = draw();
-            best = over(place) < over(best) ? place : best;
+        std::size_t best = draws.below(samples_.size());
+        for (int i = 0; i < kPlacesTried && over_[best] >= 0; ++i) {
+            const std::size_t place = draws.below(samples_.size());
+            best = over_[place] < over_[best] ? place : best;
         }
-        return at(best);
+        return best;
     }
 
     [[nodiscard]] Candidate fresh(Draws& draws) const {
@@ -451,7 +448,8 @@ private:
         double sum = 0.0;
         if (out) {
             for (const std::int32_t sample : courses_[*out].member.footprint) {
-                sum += cost(over(sample) - 1) - cost(over(sample));
+                const std::int32_t now = over_[at(sample)];
+                sum += cost(now - 1) - cost(now);
             }
         }
         return sum;
@@ -468,7 +466,7 @@ private:
         std::vector<float> saving(strip.sample.size());
         for (std::size_t i = 0; i < saving.size(); ++i) {
             const std::int32_t sample = strip.sample[i];
-            const std::int32_t now = over(sample) + scratch.shift[at(sample)];
+            const std::int32_t now = over_[at(sample)] + scratch.shift[at(sample)];
             saving[i] = static_cast<float>(cost(now) - cost(now + 1));
         }
         if (out) {
@@ -569,7 +567,7 @@ private:
     std::array<double, 2 * kMostOff + 1> cost_{};  // by layers over the target, from -kMostOff
     double typical_ = 1.0;                         // samples that a course covers
     double heat_ = 0.0;
-    std::vector<std::int32_t> layers_;  // per sample
+    std::vector<std::int32_t> over_;  // per sample: layers over its target
     Joints joints_;
     Neighbourhood neighbours_;
     int alone_ = 0;  // courses without a family

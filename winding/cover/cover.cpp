@@ -252,7 +252,7 @@ private:
     void choose() {
         FirstChoice first = choose_first(members_, allowed_, library_.reached,
                                          2 * mandrel_.rims.size(), select_, options_.stage);
-        plan_.bound = first.bound;
+        plan_.least_fibre_mm = first.least_fibre_mm;
         for (const LaidCourse& course : first.courses) {
             courses_.push_back(placed(course.member, course.backward));
         }
@@ -294,10 +294,8 @@ private:
                 proven.push_back(std::move(courses_[i]));
                 continue;
             }
-            note_refused(courses_[i].member, found[i]);
-            if (!members.empty() && allowed_[at(members[i])] != 0) {
-                strike_off(at(members[i]), found[i]);
-            }
+            members.empty() ? note_refused(courses_[i].member, found[i])
+                            : strike_off(at(members[i]), found[i]);
         }
         courses_ = std::move(proven);
     }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <queue>
 
+#include "core/parallel.h"
 #include "winding/bound/fibre_bound.h"
+#include "winding/plan/figures.h"
 
 namespace meshwind {
 namespace {
@@ -15,6 +17,9 @@ std::size_t at(std::int32_t i) {
 
 // A course that fills less than this share of what it covers is too dear for any wall.
 constexpr double kLeastFill = 0.005;
+
+// Members whose gain one task works out.
+constexpr std::size_t kGainChunk = 256;
 
 struct Gain {
     std::int64_t fresh = 0;  // samples still short of the target
@@ -149,8 +154,7 @@ std::vector<std::int32_t> fill_thin_places(std::span<const Member> members,
         lacking += lacks(i) > 0 ? 1.0 : 0.0;
     }
     // A layer helps the more, the fewer lack with it.
-    const auto gain = [&](std::int32_t i) {
-        const Member& member = members[at(i)];
+    const auto gain = [&](const Member& member) {
         double sum = 0.0;
         for (const std::int32_t sample : member.footprint) {
             const std::int32_t lack = lacks(sample);
@@ -161,22 +165,21 @@ std::vector<std::int32_t> fill_thin_places(std::span<const Member> members,
     };
     std::vector<std::int32_t> taken;
     std::vector<char> open(allowed.begin(), allowed.end());
+    std::vector<double> gains(members.size(), 0.0);
     while (lacking > most_short * in_reach) {
-        std::int32_t best = -1;
-        double most = 0.0;
-        for (std::int32_t i = 0; at(i) < members.size(); ++i) {
-            const double value = open[at(i)] != 0 ? gain(i) : 0.0;
-            if (value > most) {
-                most = value;
-                best = i;
+        parallel_for(members.size(), kGainChunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                gains[i] = open[i] != 0 ? gain(members[i]) : 0.0;
             }
-        }
-        if (best < 0) {
+        });
+        const auto best = std::max_element(gains.begin(), gains.end());
+        if (best == gains.end() || *best <= 0.0) {
             break;
         }
-        taken.push_back(best);
-        open[at(best)] = 0;
-        for (const std::int32_t sample : members[at(best)].footprint) {
+        const auto member = static_cast<std::size_t>(best - gains.begin());
+        taken.push_back(static_cast<std::int32_t>(member));
+        open[member] = 0;
+        for (const std::int32_t sample : members[member].footprint) {
             lacking -= lacks(sample) == 1 ? 1.0 : 0.0;
             ++layers[at(sample)];
         }
@@ -194,7 +197,7 @@ FirstChoice choose_first(std::span<const Member> members, std::span<const char> 
     if (stage != nullptr) {
         const FibreBound bound =
             bound_fibre({members, allowed, stage->left, reached, nodes, kMostBelow});
-        first.bound = {bound.least_mm, bound.solved_mm, bound.turns_mm};
+        first.least_fibre_mm = bound.least_mm;
         first.courses = whole_courses(bound, 1.0 / stage->stages_left);
         return first;
     }

@@ -10,7 +10,6 @@
 
 #include "winding/laminate/stage_ask.h"
 #include "winding/plan/course.h"
-#include "winding/plan/figures.h"
 
 namespace meshwind {
 
@@ -56,7 +55,7 @@ struct Selection {
 /// Courses to begin with, each the way that it is wound.
 struct FirstChoice {
     std::vector<LaidCourse> courses;
-    std::optional<LeastFibre> bound;  ///< of a stage of a wall
+    std::optional<double> least_fibre_mm;  ///< as in Plan
 };
 
 /// By select_courses(). For a stage of a wall: whole courses for its share of the fractions with

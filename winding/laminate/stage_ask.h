@@ -17,7 +17,8 @@ struct AskedPlaces {
 struct StageAsk {
     AskedPlaces measured;  ///< on which courses are chosen and figures are taken
     AskedPlaces weighed;   ///< others, on which courses are made even (winding/cover/anneal.h)
-    /// Per measured place: all that is still to be laid there, by this stage and those behind it.
+    /// Per measured place: all that is still to be laid there, by this stage and those behind it;
+    /// nothing where it is out of reach.
     std::vector<std::int32_t> left;
     /// This one included; thin places are filled by the last. 0 behind that, where some still lack.
     int stages_left = 1;
@@ -26,7 +27,6 @@ struct StageAsk {
     /// Layers that most of the places which ask for the thinnest wall still want of this stage:
     /// what a pattern may lay everywhere.
     double everywhere = 0.0;
-    bool first = true;  ///< nothing lies there yet
 };
 
 }  // namespace meshwind

@@ -31,14 +31,6 @@ struct FibreUse {
     double turn_share = 0.0;  ///< of all fibre, what lies in turns and is cut off
 };
 
-/// What a library of courses lets expect of a wall, by linear programming (winding/bound/), for all
-/// that is left to be laid.
-struct LeastFibre {
-    double least_mm = 0.0;   ///< no plan of these courses takes less, turns included
-    double solved_mm = 0.0;  ///< the least found, by courses in fractions
-    double turns_mm = 0.0;   ///< of that, fibre in turns
-};
-
 /// Share of a wall in reach that may be thinner than asked for.
 inline constexpr double kMostBelow = 0.01;
 

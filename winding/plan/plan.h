@@ -35,8 +35,9 @@ struct Plan {
     std::vector<PinRing> pins{};       ///< that the turns need, at most one ring per rim
     std::vector<std::int32_t> family;  ///< per course in winding order (families.h)
     WoundAngles angle;                 ///< of the courses
-    std::optional<LeastFibre> bound;   ///< of a stage of a wall
-    Places places;                     ///< of junctions and hoops in the winding order
+    /// Of a stage of a wall: what is left of it takes no less fibre (winding/bound/).
+    std::optional<double> least_fibre_mm;
+    Places places;  ///< of junctions and hoops in the winding order
     PlanDetails details;
     PlanEffort effort;
     bool goes_on = false;     ///< begins where the fibre of the layer before ends

@@ -32,14 +32,14 @@ Member course(std::int32_t first, std::int32_t last, double length_mm, std::int3
 }
 
 struct Problem {
-    std::vector<Member> library;
-    std::vector<char> allowed = std::vector<char>(library.size(), 1);
+    std::vector<Member> members;
+    std::vector<char> allowed = std::vector<char>(members.size(), 1);
     std::vector<std::int32_t> asked = std::vector<std::int32_t>(10, 1);
     std::vector<char> reached = std::vector<char>(asked.size(), 1);
     double most_below = 0.0;
 
     [[nodiscard]] FibreBound bound() const {
-        return bound_fibre({library, allowed, asked, reached, 4, most_below});
+        return bound_fibre({members, allowed, asked, reached, 4, most_below});
     }
 };
 
@@ -50,8 +50,8 @@ double times_laid(const FibreBound& bound, std::size_t i) {
 // Three courses of 100 mm that each cover two thirds: each one half is enough.
 TEST(FibreBound, TakesCoursesInFractions) {
     Problem problem{{course(0, 5, 100.0), course(3, 8, 100.0), course(6, 8, 100.0)}};
-    problem.library[2].footprint = {0, 1, 2, 6, 7, 8};
-    for (Member& member : problem.library) {
+    problem.members[2].footprint = {0, 1, 2, 6, 7, 8};
+    for (Member& member : problem.members) {
         member.end[1] = member.end[0];
         member.end[1].sense = 1;  // back to where it came from
     }
@@ -69,9 +69,9 @@ TEST(FibreBound, TakesCoursesInFractions) {
 // Fibre that is led to the second rim has to come back: a course that covers nothing is laid too.
 TEST(FibreBound, LeadsAsMuchFibreToANodeAsAwayFromIt) {
     Problem problem{{course(0, 9, 100.0), course(0, -1, 70.0)}};
-    std::swap(problem.library[1].end[0].rim, problem.library[1].end[1].rim);
-    ASSERT_EQ(nodes_of(problem.library[0], false).second,
-              nodes_of(problem.library[1], false).first);
+    std::swap(problem.members[1].end[0].rim, problem.members[1].end[1].rim);
+    ASSERT_EQ(nodes_of(problem.members[0], false).second,
+              nodes_of(problem.members[1], false).first);
     const FibreBound bound = problem.bound();
     EXPECT_NEAR(bound.least_mm, 170.0, kNear * 170.0);
     EXPECT_NEAR(times_laid(bound, 1), 1.0, 0.01);
@@ -100,8 +100,8 @@ TEST(FibreBound, AsksNothingOfPlacesOutOfReachAndTakesOnlyWhatIsAllowed) {
 // Twice the layers take twice the fibre, and turns count.
 TEST(FibreBound, GrowsWithTheLayers) {
     Problem problem{{course(0, 5, 90.0, 0, 0), course(4, 9, 90.0, 0, 0)}};
-    problem.library[0].turn_mm = 10.0;
-    problem.library[1].turn_mm = 10.0;
+    problem.members[0].turn_mm = 10.0;
+    problem.members[1].turn_mm = 10.0;
     EXPECT_NEAR(problem.bound().least_mm, 200.0, kNear * 200.0);
     EXPECT_NEAR(problem.bound().turns_mm, 20.0, 1e-6);
     problem.asked.assign(10, 3);
@@ -113,17 +113,17 @@ TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
     constexpr std::uint64_t kSeed = 5;
     Problem problem;
     for (std::uint64_t k = 0; k < 60; ++k) {
-        Member& member = problem.library.emplace_back(course(0, -1, 0.0, 0, 0));
+        Member& member = problem.members.emplace_back(course(0, -1, 0.0, 0, 0));
         member.length_mm = 50.0 + 100.0 * random_unit(kSeed, 3 * k);
         const auto first = static_cast<std::int32_t>(random_bits(kSeed, 3 * k + 1) % 36);
         for (std::int32_t i = first; i < first + 5; ++i) {
             member.footprint.push_back(i);
         }
     }
-    problem.allowed.assign(problem.library.size(), 1);
+    problem.allowed.assign(problem.members.size(), 1);
     problem.asked.assign(40, 0);
     problem.reached.assign(40, 1);
-    for (const Member& member : problem.library) {
+    for (const Member& member : problem.members) {
         for (const std::int32_t sample : member.footprint) {
             problem.asked[static_cast<std::size_t>(sample)] = 2;
         }
@@ -137,7 +137,7 @@ TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
              std::any_of(lacks.begin(), lacks.end(), [](std::int32_t l) { return l > 0; });
              ++draw) {
             const Member& member =
-                problem.library[random_bits(kSeed + 1, trial * 100'000 + draw) % 60];
+                problem.members[random_bits(kSeed + 1, trial * 100'000 + draw) % 60];
             const auto gain = std::count_if(
                 member.footprint.begin(), member.footprint.end(),
                 [&](std::int32_t i) { return lacks[static_cast<std::size_t>(i)] > 0; });

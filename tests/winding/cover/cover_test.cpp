@@ -15,6 +15,7 @@
 #include "tests/support/any_machine.h"
 #include "tests/support/fixtures.h"
 #include "winding/laminate/build_up.h"
+#include "winding/laminate/measure_plan.h"
 
 namespace meshwind {
 namespace {
@@ -24,9 +25,11 @@ using Eigen::Vector3d;
 constexpr double kExtension_mm = 120.0;
 constexpr double kTable_mm = 60.0;
 
-Plan cover(const Mandrel& mandrel, int candidates, int fibres = 1, double min_free_mm = 40.0) {
+Plan cover(const Mandrel& mandrel, int candidates, int fibres = 1, double min_free_mm = 40.0,
+           const StageAsk* stage = nullptr) {
     CoverOptions options;
     options.fibres = fibres;
+    options.stage = stage;
     options.tow.width_mm = 12.0;
     options.tow.friction = 0.25;
     options.turn.extension_mm = kExtension_mm;
@@ -396,6 +399,61 @@ TEST(PlanCover, CoversASecondTime) {
     EXPECT_LT(second.worst_joint_mm, kEdge_mm * kEdge_mm / (8.0 * 30.0));  // the sagitta
     expect_continuous(second);
     expect_books_to_balance(grown, second);
+}
+
+// The branch of the small tee leaves its run of 30 mm along x.
+bool on_branch(const Eigen::Vector3d& position_mm) {
+    return position_mm.x() > 45.0;
+}
+
+// A stage that asks for two layers on the branch or on the run, and for none elsewhere.
+StageAsk ask_of_tee(bool branch) {
+    const auto asked = [&](Stream stream) {
+        AskedPlaces places;
+        const CoverageSamples samples = plan_samples(tee().surface, 12.0, 1, stream);
+        places.at = samples.at;
+        for (const Eigen::Vector3d& position : samples.position_mm) {
+            places.layers.push_back(on_branch(position) == branch ? 2 : 0);
+        }
+        return places;
+    };
+    StageAsk ask;
+    ask.measured = asked(Stream::Sampling);
+    ask.weighed = asked(Stream::Ground);
+    ask.left = ask.measured.layers;
+    return ask;
+}
+
+// Layers on the branch over those on the run, by the middles of the triangles.
+double branch_over_run(const Plan& plan) {
+    std::array<double, 2> layers{};
+    std::array<double, 2> wall_mm2{};
+    const Surface& surface = tee().surface;
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const SurfacePoint middle{.face = static_cast<std::int32_t>(f)};
+        const std::size_t where = on_branch(position_mm(surface, middle)) ? 1 : 0;
+        const double mm2 = area_mm2(surface.position_mm, surface.face[f]);
+        wall_mm2[where] += mm2;
+        layers[where] += mm2 * plan.face_layers[f];
+    }
+    return layers[1] / wall_mm2[1] / (layers[0] / wall_mm2[0]);
+}
+
+// Fibre goes where layers lack. Courses to the branch cross the run, so not all of it can.
+TEST(PlanCover, AStageLaysFibreWhereItIsAsked) {
+    const StageAsk for_branch = ask_of_tee(true);
+    const StageAsk for_run = ask_of_tee(false);
+    const Plan branch = cover(tee(), 2000, 1, 40.0, &for_branch);
+    const Plan run = cover(tee(), 2000, 1, 40.0, &for_run);
+    ASSERT_EQ(branch.failure, "");
+    ASSERT_EQ(run.failure, "");
+    EXPECT_GT(branch_over_run(branch), 1.5 * branch_over_run(run));
+    for (const Plan* plan : {&branch, &run}) {
+        EXPECT_EQ(plan->reached.size(), for_run.measured.at.size());
+        ASSERT_TRUE(plan->least_fibre_mm.has_value());
+        EXPECT_GT(*plan->least_fibre_mm, 0.0);
+        EXPECT_LT(*plan->least_fibre_mm, plan->fibre_length_mm);
+    }
 }
 
 // A cylinder that goes over into a cone at a sharp convex edge and back at a sharp concave one:
