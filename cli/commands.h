@@ -36,7 +36,7 @@ struct WindArguments {
     std::string machine = "six_axis.json";
     JobArguments job;
     std::string out = "meshwind-out";
-    int effort = 1;
+    double effort = 1.0;
     PreviewOptions png;
 };
 

@@ -111,9 +111,9 @@ void add_wind_options(CLI::App& app, WindArguments& options, bool required) {
         ->capture_default_str();
     app.add_option("--effort", options.effort,
                    "how long the plan is improved: 4 takes about 4 times as long as 1, and saves "
-                   "fibre")
+                   "fibre; 0.1 is for a first look")
         ->type_name("N")
-        ->check(CLI::Range(1, 1000))
+        ->check(CLI::Range(0.01, 1000.0))
         ->capture_default_str();
     add_png(app, options.png);
 }

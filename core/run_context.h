@@ -10,7 +10,7 @@ namespace meshwind {
 /// A run is ended from outside by core/interrupt.h; core/parallel.h has the number of threads.
 struct RunContext {
     std::uint64_t seed = 1;  ///< of every random draw
-    int effort = 1;          ///< how long plans are improved, as a multiple
+    double effort = 1.0;     ///< how long plans are improved, as a multiple
     /// Called when a step begins or goes on, with the share of it that is done, 0 .. 1.
     std::function<void(const std::string& step, double share)> progress{};
     /// Called at once with what whoever waits should know, a line each.

@@ -42,7 +42,7 @@ def _entry(name, meaning, group):
     kind, _, bounds = kind.partition(":")
     choices = bounds[1:-1].split(",") if bounds.startswith("{") else []
     span = ""
-    if between := re.fullmatch(r"INT in \[(\d+) - (\d+)\]", bounds):
+    if between := re.fullmatch(r"(?:INT|FLOAT) in \[([\d.]+) - ([\d.]+)\]", bounds):
         span = f"{between[1]} to {between[2]}"
     elif bounds == "POSITIVE":
         span = "above 0"

@@ -199,6 +199,7 @@ TriedPlan plan_cover_layer(const LayerTask& task) {
     cover.context = task.options.context;
     cover.least_covered = task.options.least_covered;
     cover.stage = task.options.stage;
+    cover.most_bare = task.setup.job.tolerance.bare;
     return plan_cover(setup.mandrel, *setup.obstacles, cover, &task.machine);
 }
 

@@ -12,7 +12,8 @@
 
 namespace meshwind {
 
-/// Share of the reachable wall that a plan must cover to count as one.
+/// Share of the wall that a pattern must cover for `auto` to take it, and of what is in reach that
+/// a plan comes near to winding it.
 inline constexpr double kCoveredShare = 0.9;
 
 struct LayerPlanOptions {

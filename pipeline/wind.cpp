@@ -289,7 +289,8 @@ private:
 
     void end_wall() {
         const WoundWall& wall = run_.walls.back();
-        Check& check = run_.checks.emplace_back(wall_check(wall.figures));
+        const double most_below = run_.layers.back().setup.job.tolerance.bare;
+        Check& check = run_.checks.emplace_back(wall_check(wall.figures, most_below));
         check.name += layer_suffix(wall.first);
         wall_.reset();
     }

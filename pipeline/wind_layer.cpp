@@ -200,7 +200,7 @@ private:
             return;
         }
         const Coverage& coverage = layer_.plan.coverage;
-        const double limit = kCoveredShare * coverage.reachable;
+        const double limit = std::max(0.0, coverage.reachable - layer_.setup.job.tolerance.bare);
         Check check(check_kind::kCoverage, coverage.fraction >= limit);
         check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
         check.place = barest_place();

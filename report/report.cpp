@@ -439,6 +439,11 @@ void add_layer_report(json& report, const WoundLayer& layer, bool written) {
     const FibreUse use = use_of_fibre(layer);
     if (layer.job.kind != LayerKind::Wall) {  // whose stages count together
         report["plan"]["fibre_factor"] = report_number(use.factor);
+        const double least_mm = layer.plan.least_fibre_mm.value_or(0.0);
+        if (least_mm > 0.0 && layer.plan.fibre_length_mm > 0.0) {
+            report["plan"]["bound"] =
+                bound_report(use.factor * least_mm / layer.plan.fibre_length_mm, use.factor);
+        }
     }
     report["plan"]["turn_share"] = report_number(use.turn_share);
     if (!layer.no_pattern.empty()) {

@@ -110,9 +110,7 @@ json wall_report(const WoundWall& wall) {
                    {"fibre_factor", report_number(figures.fibre_factor)},
                    {"thin", thin}};
     if (figures.least_factor > 0.0) {
-        report["bound"] = {
-            {"least_factor", report_number(figures.least_factor)},
-            {"gap", report_number(figures.fibre_factor / figures.least_factor - 1.0)}};
+        report["bound"] = bound_report(figures.least_factor, figures.fibre_factor);
     }
     return report;
 }
@@ -152,6 +150,11 @@ LayerFigures figures_of(const WoundLayer& layer) {
         plan.fibre_length_mm * tow.width_mm * tow.thickness_mm / kMm3PerCm3 * tow.density_g_cm3;
     figures.time_s = layer.duration_s();
     return figures;
+}
+
+json bound_report(double least_factor, double factor) {
+    return {{"least_factor", report_number(least_factor)},
+            {"gap", report_number(factor / least_factor - 1.0)}};
 }
 
 void add_walls_report(json& report, const Run& run) {

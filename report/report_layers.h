@@ -27,6 +27,9 @@ struct LayerFigures {
 /// figures.
 void add_laminate_report(nlohmann::json& report, const Run& run);
 
+/// How little fibre would do, and by what share more is laid. \param factors as FibreUse has them
+[[nodiscard]] nlohmann::json bound_report(double least_factor, double factor);
+
 /// Adds "walls": those of the job's layers that are walls, as they lie there.
 void add_walls_report(nlohmann::json& report, const Run& run);
 

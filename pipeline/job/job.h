@@ -14,6 +14,7 @@
 #include "mesh/mandrel.h"
 #include "pipeline/job/turn_kinds.h"
 #include "postproc/eye/eye_rules.h"
+#include "winding/plan/figures.h"
 #include "winding/revolution/pattern_wish.h"
 #include "winding/turn/pin_turn.h"
 
@@ -116,6 +117,7 @@ struct Job {
         double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways
         double laydown_angle_deg = 0.3;  ///< > 0; and in direction
         double clearance_mm = 5.0;       ///< >= 0; machine and free fibre against mandrel
+        double bare = kMostBelow;  ///< 0 .. 1; share of the wall in reach that may lack layers
     };
     struct SpeedJob {
         double fibre_m_min = 30.0;  ///< > 0

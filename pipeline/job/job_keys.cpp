@@ -200,6 +200,9 @@ const KeyTable<Job::ToleranceJob>& tolerance_keys() {
                "degrees between the directions of laid and planned fibre"),
         number("clearance", &Owner::clearance_mm, kClearanceRange,
                "mm between machine or free fibre and mandrel"),
+        number(
+            "bare", &Owner::bare, kShareRange,
+            "share of the wall in reach that a layer may leave bare, or a wall thinner than asked"),
     }};
     return kTable;
 }

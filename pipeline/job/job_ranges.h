@@ -31,6 +31,7 @@ inline constexpr JsonRange kAlongRange = {.min = 0.0, .max = 1e9};
 inline constexpr JsonRange kPlaneRange = {.min = -100'000.0, .max = 100'000.0};
 
 inline constexpr JsonRange kDeviationRange = {.min = 1e-6, .max = 1'000.0};  ///< mm or deg
+inline constexpr JsonRange kShareRange = {.min = 0.0, .max = 1.0};
 inline constexpr JsonRange kClearanceRange = {.min = 0.0, .max = 10'000.0};  ///< mm
 inline constexpr JsonRange kSpeedRange = {.min = 1e-3, .max = 10'000.0};     ///< m/min
 

@@ -26,9 +26,9 @@ constexpr double kMostLayersOfAStage = 6.0;
 // Stages behind those, which fill the last thin places.
 constexpr int kMendingStages = 2;
 
-// An even cover of one layer has one more on average. Where more are laid they vary as the root of
-// their number.
-constexpr double kBeyondOfRoot = 0.5;
+// Of the share that may be thinner, what is once thin places are filled: a wall is judged by
+// others, and courses are given up later.
+constexpr double kFilledTo = 0.65;
 
 // Of the places that ask for the thinnest wall, share that asks for no more than a pattern lays:
 // where bands overlap and on domes more lies than was asked for.
@@ -185,6 +185,7 @@ WallStages::WallStages(const Mandrel& bare, const Job& job, std::size_t index, s
                        const std::filesystem::path& job_file)
     : tow_width_mm_(job.tow.width_mm),
       tow_thickness_mm_(job.tow.thickness_mm),
+      most_below_(job.tolerance.bare),
       area_mm2_(area_mm2({bare.surface.position_mm, bare.surface.face})) {
     const AskedWall asked(bare, job, index, job_place(job_file, index));
     measured_ = places_of(bare.surface, asked, tow_width_mm_, seed, Stream::Sampling);
@@ -203,8 +204,8 @@ WallStages::WallStages(const Mandrel& bare, const Job& job, std::size_t index, s
 }
 
 bool WallStages::done() const {
-    return stages_ >= planned_stages_ &&
-           (in_vain_ || below_share() <= kMostBelow || stages_ >= planned_stages_ + kMendingStages);
+    return stages_ >= planned_stages_ && (in_vain_ || below_share() <= most_below_ ||
+                                          stages_ >= planned_stages_ + kMendingStages);
 }
 
 AskedPlaces WallStages::asked_of(const WallPlaces& places) const {
@@ -224,8 +225,8 @@ StageAsk WallStages::next() const {
     ask.measured = asked_of(measured_);
     ask.weighed = asked_of(weighed_);
     ask.stages_left = std::max(0, planned_stages_ - stages_);
-    ask.beyond_layers =
-        ask.stages_left > 1 ? 0.0 : std::max(1.0, kBeyondOfRoot * std::sqrt(most_asked_));
+    ask.filled_to = kFilledTo * most_below_;
+    ask.beyond_layers = ask.stages_left > 1 ? 0.0 : beyond_even_layers(most_asked_);
     const std::int32_t thinnest = *std::min_element(measured_.asked.begin(), measured_.asked.end());
     std::vector<double> layers;
     for (std::size_t i = 0; i < measured_.at.size(); ++i) {
@@ -344,10 +345,10 @@ void require_wall(const Mandrel& bare, const Job& job, std::size_t index,
     const AskedWall asked(bare, job, index, job_place(job_file, index));
 }
 
-Check wall_check(const WallFigures& figures) {
-    Check check(check_kind::kWall, figures.below_share <= kMostBelow);
+Check wall_check(const WallFigures& figures, double most_below) {
+    Check check(check_kind::kWall, figures.below_share <= most_below);
     check.numbers = {{"below", figures.below_share},
-                     {"limit", kMostBelow},
+                     {"limit", most_below},
                      {"mean", figures.mean_ratio},
                      {"p1", figures.p1_ratio}};
     if (!figures.thin.empty()) {

@@ -89,6 +89,7 @@ private:
     std::vector<Eigen::Vector3d> position_mm_;  // per judged place, on the bare wall
     double tow_width_mm_;
     double tow_thickness_mm_;
+    double most_below_;
     double area_mm2_;
     WallPlaces measured_;
     WallPlaces weighed_;
@@ -108,7 +109,7 @@ private:
 void require_wall(const Mandrel& bare, const Job& job, std::size_t index,
                   const std::filesystem::path& job_file);
 
-/// Check "wall": at most kMostBelow of what is reachable is below what was asked for.
-[[nodiscard]] Check wall_check(const WallFigures& figures);
+/// Check "wall": at most a share of what is reachable is below what was asked for.
+[[nodiscard]] Check wall_check(const WallFigures& figures, double most_below);
 
 }  // namespace meshwind

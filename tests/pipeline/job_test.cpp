@@ -67,7 +67,8 @@ TEST(Job, DefaultsAreThePublishedOnes) {
               "  \"fibres\":1,\n"
               "  \"eye\":{\"rule\":\"adaptive\", \"free_length\":200},\n"
               "  \"redundancy\":\"optimal\",\n"
-              "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5},\n"
+              "  \"tolerance\":{\"laydown\":0.2, \"laydown_angle\":0.3, \"clearance\":5, "
+              "\"bare\":0.01},\n"
               "  \"speed\":{\"fibre\":30} }\n");
 }
 

@@ -125,7 +125,8 @@ TEST(WallStages, CountWhatAPatternLays) {
     // Circuits are a whole number, which may be a quarter more.
     EXPECT_LE(figures.mean_ratio, 1.25);
     EXPECT_NEAR(figures.fibre_mm, plan.fibre_length_mm, 1e-9);
-    EXPECT_TRUE(wall_check(figures).ok);
+    EXPECT_TRUE(wall_check(figures, kMostBelow).ok);
+    EXPECT_EQ(wall_check(figures, 0.0).ok, figures.below_share == 0.0);
 }
 
 TEST(WallStages, SayWhatLacks) {
@@ -141,7 +142,7 @@ TEST(WallStages, SayWhatLacks) {
     EXPECT_EQ(figures.mean_ratio, 0.0);
     ASSERT_EQ(figures.thin.size(), 1U);
     EXPECT_NEAR(figures.thin.front().most_lacking_mm, 8 * 0.25, 1e-12);
-    const Check check = wall_check(figures);
+    const Check check = wall_check(figures, kMostBelow);
     EXPECT_FALSE(check.ok);
     EXPECT_EQ(check.numbers.at("below"), 1.0);
     EXPECT_EQ(check.numbers.at("limit"), kMostBelow);

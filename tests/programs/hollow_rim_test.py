@@ -14,7 +14,7 @@ from pathlib import Path
 
 PROGRAM = sys.argv[1]
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-COUNT = int(sys.argv[4]) if len(sys.argv) > 4 else 6
+COUNT = int(sys.argv[4]) if len(sys.argv) > 4 else 4
 
 # Reported: laydown 0.43 deg just before the narrow rim, of 0.3.
 REPORTED = {"radii": (98.0, 54.0), "length": 120.0, "angle": 30.0, "tow": 6.0, "friction": 0.4, "extension": 300.0,
@@ -38,7 +38,7 @@ def wind(case, folder):
     assert made.returncode == 0, made.stderr
     job.write_text(json.dumps({"layers": [{"kind": "helical", "angle": case["angle"]}],
                                "tow": {"width": case["tow"], "friction": case["friction"]},
-                               "mandrel": {"extension": case["extension"]}}))
+                               "mandrel": {"extension": case["extension"]}, "redundancy": "central-angle"}))
     done = subprocess.run([PROGRAM, str(cone), "--machine", "six_axis.json", "--job", str(job), "-o", str(out)],
                           capture_output=True, text=True)
     assert done.returncode in (0, 1), (case, done.stderr)

@@ -16,7 +16,7 @@ PARTS = {"cylinder": ("--radius", 20, "--length", 60, "--edge", 8),
 MACHINES = ("six_axis.json", "four_axis.json", "hobby_grbl.json")
 KINDS = ("auto", "helical", "hoop", "polar", "cover")
 # Never drawn tiny: ten thousand circuits are right, and take their time.
-SLOW = {("tow", "width"): 2.0, ("layers", "target_layers"): 0.001}
+SLOW = {("tow", "width"): 5.0, ("layers", "target_layers"): 0.001}
 
 
 def ends_of(key, rule):
@@ -45,7 +45,7 @@ class JobLimits(program.ProgramTest):
     def ends_well(self, part, machine, job):
         file = self.write("job.json", json.dumps(job))
         result = self.run_program(part, "--machine", machine, "--job", file, "--quiet",
-                                  "-o", self.folder / "out")
+                                  "--effort", 0.1, "-o", self.folder / "out")
         what = f"{part.name} {machine} {json.dumps(job)}\n{result.stderr}"
         self.assertIn(result.returncode, (0, 1, 2), what)
         if result.returncode:

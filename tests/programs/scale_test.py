@@ -15,7 +15,7 @@ PROGRAM, PROJECT = sys.argv[1], Path(sys.argv[2])
 # The cone's upper rim is a hollow with its extension.
 PARTS = {"cylinder": {"radius": 50.0, "length": 200.0}, "cone": {"radius1": 60.0, "radius2": 40.0, "length": 150.0}}
 # The first is what the others are held against. A tenth is between the ends: for one of the parts.
-SCALES = {"cylinder": (1.0, 0.05, 10.0), "cone": (1.0, 0.05, 0.1, 10.0)}
+SCALES = {"cylinder": (1.0, 0.05, 10.0), "cone": (1.0, 0.1)}
 
 # Shares of the wall: samples of its own for each size.
 SAME_SHARE = 0.005
@@ -44,7 +44,7 @@ def job_at(by):
     return {"layers": [{"kind": "helical", "angle": 45}],
             "tow": {"width": 6.0 * by, "thickness": 0.25 * by, "friction": 0.4, "bridging_tolerance": 0.5 * by},
             "mandrel": {"extension": 150.0 * by, "units": "mm"}, "tolerance": {"laydown": 0.2 * by, "clearance": 5.0 * by},
-            "eye": {"free_length": 200.0 * by}, "speed": {"fibre": 30.0 * by}}
+            "eye": {"free_length": 200.0 * by}, "speed": {"fibre": 30.0 * by}, "redundancy": "central-angle"}
 
 
 def wind(folder, kind, sizes, edge, job, machine):

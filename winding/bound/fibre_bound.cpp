@@ -151,7 +151,7 @@ private:
 
     [[nodiscard]] double cost(const Column& column) const {
         const Member& member = task_.members[at(column.member)];
-        return member.length_mm + member.turn_mm;
+        return member.length_mm + member.turn_mm + task_.off_angle_cost * member.off_angle_mm;
     }
 
     void add(LinearProgramme& programme, Column& column) const {

@@ -19,6 +19,9 @@ struct BoundTask {
     std::size_t nodes = 0;                ///< 2 for each rim
     /// Share of the samples that may have less than they ask for.
     double most_below = 0.0;
+    /// Fibre off the wanted winding angle costs as so much more of it; above 0 the bound is one of
+    /// costs, not of fibre.
+    double off_angle_cost = 0.0;
 };
 
 struct FibreBound {

@@ -28,8 +28,7 @@ struct AnnealOptions {
     /// as the chance falls: first all is made even, then the last holes are closed.
     double bare_hot = 45.0;
     double bare_cold = 180.0;
-    /// What fibre in turns costs, against 1 for a layer too many. Of 0.1, 0.4, 1, 1.5 and 3 this
-    /// left the least fibre on four tees and wyes that were covered as well as before.
+    /// What fibre in turns costs, against 1 for a layer too many.
     double turn_share = 1.5;
     /// True where courses may lead; empty: anywhere.
     std::function<bool(const NodePair&)> way{};

@@ -30,7 +30,7 @@ namespace {
 
 // Proposals of the annealing at an effort of 1, and of each that follows where courses had to be
 // given up.
-constexpr std::int64_t kProposals = 30'000;
+constexpr double kProposals = 30'000.0;
 constexpr std::int64_t kMendingProposals = 4'000;
 
 // Routes of so many fibres are looked for, at most.
@@ -47,22 +47,23 @@ constexpr std::size_t kMostSpares = 200;
 // Where courses reach less of the wall nothing is planned: what comes of it is no part.
 constexpr double kWorthPlanning = 0.5;
 
-// In stages of a wall fibre in turns is dearer than in a cover of its own, a layer short of the
-// target too in the last one, and cheaper where later stages fill thin places.
-constexpr double kWallTurnShare = 6.0;
+// What a layer short of the target costs, of AnnealOptions: in the last stage of a wall, and in
+// those whose thin places are filled later.
 constexpr double kLastBare = 2.0;
 constexpr double kEarlyBare = 0.3;
 
-// Share of the wall in reach that may stay short once thin places are filled, less than in the end
-// for courses given up later; what does not hold makes room for others so many times.
-constexpr double kShareFilledTo = 0.65 * kMostBelow;
+// What does not hold of the courses that fill thin places makes room for others so many times.
 constexpr int kMostFills = 10;
 
-// Courses that come of the bound are moved, but not thrown about: AnnealOptions::hot.
+// Courses that come of the bound are moved, but not thrown about, and keep short turns: values of
+// AnnealOptions. Its own are for a wanted winding angle, which takes other courses.
 constexpr double kStartedHot = 0.02;
+constexpr double kStartedTurnShare = 6.0;
 
-// Attempts that refuse as many courses as before, or more, before no others are put there.
+// Attempts that refuse as many courses as before, or more, before no others are put there; none are
+// before the last attempts either.
 constexpr int kMostInVain = 2;
+constexpr int kAttemptsWithoutOthers = 2;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
@@ -75,8 +76,12 @@ public:
         : mandrel_(mandrel),
           options_(options),
           machine_(machine),
+          stage_(options.stage != nullptr
+                     ? *options.stage
+                     : whole_cover(mandrel.surface, options.tow.width_mm, options.context.seed,
+                                   options.select.target_layers, options.most_bare)),
           select_(options.select),
-          samples_(samples(options.stage ? &options.stage->measured : nullptr, Stream::Sampling)),
+          samples_(samples_at(mandrel.surface, stage_.measured.at)),
           footprints_(mandrel.surface, samples_, options.tow.width_mm),
           lifted_(mandrel.surface),
           rules_{mandrel,
@@ -91,9 +96,7 @@ public:
         rules_.angle_rad = options.angle_rad;
         rules_.lifted = &lifted_;
         rules_.free_fibre.clearance_mm += margin::kCandidates_mm;
-        if (options.stage != nullptr) {
-            select_.targets = options.stage->measured.layers;
-        }
+        select_.targets = stage_.measured.layers;
         plan_.planner = Planner::Cover;
         plan_.effort.seed = options.context.seed;
         plan_.effort.effort = options.context.effort;
@@ -113,13 +116,12 @@ public:
             rejection_.assign(members_.size(), Rejection::NotPlanned);
             return fail(hardly_reachable());
         }
-        ground_.emplace(
-            rules_, samples(options_.stage ? &options_.stage->weighed : nullptr, Stream::Ground),
-            samples_, members_);
+        ground_.emplace(rules_, samples_at(mandrel_.surface, stage_.weighed.at), samples_,
+                        members_);
         library_size_ = members_.size();
         allowed_.assign(members_.size(), 1);
         rejection_.assign(members_.size(), Rejection::None);
-        if (options_.stage != nullptr && options_.stage->stages_left > 0) {
+        if (stage_.stages_left > 0) {
             confirm_reach();
         }
         find_routes();
@@ -144,13 +146,6 @@ private:
         plan_.failure = std::move(words);
         describe_uncovered();
         return {std::move(plan_), nullptr};
-    }
-
-    // Those of a stage, or as a plan of its own has them.
-    [[nodiscard]] CoverageSamples samples(const AskedPlaces* stage, Stream stream) const {
-        return stage != nullptr ? samples_at(mandrel_.surface, stage->at)
-                                : plan_samples(mandrel_.surface, options_.tow.width_mm,
-                                               options_.context.seed, stream);
     }
 
     void tell(const char* step, double share) const {
@@ -221,12 +216,12 @@ private:
     }
 
     // Fibres that no route needs may go from stage to stage by other courses than the links.
-    [[nodiscard]] bool fibres_to_spare() const {
-        return static_cast<std::size_t>(options_.fibres) > std::max<std::size_t>(1, routes_.size());
-    }
+    [[nodiscard]] bool fibres_to_spare() const { return options_.fibres > fibres_needed(); }
+
+    [[nodiscard]] int fibres_needed() const { return std::max(1, int(routes_.size())); }
 
     [[nodiscard]] int fibres() const {
-        return fibres_to_spare() ? options_.fibres : std::max(1, static_cast<int>(routes_.size()));
+        return fibres_to_spare() ? options_.fibres : fibres_needed();
     }
 
     [[nodiscard]] bool on_a_route(const NodePair& nodes) const {
@@ -251,12 +246,12 @@ private:
     // Those to begin with that hold.
     void choose() {
         FirstChoice first = choose_first(members_, allowed_, library_.reached,
-                                         2 * mandrel_.rims.size(), select_, options_.stage);
+                                         2 * mandrel_.rims.size(), select_, stage_);
         plan_.least_fibre_mm = first.least_fibre_mm;
         for (const LaidCourse& course : first.courses) {
             courses_.push_back(placed(course.member, course.backward));
         }
-        keep_proven();
+        keep_proven(false);
     }
 
     // Places that no course which holds passes are not in reach.
@@ -277,16 +272,18 @@ private:
 
     [[nodiscard]] PlacedCourse placed(std::int32_t member, bool backward) const {
         const Member& course = members_[at(member)];
-        return {course, trace_both_ways(rules_, course.candidate, TraceMethod::Walk), backward,
-                false};
+        PlacedCourse placed{course, trace_both_ways(rules_, course.candidate, TraceMethod::Walk),
+                            backward};
+        placed.of_library = member;
+        return placed;
     }
 
-    // \param members that the courses are, where those that do not hold are not to be tried again
-    void keep_proven(std::span<const std::int32_t> members = {}) {
+    // \param to_stay their own programs are wound as well
+    void keep_proven(bool to_stay) {
         std::vector<Rejection> found(courses_.size());
         tell("prove", 0.0);
         parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
-            found[i] = members.empty() ? prove(courses_[i]) : prove_and_wind(courses_[i]);
+            found[i] = to_stay ? prove_and_wind(courses_[i]) : prove(courses_[i]);
         });
         std::vector<PlacedCourse> proven;
         for (std::size_t i = 0; i < found.size(); ++i) {
@@ -294,8 +291,7 @@ private:
                 proven.push_back(std::move(courses_[i]));
                 continue;
             }
-            members.empty() ? note_refused(courses_[i].member, found[i])
-                            : strike_off(at(members[i]), found[i]);
+            refuse(courses_[i], found[i]);
         }
         courses_ = std::move(proven);
     }
@@ -303,19 +299,20 @@ private:
     void anneal_proven(bool mending) {
         AnnealOptions annealing;
         annealing.select = select_;
-        if (options_.stage != nullptr) {
-            const double bare = last_stage() ? kLastBare : kEarlyBare;
-            annealing.select.targets = options_.stage->weighed.layers;
-            annealing.beyond_layers = options_.stage->beyond_layers;
-            annealing.bare_hot *= bare;
-            annealing.bare_cold *= bare;
+        annealing.select.targets = stage_.weighed.layers;
+        annealing.beyond_layers = stage_.beyond_layers;
+        const double bare = last_stage() ? kLastBare : kEarlyBare;
+        annealing.bare_hot *= bare;
+        annealing.bare_cold *= bare;
+        if (!options_.angle_rad) {
             annealing.hot = kStartedHot;
-            annealing.turn_share = kWallTurnShare;
+            annealing.turn_share = kStartedTurnShare;
         }
         annealing.fibres = fibres();
         annealing.fibre_share = fibres_to_spare() ? kDearFibre : annealing.fibre_share;
         annealing.seed = seed_of(Stream::Annealing, options_.context.seed) + (++annealings_ << 32U);
-        annealing.proposals = mending ? kMendingProposals : options_.context.effort * kProposals;
+        annealing.proposals =
+            mending ? kMendingProposals : std::llround(options_.context.effort * kProposals);
         if (mending) {
             annealing.hot = annealing.cold;
             annealing.bare_hot = annealing.bare_cold;
@@ -338,13 +335,11 @@ private:
         plan_.effort.taken += effort.accepted;
     }
 
-    [[nodiscard]] bool last_stage() const {
-        return options_.stage && options_.stage->stages_left < 2;
-    }
+    [[nodiscard]] bool last_stage() const { return stage_.stages_left < 2; }
 
     // The last thin places take courses for their sake. Behind the last stage nothing is made even.
     void improve() {
-        if (options_.stage == nullptr || options_.stage->stages_left > 0) {
+        if (stage_.stages_left > 0) {
             anneal_proven(false);
         }
         if (last_stage()) {
@@ -353,19 +348,13 @@ private:
     }
 
     // In place of courses given up. Annealing would take out again what fills thin places.
-    void replace_lost() {
-        if (last_stage()) {
-            fill();
-        } else {
-            anneal_proven(true);
-        }
-    }
+    void replace_lost() { last_stage() ? fill() : anneal_proven(true); }
 
     void fill() {
         for (int round = 0; round < kMostFills; ++round) {
             const std::vector<std::int32_t> members = fill_thin_places(
                 std::span(members_).first(library_size_), allowed_, library_.reached,
-                layers_of(courses_, samples_.size()), select_, kShareFilledTo);
+                layers_of(courses_, samples_.size()), select_, stage_.filled_to);
             if (members.empty()) {
                 return;
             }
@@ -373,7 +362,7 @@ private:
             for (const std::int32_t i : members) {
                 courses_.push_back(placed(i, !members_[at(i)].windable_forward));
             }
-            keep_proven(members);
+            keep_proven(true);
             std::move(courses_.begin(), courses_.end(), std::back_inserter(before));
             courses_ = std::move(before);
         }
@@ -417,8 +406,18 @@ private:
         };
         const auto strike = [this](std::size_t member, Rejection why) { strike_off(member, why); };
         joiner_.join({members_, library_size_, std::span(allowed_).first(library_size_),
-                      mandrel_.rims.size(), samples_.size(), select_, fibres, place, strike},
+                      mandrel_.rims.size(), samples_.size(), select_,
+                      std::min(fibres, fibres_needed()), fibres, place, strike},
                      courses_);
+    }
+
+    // It is not tried again.
+    void refuse(const PlacedCourse& course, Rejection reason) {
+        if (course.of_library < 0) {
+            note_refused(course.member, reason);
+        } else if (allowed_[at(course.of_library)] != 0) {
+            strike_off(at(course.of_library), reason);
+        }
     }
 
     void strike_off(std::size_t member, Rejection reason) {
@@ -481,7 +480,7 @@ private:
                 least = refused.size();
             }
             give_up(refused);
-            if (in_vain < kMostInVain) {
+            if (in_vain < kMostInVain && attempt + kAttemptsWithoutOthers < kMostAttempts) {
                 replace_lost();
             }
         }
@@ -500,7 +499,7 @@ private:
             const auto& [index, reason] = refused[k];
             const PlacedCourse course = std::move(courses_[index]);
             courses_.erase(courses_.begin() + static_cast<std::ptrdiff_t>(index));
-            note_refused(course.member, reason);
+            refuse(course, reason);
             if (course.link >= 0) {
                 replace_link(course.link);
             }
@@ -536,7 +535,7 @@ private:
         describe_courses(mandrel_.surface, options_.tow.width_mm, options_.angle_rad, plan_);
     }
 
-    // Of a stage it is its wall that says where it is thin.
+    // Of a stage of a wall it is the wall that says where it is thin.
     void describe_uncovered() {
         if (options_.stage != nullptr) {
             plan_.reached = library_.reached;
@@ -555,6 +554,7 @@ private:
     const Mandrel& mandrel_;
     const CoverOptions& options_;
     const Windability* machine_;
+    StageAsk stage_;
     SelectOptions select_;
     CoverageSamples samples_;
     FootprintFinder footprints_;

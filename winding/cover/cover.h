@@ -7,6 +7,7 @@
 #include "winding/cover/library.h"
 #include "winding/cover/select.h"
 #include "winding/laminate/stage_ask.h"
+#include "winding/plan/figures.h"
 #include "winding/plan/windability.h"
 
 namespace meshwind {
@@ -24,6 +25,7 @@ struct CoverOptions {
     int fibres = 1;                     ///< that the plan may take, >= 1
     std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
     RunContext context{};               ///< `effort`: how long courses are annealed
+    double most_bare = kMostBelow;      ///< share of the wall in reach; what of it lacks layers
     double least_covered = 0.0;         ///< of the wall in reach; what covers less fails, not wound
     int candidates = 16000;             ///< tried over the whole surface
     int rounds = 3;                     ///< of further candidates aimed at what is not reached yet

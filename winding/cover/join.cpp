@@ -5,12 +5,16 @@
 
 #include "core/parallel.h"
 #include "winding/cover/balance.h"
+#include "winding/laminate/coverage.h"
 
 namespace meshwind {
 namespace {
 
 // Times that courses are added to join the others, each time some that the machine refuses.
 constexpr int kMaxJoins = 200;
+
+// Share of the wall for which a further fibre is tied on.
+constexpr double kWorthAFibre = 0.002;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
@@ -27,6 +31,19 @@ void gather(std::span<const PlacedCourse> courses, std::size_t library_size,
 }
 
 void CourseJoiner::join(const JoinTask& task, std::vector<PlacedCourse>& courses) {
+    const auto covered = [&] {
+        return measure_coverage(layers_of(courses, task.samples)).fraction;
+    };
+    std::vector<PlacedCourse> before = courses;
+    const double covered_before = covered();
+    join_to(task, task.fibres, courses);
+    if (task.fibres < task.most_fibres && covered() + kWorthAFibre < covered_before) {
+        courses = std::move(before);
+        join_to(task, task.most_fibres, courses);
+    }
+}
+
+void CourseJoiner::join_to(const JoinTask& task, int fibres, std::vector<PlacedCourse>& courses) {
     for (int attempt = 0; attempt < kMaxJoins; ++attempt) {
         gather(courses, task.library_size, task.members);
         std::vector<char> allowed(task.allowed.begin(), task.allowed.end());
@@ -37,7 +54,7 @@ void CourseJoiner::join(const JoinTask& task, std::vector<PlacedCourse>& courses
             selection.chosen.push_back(static_cast<std::int32_t>(i));
         }
         const std::vector<LaidCourse> laid =
-            balance_courses(task.members, allowed, task.rims, task.select, task.fibres, selection);
+            balance_courses(task.members, allowed, task.rims, task.select, fibres, selection);
         if (take_proven(task, laid, courses)) {
             return;
         }

@@ -22,7 +22,8 @@ struct JoinTask {
     std::size_t rims = 0;
     std::size_t samples = 0;
     const SelectOptions& select;
-    int fibres = 1;
+    int fibres = 1;       ///< that are needed
+    int most_fibres = 1;  ///< that are taken where they cover more
     /// Puts a member of the library in its place and proves it. Thread-safe.
     std::function<Rejection(const LaidCourse&, PlacedCourse&)> place;
     /// Told of an allowed member that holds neither way.
@@ -41,6 +42,7 @@ public:
     void join(const JoinTask& task, std::vector<PlacedCourse>& courses);
 
 private:
+    void join_to(const JoinTask& task, int fibres, std::vector<PlacedCourse>& courses);
     [[nodiscard]] bool take_proven(const JoinTask& task, std::span<const LaidCourse> laid,
                                    std::vector<PlacedCourse>& courses);
 

@@ -20,8 +20,6 @@ struct SelectOptions {
     /// What a sample already covered costs against what a new one earns: fibre laid over fibre is
     /// wasted and makes the wall uneven.
     double overlap_weight = 0.35;
-    /// A course that adds less than this share of its own area is not worth its turn.
-    double least_gain_share = 0.01;
     /// What fibre off the wanted winding angle costs, against 1 for a layer too many.
     double angle_weight = 4.0;
 
@@ -36,15 +34,6 @@ struct Selection {
     std::vector<std::int32_t> layers;  ///< per sample
 };
 
-/// Lazy greedy: always the member with the best (new area - weighted overlap) per fibre; then drops
-/// what has become superfluous. \param allowed per member: false keeps it out
-/// \param kept members to begin with, all allowed and each once
-/// Equal gains go to the lower index, so the answer depends on the library alone.
-[[nodiscard]] Selection select_courses(std::span<const Member> members,
-                                       std::span<const char> allowed, std::size_t samples,
-                                       const SelectOptions& options = {},
-                                       std::span<const std::int32_t> kept = {});
-
 /// Members that bring most samples to their target, for their fibre, until no more of those in
 /// reach than a share are short of it, or none helps. \param reached per sample \param layers per
 /// sample, what lies there \return members, each once
@@ -58,12 +47,13 @@ struct FirstChoice {
     std::optional<double> least_fibre_mm;  ///< as in Plan
 };
 
-/// By select_courses(). For a stage of a wall: whole courses for its share of the fractions with
-/// which what is left of the wall takes least fibre (winding/bound/); none behind the last stage.
-/// \param reached per sample \param nodes 2 for each rim \param stage null: none
+/// Whole courses for a stage's share of the fractions with which what is left of the wall takes
+/// least fibre (winding/bound/); none behind the last stage. \param reached per sample
+/// \param nodes 2 for each rim
+/// No bound of fibre where an angle is wanted.
 [[nodiscard]] FirstChoice choose_first(std::span<const Member> members,
                                        std::span<const char> allowed, std::span<const char> reached,
                                        std::size_t nodes, const SelectOptions& options,
-                                       const StageAsk* stage);
+                                       const StageAsk& stage);
 
 }  // namespace meshwind

@@ -57,6 +57,7 @@ struct PlacedCourse {
     /// Which of the courses that lead from stage to stage (fibre_routes.h) it is: such a one stays
     /// as it is. -1 for all others.
     std::int32_t link = -1;
+    std::int32_t of_library = -1;  ///< the member that it is; -1: it was moved
 };
 
 /// A course with the way it is wound.

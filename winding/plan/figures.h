@@ -68,7 +68,7 @@ struct Places {
 /// What planning took; for reports.
 struct PlanEffort {
     std::uint64_t seed = 0;
-    int effort = 0;  ///< asked for
+    double effort = 0.0;  ///< asked for
     std::int64_t candidates = 0;
     std::array<std::int64_t, kRefusals> refusals{};
     std::int64_t proposals = 0;    ///< weighed while the courses were annealed

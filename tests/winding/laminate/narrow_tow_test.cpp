@@ -141,6 +141,7 @@ TEST(NarrowTow, CoverAgreesWithAnUnrolledGrid) {
         options.candidates = 500;
         options.rounds = 0;
         options.scarce_candidates = 0;
+        options.context.effort = 0.1;
         const Plan plan =
             plan_cover(mandrel, test::obstacles_of(mandrel, 100.0, 60.0), options).plan;
         ASSERT_EQ(plan.failure, "");
