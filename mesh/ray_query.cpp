@@ -133,33 +133,38 @@ struct Search {
     ClosestPoint best;
 };
 
+ClosestPoint closest_of_triangle(const std::vector<TriangleSoup>& parts, std::int32_t part,
+                                 std::int32_t face, const Eigen::Vector3d& query) {
+    const TriangleSoup& soup = parts[static_cast<std::size_t>(part)];
+    const auto& v = soup.faces[static_cast<std::size_t>(face)];
+    const Eigen::Vector3d& a = soup.points_mm[static_cast<std::size_t>(v[0])];
+    const Eigen::Vector3d& b = soup.points_mm[static_cast<std::size_t>(v[1])];
+    const Eigen::Vector3d& c = soup.points_mm[static_cast<std::size_t>(v[2])];
+    const Eigen::Vector3d bary = closest_bary(query, a, b, c);
+    const Eigen::Vector3d point = bary[0] * a + bary[1] * b + bary[2] * c;
+    return {part, face, bary, point, (point - query).norm()};
+}
+
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
     auto& search = *static_cast<Search*>(args->userPtr);
+    ClosestPoint& best = search.best;
     // Most triangles whose boxes are near enough are not.
-    if ((*search.discs)[args->geomID][args->primID].is_beyond(search.query,
-                                                              search.best.distance_mm)) {
+    if ((*search.discs)[args->geomID][args->primID].is_beyond(search.query, best.distance_mm)) {
         return false;
     }
     const auto part = static_cast<std::int32_t>(args->geomID);
     const auto face = static_cast<std::int32_t>(args->primID);
-    const TriangleSoup& soup = (*search.parts)[args->geomID];
-    const auto& v = soup.faces[args->primID];
-    const Eigen::Vector3d& a = soup.points_mm[static_cast<std::size_t>(v[0])];
-    const Eigen::Vector3d& b = soup.points_mm[static_cast<std::size_t>(v[1])];
-    const Eigen::Vector3d& c = soup.points_mm[static_cast<std::size_t>(v[2])];
-    const Eigen::Vector3d bary = closest_bary(search.query, a, b, c);
-    const Eigen::Vector3d point = bary[0] * a + bary[1] * b + bary[2] * c;
-    const double distance = (point - search.query).norm();
-    ClosestPoint& best = search.best;
+    const ClosestPoint here = closest_of_triangle(*search.parts, part, face, search.query);
     // The lowest part and face among equals, so that the answer does not depend on traversal order.
-    const bool nearer = distance < best.distance_mm ||
-                        (distance == best.distance_mm && (best.part < 0 || part < best.part ||
-                                                          (part == best.part && face < best.face)));
+    const bool nearer =
+        here.distance_mm < best.distance_mm ||
+        (here.distance_mm == best.distance_mm &&
+         (best.part < 0 || part < best.part || (part == best.part && face < best.face)));
     if (!nearer) {
         return false;
     }
-    best = {part, face, bary, point, distance};
-    args->query->radius = std::nextafter(static_cast<float>(distance), INFINITY);
+    best = here;
+    args->query->radius = std::nextafter(static_cast<float>(here.distance_mm), INFINITY);
     return true;
 }
 
@@ -301,6 +306,21 @@ struct RayQuery::Impl {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
+    // Nearer than `best`, which may be none; else that.
+    [[nodiscard]] ClosestPoint closer_than(const ClosestPoint& best,
+                                           const Eigen::Vector3d& query) const {
+        Search search{&parts, &discs, query, best};
+        RTCPointQuery point{};
+        point.x = static_cast<float>(query.x());
+        point.y = static_cast<float>(query.y());
+        point.z = static_cast<float>(query.z());
+        point.radius = std::nextafter(static_cast<float>(best.distance_mm), INFINITY);
+        RTCPointQueryContext context;
+        rtcInitPointQueryContext(&context);
+        rtcPointQuery(scene, &point, &context, visit_triangle, &search);
+        return search.best;
+    }
+
     ~Impl() {
         if (scene != nullptr) {
             rtcReleaseScene(scene);
@@ -375,14 +395,23 @@ void RayQuery::tabulate(double reach_mm) {
     table.cap_mm = std::nextafter(static_cast<float>(2.0 * reach_mm), 0.0F);
     table.distance_mm.resize(table.index(table.nodes - 1) + 1);
     parallel_for(static_cast<std::size_t>(table.nodes.z()), 1, [&](std::size_t layer, std::size_t) {
+        // What is nearest to a node is near to the next one: nothing that is further is looked at.
+        ClosestPoint nearest;
         for (Eigen::Array3i node(0, 0, static_cast<int>(layer)); node.y() < table.nodes.y();
              ++node.y()) {
             for (node.x() = 0; node.x() < table.nodes.x(); ++node.x()) {
                 const Eigen::Vector3d point =
                     table.origin + table.cell_mm * node.cast<double>().matrix();
+                ClosestPoint known{.distance_mm = 2.0 * reach_mm};
+                if (nearest.part >= 0) {
+                    const ClosestPoint again =
+                        closest_of_triangle(impl_->parts, nearest.part, nearest.face, point);
+                    known = again.distance_mm < known.distance_mm ? again : known;
+                }
+                nearest = impl_->closer_than(known, point);
                 // One step down: single precision must not promise more than there is.
-                table.distance_mm[table.index(node)] = std::nextafter(
-                    static_cast<float>(closest(point, 2.0 * reach_mm).distance_mm), 0.0F);
+                table.distance_mm[table.index(node)] =
+                    std::nextafter(static_cast<float>(nearest.distance_mm), 0.0F);
             }
         }
     });
@@ -425,17 +454,8 @@ bool RayQuery::occluded(const Eigen::Vector3d& from, const Eigen::Vector3d& to) 
 }
 
 ClosestPoint RayQuery::closest(const Eigen::Vector3d& query, double radius_mm) const {
-    Search search{&impl_->parts, &impl_->discs, query, {}};
-    search.best.distance_mm = std::min(radius_mm, impl_->table.at_most_mm(query));
-    RTCPointQuery point{};
-    point.x = static_cast<float>(query.x());
-    point.y = static_cast<float>(query.y());
-    point.z = static_cast<float>(query.z());
-    point.radius = std::nextafter(static_cast<float>(search.best.distance_mm), INFINITY);
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(impl_->scene, &point, &context, visit_triangle, &search);
-    return search.best;
+    const double within_mm = std::min(radius_mm, impl_->table.at_most_mm(query));
+    return impl_->closer_than({.distance_mm = within_mm}, query);
 }
 
 bool RayQuery::is_beyond(const Eigen::Vector3d& query, double distance_mm) const {

@@ -3,8 +3,11 @@ import csv
 import json
 import math
 import re
+import shutil
+import subprocess
 import sys
-import unittest
+import tempfile
+from pathlib import Path
 
 import program
 
@@ -25,6 +28,16 @@ def times(matrix, vector):
 
 
 class Carry(program.ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        """The frame as the defaults have it, carried once for all tests that look at it."""
+        holder = tempfile.TemporaryDirectory(prefix="meshwind-test-")
+        cls.addClassCleanup(holder.cleanup)
+        cls.carried = Path(holder.name)
+        result = subprocess.run([program.PROGRAM, *CARRY, "-o", "out", "--json"], cwd=cls.carried,
+                                stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True)
+        cls.report = json.loads(result.stdout)
+
     def rows(self, name):
         with open(name, newline="") as file:
             return list(csv.DictReader(file))
@@ -33,9 +46,9 @@ class Carry(program.ProgramTest):
         self.done(*CARRY, "--name", "l_frame", "-o", "out")
         self.assertEqual((self.folder / "out/l_frame.src").read_text(),
                          (program.SOURCE / "data/programs/l_frame.src").read_text())
-        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()),
-                         ["fibre.csv", "l_frame.src", "l_frame_back.src", "motion.csv", "report.json",
-                          "rings.csv"])
+        names = sorted(f.name for f in (self.folder / "out").iterdir())
+        self.assertEqual(names, ["fibre.csv", "l_frame.src", "l_frame_back.src", "motion.csv",
+                                 "report.json", "rings.csv"])
         forth, back = ([FRAME.match(line).groups()[:6] for line in
                         (self.folder / f"out/{name}.src").read_text().splitlines()
                         if line.startswith("LIN")] for name in ("l_frame", "l_frame_back"))
@@ -43,12 +56,12 @@ class Carry(program.ProgramTest):
 
     def test_frames_of_the_program_have_the_axis_in_the_head(self):
         """From the text alone: each frame's origin and turn put a point of the axis at H."""
-        report = json.loads(self.done(*CARRY, "-o", "out", "--json").stdout)
-        self.assertEqual(json.loads((self.folder / "out/report.json").read_text()), report)
+        report = self.report
+        self.assertEqual(json.loads((self.carried / "out/report.json").read_text()), report)
         self.assertTrue(report["ok"])
         stations = [[float(row[k]) for k in ("x_mm", "y_mm", "z_mm", "tx", "ty", "tz")]
                     for row in self.rows(program.SOURCE / "data/l_frame_axis.csv")]
-        lines = (self.folder / "out/program.src").read_text().splitlines()
+        lines = (self.carried / "out/program.src").read_text().splitlines()
         frames = [FRAME.match(line) for line in lines if line.startswith("LIN")]
         self.assertEqual(len(frames), report["program"]["moves"])
         self.assertEqual([bool(f[7]) for f in frames],
@@ -104,8 +117,7 @@ class Carry(program.ProgramTest):
         self.assertAlmostEqual(report["checks"]["ring"]["reach_mm"], 28.9068, places=3)
 
     def test_fibre_lies_on_the_frame_in_helices(self):
-        report = json.loads(self.done(*CARRY, "-o", "out", "--json").stdout)
-        pattern, laid = report["pattern"], report["laid"]
+        pattern, laid = self.report["pattern"], self.report["laid"]
         self.assertEqual(pattern["ways"], "to-and-fro")
         self.assertEqual(pattern["passes"], 1)
         self.assertEqual(laid["covered"], 1)
@@ -118,7 +130,7 @@ class Carry(program.ProgramTest):
         self.assertGreater(laid["inside_over_outside"], pattern["inside_over_outside"])
         length = 0
         fibres = {}
-        for row in self.rows(self.folder / "out/fibre.csv"):
+        for row in self.rows(self.carried / "out/fibre.csv"):
             key = (int(row["ring"]), int(row["spool"]))
             fibres.setdefault(key, []).append(row)
         self.assertEqual(len(fibres), 24)
@@ -157,8 +169,7 @@ class Carry(program.ProgramTest):
         self.assertAlmostEqual(report["winding"]["tube_radius_mm"], 20, delta=0.001)
         self.assertLess(math.dist(report["axis"]["frame_in_file"]["origin_mm"], (0, 0, 0)), 0.01)
         # The flange stands where the table of the same frame has it.
-        table = json.loads(self.done(*CARRY, "-o", "table", "--json").stdout)
-        for axis, ends in table["robot"]["axes_deg"].items():
+        for axis, ends in self.report["robot"]["axes_deg"].items():
             self.assertAlmostEqual(report["robot"]["axes_deg"][axis]["min"], ends["min"], delta=0.05)
             self.assertAlmostEqual(report["robot"]["axes_deg"][axis]["max"], ends["max"], delta=0.05)
         other = json.loads(self.run_program(*carry, "--from-end", "-o", "out", "--json").stdout)
@@ -171,8 +182,7 @@ class Carry(program.ProgramTest):
         self.assertIn("3 rims", result.stderr)
 
     def test_rings_follow_frame_and_passage(self):
-        self.done(*CARRY, "-o", "out")
-        rows = self.rows(self.folder / "out/rings.csv")
+        rows = self.rows(self.carried / "out/rings.csv")
         for ring, way in (("1", 1), ("2", -1)):
             own = [row for row in rows if row["ring"] == ring]
             places = [float(row["s_mm"]) for row in own]
@@ -212,7 +222,7 @@ class Carry(program.ProgramTest):
         self.assertLess(moves("0.2"), moves("0.02"))
 
     def failed(self, *arguments, check, word):
-        self.done(*CARRY, "-o", "out")
+        shutil.copytree(self.carried / "out", self.folder / "out", dirs_exist_ok=True)
         result = self.run_program(*CARRY, *arguments, "-o", "out", "--quiet")
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn(f"check failed: {check}: ", result.stderr)

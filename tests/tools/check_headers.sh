@@ -20,7 +20,7 @@ trap 'rm -rf "$work"' EXIT
 mapfile -t common < <(sed -n '/target_precompile_headers($/,/)$/p' cmake/MeshwindLibrary.cmake | grep -o '<[A-Za-z/]*>')
 ((${#common[@]} > 10)) || { echo "cmake/MeshwindLibrary.cmake is read wrongly"; exit 1; }
 printf '#include %s\n' "${common[@]}" >"$work/common.h"
-clang++-14 "${flags[@]}" -x c++-header "$work/common.h" -o "$work/common.pch"
+clang++-14 "${flags[@]}" -fpch-instantiate-templates -x c++-header "$work/common.h" -o "$work/common.pch"
 printf '%s\0' "${headers[@]}" | xargs -0 -P "$(nproc)" -I '{}' \
     clang++-14 "${flags[@]}" -Wno-pragma-once-outside-header -Wno-unused-const-variable -include-pch "$work/common.pch" -fsyntax-only -x c++ '{}' || broken=1
 echo "${#headers[@]} headers together, and each alone"
