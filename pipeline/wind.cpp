@@ -203,7 +203,7 @@ private:
         if (layer.job.kind == LayerKind::Wall && !wall_) {
             wall_.emplace(layer.setup.mandrel, layer.setup.job, job_layer_, options_.context.seed,
                           options_.files.job);
-            run_.walls.push_back({number, number, wall_->figures()});
+            run_.walls.push_back({number, number, wall_->figures(), wall_->asked_of_faces()});
         }
         std::optional<StageAsk> stage;
         WindLayerOptions options;

@@ -38,6 +38,7 @@ struct WoundWall {
     std::size_t first = 0;  ///< of Run::layers, to `last` inclusive
     std::size_t last = 0;
     WallFigures figures{};
+    std::vector<std::int32_t> asked_of_faces;  ///< layers, per triangle of the bare mandrel
 };
 
 /// Everything that was found.

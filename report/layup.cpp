@@ -22,16 +22,17 @@ Vector3d normal_of(const Surface& surface, std::size_t face) {
 
 }  // namespace
 
-Layup::Layup(const std::vector<WoundLayer>& layers, std::uint64_t seed)
-    : axes_(material_axes(layers.front().setup.mandrel)), all_(axes_.size()) {
-    for (const WoundLayer& layer : layers) {
+// The plies are measured on the run's coverage samples.
+Layup::Layup(const Run& run)
+    : axes_(material_axes(run.layers.front().setup.mandrel)), all_(axes_.size()) {
+    for (const WoundLayer& layer : run.layers) {
         const Surface& surface = layer.setup.mandrel.surface;
         OfLayer& of = layers_.emplace_back(
             OfLayer{&surface,
                     plies_of(surface, layer.import ? layer.setup.wall->surface() : surface,
                              layer.plan.pieces,
                              {.tow_width_mm = layer.setup.job.tow.width_mm,
-                              .seed = seed,
+                              .seed = run.seed,
                               .over_rims = layer.plan.planner != Planner::Cover}),
                     {}});
         const auto fibres = fibres_of(layer.plan.pieces);
@@ -57,6 +58,20 @@ Layup::Layup(const std::vector<WoundLayer>& layers, std::uint64_t seed)
         all_.samples = each_.front().samples;
     }
     set_angles(0, layers_.size(), all_);
+    for (const WoundWall& wall : run.walls) {
+        add_wall(wall);
+    }
+}
+
+void Layup::add_wall(const WoundWall& wall) {
+    walls_.asked_layers.resize(axes_.size());
+    walls_.laid_layers.resize(axes_.size());
+    for (std::size_t f = 0; f < axes_.size(); ++f) {
+        walls_.asked_layers[f] += wall.asked_of_faces[f];
+        for (std::size_t layer = wall.first; layer <= wall.last; ++layer) {
+            walls_.laid_layers[f] += each_[layer].layers[f];
+        }
+    }
 }
 
 Vector3d Layup::normal(std::size_t face) const {

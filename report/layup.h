@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "pipeline/wind_layer.h"
+#include "pipeline/wind.h"
 #include "winding/laminate/plies.h"
 
 namespace meshwind {
@@ -44,15 +44,21 @@ struct LayupArrays {
     std::vector<std::int32_t> samples;  ///< of coverage; of one layer only
 };
 
+/// The walls of a run, per triangle of the bare mandrel; empty where the job asks for none.
+struct WallArrays {
+    std::vector<double> asked_layers;
+    std::vector<double> laid_layers;  ///< of all their stages
+};
+
 /// Lay-up of all layers.
 class Layup {
 public:
-    /// \param seed of the run: the plies are measured on its coverage samples
-    /// \param layers must outlive this; each has a plan
-    Layup(const std::vector<WoundLayer>& layers, std::uint64_t seed);
+    /// \param run must outlive this; each of its layers has a plan
+    explicit Layup(const Run& run);
 
     [[nodiscard]] const LayupArrays& all() const { return all_; }
     [[nodiscard]] const std::vector<LayupArrays>& each() const { return each_; }
+    [[nodiscard]] const WallArrays& walls() const { return walls_; }
 
     /// Per triangle: its material axis 1, unit (winding/laminate/material_axes.h).
     [[nodiscard]] const std::vector<Eigen::Vector3d>& axes() const { return axes_; }
@@ -72,12 +78,14 @@ private:
 
     [[nodiscard]] std::vector<LayupPly> plies_of_layer(std::size_t layer, std::size_t face) const;
     [[nodiscard]] LayupArrays arrays_of(const WoundLayer& layer, std::size_t number) const;
+    void add_wall(const WoundWall& wall);
     void set_angles(std::size_t first, std::size_t last, LayupArrays& arrays) const;
 
     std::vector<Eigen::Vector3d> axes_;
     std::vector<OfLayer> layers_;
     LayupArrays all_;
     std::vector<LayupArrays> each_;
+    WallArrays walls_;
 };
 
 }  // namespace meshwind

@@ -51,6 +51,11 @@ public:
         std::vector<CellArray> cells;
         add_cells(layup_.all(), "", cells);
         cells.push_back({"region", std::span<const std::int32_t>(surface_.region)});
+        const WallArrays& walls = layup_.walls();
+        if (!walls.asked_layers.empty()) {
+            cells.push_back({"wall_layers_asked", std::span(walls.asked_layers)});
+            cells.push_back({"wall_layers_laid", std::span(walls.laid_layers)});
+        }
         const std::vector<LayupArrays>& each = layup_.each();
         for (std::size_t i = 0; each.size() > 1 && i < each.size(); ++i) {
             add_cells(each[i], "_of_layer_" + std::to_string(i + 1), cells);

@@ -127,6 +127,10 @@ public:
         arrays_.add_faces("mandrel/faces", mandrel.surface.face);
         arrays_.add<std::int32_t>("mandrel/region", 1, mandrel.surface.region);
         add_layup("total/", layup_.all());
+        if (!layup_.walls().asked_layers.empty()) {
+            arrays_.add_floats("wall/asked_layers", layup_.walls().asked_layers);
+            arrays_.add_floats("wall/laid_layers", layup_.walls().laid_layers);
+        }
         json layers = json::array();
         for (std::size_t i = 0; i < run_.layers.size(); ++i) {
             layers.push_back(layer_json(i));

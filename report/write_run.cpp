@@ -53,7 +53,7 @@ std::string write_run(const Run& run, OutputFolder& folder) {
         for (std::size_t i = 0; i < run.layers.size(); ++i) {
             add_layer(run, i, folder);
         }
-        layup.emplace(run.layers, run.seed);
+        layup.emplace(run);
         for (const MadeFile& file : layup_files(run, *layup)) {
             folder.add(file.name, file.bytes);
         }

@@ -191,6 +191,9 @@ WallStages::WallStages(const Mandrel& bare, const Job& job, std::size_t index, s
     measured_ = places_of(bare.surface, asked, tow_width_mm_, seed, Stream::Sampling);
     weighed_ = places_of(bare.surface, asked, tow_width_mm_, seed, Stream::Ground);
     judged_ = places_of(bare.surface, asked, tow_width_mm_, seed, Stream::Judging);
+    for (std::size_t f = 0; f < bare.surface.face.size(); ++f) {
+        asked_of_faces_.push_back(asked.layers_at({.face = static_cast<std::int32_t>(f)}));
+    }
     reached_.assign(measured_.at.size(), 0);
     const NearestPoints measured(samples_at(bare.surface, measured_.at).position_mm);
     for (const SurfacePoint& place : judged_.at) {

@@ -76,6 +76,11 @@ public:
 
     [[nodiscard]] WallFigures figures() const;
 
+    /// Per triangle of the bare wall: layers asked for at its middle.
+    [[nodiscard]] const std::vector<std::int32_t>& asked_of_faces() const {
+        return asked_of_faces_;
+    }
+
 private:
     [[nodiscard]] AskedPlaces asked_of(const WallPlaces& places) const;
     [[nodiscard]] bool in_reach(std::size_t judged) const {
@@ -85,6 +90,7 @@ private:
     [[nodiscard]] double below_share() const;
     [[nodiscard]] std::vector<ThinRegion> thin_regions() const;
 
+    std::vector<std::int32_t> asked_of_faces_;
     std::vector<std::int32_t> region_;          // per judged place
     std::vector<Eigen::Vector3d> position_mm_;  // per judged place, on the bare wall
     double tow_width_mm_;

@@ -240,6 +240,24 @@ class Layup(program.ProgramTest):
         for suffix in ("", "-layer-2"):
             self.check_fibre(suffix)
 
+    def test_a_wall_against_what_was_asked_for(self):
+        report = self.wind([{"kind": "wall", "layers": 2, "parts": [{"rim": 0, "within": 30, "layers": 4}]}])
+        arrays = self.arrays(self.grid())
+        asked, laid = arrays["wall_layers_asked"], arrays["wall_layers_laid"]
+        rim = report["mandrel"]["rims"][0]["centre"]
+        points = json.loads(self.read("layup.json"))
+        for f, triangle in enumerate(points["triangles"]):
+            # Of a cylinder: the way to the rim's circle is along the axis, but for the facets' depth.
+            off = abs(sum(points["points_mm"][i][2] for i in triangle["points"]) / 3.0 - rim[2])
+            if abs(off - 30.0) > 0.1:
+                self.assertEqual(asked[f], 4 if off < 30.0 else 2)
+        stages = range(1, len(report["layers"]) + 1)
+        for f, layers in enumerate(laid):
+            self.assertAlmostEqual(sum(arrays[f"layers_of_layer_{n}"][f] for n in stages), layers, delta=1e-9)
+        area = arrays["area_mm2"]
+        mean = sum(a * l / n for a, l, n in zip(area, laid, asked)) / sum(area)
+        self.assertAlmostEqual(mean, report["walls"][0]["mean_over_asked"], delta=0.03)
+
     def test_the_reader_of_step_files_is_strict(self):
         self.wind([{"kind": "hoop"}])
         text = self.read("fibre.step")

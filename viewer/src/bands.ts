@@ -9,7 +9,7 @@ import {
     ShaderMaterial,
 } from 'three';
 import { categoryTexture, kOverLimit, sequentialTexture } from './colour';
-import type { Colouring } from './colour';
+import type { Colouring, ColouringId } from './colour';
 import type { Fibre } from './data';
 import { kBandFragment, kBandVertex } from './shaders';
 
@@ -58,19 +58,18 @@ export class Bands {
     }
 
     colour(by: Colouring): void {
-        if (by.of !== 'bands') return;
+        if (by.perFace) return;
         const { fibre, values } = this;
         const pieces = fibre.header.pieces;
         const ofPiece = (i: number) => pieces[fibre.piece[i]];
-        const valueAt: (i: number) => number = {
+        const valuesOf: Partial<Record<ColouringId, (i: number) => number>> = {
             course: (i: number) => (ofPiece(i)?.kind === 'course' ? ofPiece(i).course : -1),
             family: (i: number) => ofPiece(i)?.family ?? -1,
             slip: (i: number) => fibre.slip[i],
             bridging: (i: number) => fibre.bridge[i],
             angle: (i: number) => fibre.angle[i],
-            layers: () => 0,
-            thickness: () => 0,
-        }[by.id];
+        };
+        const valueAt = valuesOf[by.id] ?? (() => 0);
         for (let i = 0; i < fibre.s.length; ++i) values[2 * i] = values[2 * i + 1] = valueAt(i);
         this.mesh.geometry.getAttribute('value').needsUpdate = true;
         const { uniforms } = this.mesh.material;

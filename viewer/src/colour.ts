@@ -53,18 +53,18 @@ export const categoryTexture = texture(
     false,
 );
 
-export type ColouringId = 'course' | 'family' | 'slip' | 'bridging' | 'layers' | 'thickness' | 'angle';
+export type ColouringId = 'course' | 'family' | 'slip' | 'bridging' | 'layers' | 'thickness' | 'angle' | 'wall';
 
 export interface Colouring {
     id: ColouringId;
     label: string;
     unit: string;
-    of: 'bands' | 'faces';
     kind: 'sequential' | 'categories';
     min: number;
     max: number;
     limit: number | null;
     note: string;
+    perFace: Float32Array | null; // null: bands are coloured
 }
 
 /** CSS gradient of the sequential map. */

@@ -1,4 +1,4 @@
-/** The seven colourings of a page, with their ranges and limits. */
+/** The colourings of a page, with their ranges and limits. */
 import type { Page } from './data';
 import type { Colouring } from './colour';
 import type { Check } from './types';
@@ -32,8 +32,8 @@ export function colouringsOf(page: Page, layer: number | null): Colouring[] {
     const slipLimit = limitOf(checks, 'slip', 'limit') ?? page.header.tow.friction;
     const bridgeLimit = limitOf(checks, 'bridging', 'limit_mm');
     const worstBridge = largest(fibres.map((f) => f.bridge));
-    const band = { of: 'bands' as const, kind: 'sequential' as const, limit: null, note: '' };
-    return [
+    const band = { kind: 'sequential' as const, limit: null, note: '', perFace: null };
+    const colourings: Colouring[] = [
         {
             ...band,
             id: 'course',
@@ -78,9 +78,9 @@ export function colouringsOf(page: Page, layer: number | null): Colouring[] {
             id: 'layers',
             label: 'Layers',
             unit: '',
-            of: 'faces',
             min: 0,
             max: roundUp(largest([values.layers])),
+            perFace: values.layers,
             note: 'bands over each place of the finished part',
         },
         {
@@ -88,9 +88,9 @@ export function colouringsOf(page: Page, layer: number | null): Colouring[] {
             id: 'thickness',
             label: 'Thickness',
             unit: 'mm',
-            of: 'faces',
             min: 0,
             max: roundUp(largest([values.thickness])),
+            perFace: values.thickness,
             note: 'of the finished part',
         },
         {
@@ -103,4 +103,17 @@ export function colouringsOf(page: Page, layer: number | null): Colouring[] {
             note: "fibre to the region's own axis; 90° is a hoop",
         },
     ];
+    if (page.wall) {
+        colourings.push({
+            ...band,
+            id: 'wall',
+            label: 'Wall',
+            unit: '×',
+            min: 0,
+            max: 2,
+            perFace: page.wall.ratio,
+            note: 'layers of the finished wall over those asked for; below 1 it is too thin',
+        });
+    }
+    return colourings;
 }

@@ -40,6 +40,13 @@ export interface Layer {
     fibres: Fibre[];
 }
 
+/** What lies on each face of the bare mandrel, of all stages, against what was asked for there. */
+export interface Wall {
+    asked: Float32Array; // layers
+    laid: Float32Array; // layers
+    ratio: Float32Array; // laid over asked
+}
+
 export interface Page {
     header: Header;
     points: Float32Array;
@@ -47,6 +54,7 @@ export interface Page {
     region: Int32Array;
     total: FaceValues;
     layers: Layer[];
+    wall: Wall | null; // of a job that asks for a wall
     extension: { points: Float32Array; faces: Uint32Array } | null;
     array: (name: string) => PageArray;
 }
@@ -71,6 +79,10 @@ function assemble(header: Header, array: Page['array']): Page {
         fibres: layer.fibres.map((fibre, number) => fibreOf(fibre, index, number, array)),
     }));
     const extension = header.extension;
+    const wall = (): Wall => {
+        const [asked, laid] = [f32('wall/asked_layers'), f32('wall/laid_layers')];
+        return { asked, laid, ratio: laid.map((n, face) => n / asked[face]) };
+    };
     return {
         header,
         points: f32('mandrel/points'),
@@ -78,6 +90,7 @@ function assemble(header: Header, array: Page['array']): Page {
         region: array('mandrel/region') as Int32Array,
         total: values('total'),
         layers,
+        wall: header.report.walls ? wall() : null,
         extension: extension && {
             points: f32(extension.points),
             faces: array(extension.faces) as Uint32Array,

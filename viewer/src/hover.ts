@@ -31,10 +31,12 @@ export function hoverHtml(page: Page, hit: Hit, layer: number | null): string {
     if (hit.face >= 0) {
         const values = layer === null ? page.total : page.layers[layer].values;
         const bare = values.layers[hit.face] > 0 ? '' : ' \u00b7 bare';
+        const wall: [string, string][] = page.wall ? [['asked', withUnit(page.wall.asked[hit.face], 'layers')]] : [];
         html +=
             `<h4>Mandrel, region ${page.region[hit.face]}${bare}</h4><dl>` +
             rows([
                 ['layers', fixed(values.layers[hit.face], 2)],
+                ...wall,
                 ['thickness', `${fixed(values.thickness[hit.face], 2)}\u202fmm`],
                 ['mean angle', `${fixed(values.angle[hit.face], 1)}°`],
                 ['at x y z', [hit.place.x, hit.place.y, hit.place.z].map((c) => fixed(c, 1)).join('\u2002')],

@@ -58,7 +58,7 @@ function actionOf(
     target: HTMLElement,
 ): (() => void) | null {
     const { key, shiftKey } = event;
-    if (/^[1-7]$/.test(key)) return () => actions.colouring(Number(key));
+    if (/^[1-8]$/.test(key)) return () => actions.colouring(Number(key));
     if (target.getAttribute('role') === 'tab' && key.startsWith('Arrow')) return null;
     switch (key) {
         case ' ':

@@ -68,13 +68,12 @@ export class Mandrel {
         this.setPerFace('value', () => 0);
     }
 
-    colour(by: Colouring, layer: number | null): void {
+    colour(by: Colouring): void {
         const { uniforms } = this.mesh.material;
-        uniforms.useValue.value = by.of === 'faces' ? 1 : 0;
-        if (by.of !== 'faces') return;
-        const values = layer === null ? this.page.total : this.page.layers[layer].values;
-        const array = by.id === 'layers' ? values.layers : values.thickness;
-        this.setPerFace('value', (face) => array[face]);
+        const values = by.perFace;
+        uniforms.useValue.value = values ? 1 : 0;
+        if (!values) return;
+        this.setPerFace('value', (face) => values[face]);
         uniforms.range.value = [by.min, by.max];
     }
 

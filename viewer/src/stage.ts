@@ -97,10 +97,10 @@ export class Stage {
     }
 
     setColouring(by: Colouring): void {
-        this.mandrel.colour(by, this.layer);
+        this.mandrel.colour(by);
         for (const band of this.bands) {
             band.colour(by);
-            band.mesh.userData.hidden = by.of !== 'bands';
+            band.mesh.userData.hidden = by.perFace !== null;
         }
         this.view.request();
     }

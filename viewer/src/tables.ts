@@ -1,6 +1,6 @@
 /** Key figures, bare wall with its reasons, and the layers of a laminate. */
 import { clock, escapeHtml, fixed, number, percent, sentence, withUnit } from './format';
-import type { LayerReport, Plan, Report, Uncovered } from './types';
+import type { LayerReport, Plan, Report, Uncovered, WallReport } from './types';
 
 /** \param duration of all programs on the page, 0 where it has none */
 export function figuresHtml(report: Report, duration: number): string {
@@ -24,6 +24,11 @@ function wallArea(report: Report): number {
     return kept.length ? kept.reduce((sum, r) => sum + r.area_mm2, 0) : (report.mandrel?.area_mm2 ?? NaN);
 }
 
+function measuresHtml(rows: [string, string][]): string {
+    const lines = rows.map(([k, v]) => `<tr><th scope="row">${k}</th><td class="num">${v}</td></tr>`);
+    return `<table class="measures"><tbody>${lines.join('')}</tbody></table>`;
+}
+
 function coverageHtml(plan: Plan | undefined): string {
     const c = plan?.coverage;
     if (!c) return '';
@@ -34,9 +39,7 @@ function coverageHtml(plan: Plan | undefined): string {
     if (c.p1_layers !== undefined) rows.push(['Bands over 99 % of the wall in reach, at least', number(c.p1_layers)]);
     if (plan?.fibre_factor) rows.push(['Fibre over that of the layers asked for', number(plan.fibre_factor)]);
     if (plan?.turn_share !== undefined) rows.push(['Fibre in turns, cut off', percent(plan.turn_share)]);
-    return `<table class="measures"><tbody>${rows
-        .map(([k, v]) => `<tr><th scope="row">${k}</th><td class="num">${v}</td></tr>`)
-        .join('')}</tbody></table>`;
+    return measuresHtml(rows);
 }
 
 function uncoveredHtml(list: Uncovered[], wall: number, covered: number | undefined): string {
@@ -74,6 +77,26 @@ function angleText(layer: LayerReport): string {
     return typeof layer.angle_deg === 'number' ? `${layer.angle_deg.toFixed(1)}°` : '\u2013';
 }
 
+function wallHtml(wall: WallReport): string {
+    const rows: [string, string][] = [
+        ['Layers asked for, on average', number(wall.asked_layers)],
+        ['Wall in reach', percent(wall.reachable)],
+        ['Of it thinner than asked for', percent(wall.below)],
+        ['Laid over asked for, mean', number(wall.mean_over_asked)],
+        ['On 99 % of the wall in reach at least', number(wall.p1_over_asked)],
+        ['Spread over the mean', number(wall.cv)],
+        ['Fibre over that of the layers asked for', number(wall.fibre_factor)],
+    ];
+    if (wall.bound) rows.push(['No plan of single courses takes less than', number(wall.bound.least_factor)]);
+    rows.push(['Fibre in turns, cut off', percent(wall.turn_share)]);
+    for (const thin of wall.thin)
+        rows.push([
+            `Too thin in region ${thin.region}, and by how much`,
+            `${percent(thin.below)}, ${withUnit(thin.lacks_mm, 'mm')}`,
+        ]);
+    return `<p class="muted sum">Wall of layers ${wall.first_layer} to ${wall.last_layer}</p>${measuresHtml(rows)}`;
+}
+
 export function layersHtml(report: Report): string {
     const layers = report.layers ?? [];
     const row = (l: LayerReport, i: number) =>
@@ -95,6 +118,7 @@ export function layersHtml(report: Report): string {
         `<table class="grid layers"><thead><tr><th scope="col" class="num">#</th><th scope="col">Kind</th>` +
         `<th scope="col" class="num">Angle</th><th scope="col" class="num">Mean<br>mm</th><th scope="col" class="num">Max<br>mm</th>` +
         `<th scope="col" class="num">Fibre<br>m</th><th scope="col" class="num">Mass<br>g</th><th scope="col" class="num">Time</th></tr></thead>` +
-        `<tbody>${layers.map(row).join('')}</tbody>${foot}</table>`
+        `<tbody>${layers.map(row).join('')}</tbody>${foot}</table>` +
+        (report.walls ?? []).map(wallHtml).join('')
     );
 }

@@ -60,6 +60,23 @@ export interface LayerReport {
     plan?: Plan;
 }
 
+/** A layer of the job that was wound in stages. Ratios are of what lies there over what was asked for. */
+export interface WallReport {
+    first_layer: number;
+    last_layer: number;
+    asked_layers: number; // on average
+    reachable: number; // share of the wall
+    below: number; // share of that
+    mean_over_asked: number;
+    p1_over_asked: number;
+    cv: number;
+    fibre_m: number;
+    turn_share: number;
+    fibre_factor: number;
+    bound?: { least_factor: number; gap: number };
+    thin: { region: number; below: number; lacks_mm: number }[];
+}
+
 export interface Report {
     meshwind?: string;
     machine?: string;
@@ -80,6 +97,7 @@ export interface Report {
         thickness_mm?: { mean: number; max: number };
     };
     layers?: LayerReport[];
+    walls?: WallReport[];
 }
 
 export interface Axis {
