@@ -147,7 +147,16 @@ endfunction()
 # Debug. Headers have no assertions, so that a program built with NDEBUG and a library built without mean the same by them.
 function(meshwind_compile_flags target)
     target_compile_features(${target} PUBLIC cxx_std_20)
+    # The libraries are for the Python module too. Nobody puts another function in the place of one of ours: code without
+    # that freedom is as fast as that of a program alone.
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL "EXECUTABLE")  # the same code, for common headers that are compiled once for both
+        target_compile_options(${target} PRIVATE -fPIC)
+    else()
+        set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    endif()
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
     target_compile_options(
         ${target} PRIVATE "$<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-fno-math-errno;-fno-trapping-math;-UNDEBUG>")
     target_compile_definitions(${target} PRIVATE $<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:EIGEN_NO_DEBUG>)

@@ -29,10 +29,17 @@ Machine load_machine(const std::filesystem::path& file) {
 }
 
 Job load_job(const std::filesystem::path& file, std::span<const JobSetting> settings) {
-    Job job = file.empty() ? parse_job("{}", "job", settings) : read_job(file, settings);
+    return file.empty()
+               ? job_of_text("{}", "job", {}, settings)
+               : job_of_text(read_text_file(file), file.string(), file.parent_path(), settings);
+}
+
+Job job_of_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                std::span<const JobSetting> settings) {
+    Job job = parse_job(text, name, settings);
     for (LayerJob& layer : job.layers) {
         if (layer.kind == LayerKind::Imported) {
-            layer.points = read_landing_points(file.parent_path() / layer.file);
+            layer.points = read_landing_points(folder / layer.file);
         }
     }
     return job;

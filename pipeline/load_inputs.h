@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "machines/machine.h"
 #include "pipeline/job/job.h"
@@ -17,6 +19,11 @@ namespace meshwind {
 /// \throws IoError io.cannot_read; InputError as read_job() has it
 [[nodiscard]] Job load_job(const std::filesystem::path& file,
                            std::span<const JobSetting> settings = {});
+
+/// The same of a text. \param name for messages \param folder where imported layers' files are
+[[nodiscard]] Job job_of_text(std::string_view text, const std::string& name,
+                              const std::filesystem::path& folder,
+                              std::span<const JobSetting> settings = {});
 
 /// The landing points of a file.
 /// \throws IoError io.cannot_read

@@ -69,8 +69,8 @@ void append(std::string& text, double value, int decimals) {
     append_fixed(text, value, decimals);
 }
 
-std::string table(const SurfacePath& path, const TautString& string, const SlipMeasure& slip,
-                  const Eigen::Isometry3d& out_from_mandrel) {
+std::string table(const TracedPath& traced, const Eigen::Isometry3d& out_from_mandrel) {
+    const SurfacePath& path = traced.path;
     std::string text =
         "point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,bridge_mm\n";
     for (std::size_t i = 0; i < path.size(); ++i) {
@@ -87,8 +87,8 @@ std::string table(const SurfacePath& path, const TautString& string, const SlipM
         }
         append(text, p.kn_per_mm, kCurvatureDecimals);
         append(text, p.kg_per_mm, kCurvatureDecimals);
-        append(text, slip.slip[i], kRatioDecimals);
-        append(text, string.gap_mm[i], kLengthDecimals);
+        append(text, traced.slip[i], kRatioDecimals);
+        append(text, traced.string.gap_mm[i], kLengthDecimals);
         text += '\n';
     }
     return text;
@@ -179,22 +179,26 @@ Traced trace_between(const TraceRequest& request, const Mandrel& mandrel, const 
 
 }  // namespace
 
-TraceTable trace_table(const Mandrel& mandrel, const TraceRequest& request) {
+TracedPath trace_path(const Mandrel& mandrel, const TraceRequest& request) {
     check(request);
     const Snapped start = snap(mandrel, request.start);
-    const auto& [path, end] =
-        request.to ? trace_between(request, mandrel, start.at, snap(mandrel, *request.to))
-                   : trace_from(request, mandrel, start.at);
-    const TautString string = taut_string(path);
-    const SlipMeasure slip =
-        measure_slip(mandrel.surface, path, string, {.method = request.method});
-    return {
-        table(path, string, slip,
-              request.file_frame ? file_from_mandrel_mm(mandrel) : Eigen::Isometry3d::Identity()),
-        std::to_string(path.size()) + " points, " + fixed(path.back().s_mm, 3) +
-            " mm, ended at: " + end + ", start moved " + fixed(start.moved_mm, 4) +
-            " mm onto the surface, worst slip ratio " + fixed(slip.worst, 4) + ", bridging " +
-            fixed(string.worst_gap_mm, 3) + " mm"};
+    auto [path, end] = request.to
+                           ? trace_between(request, mandrel, start.at, snap(mandrel, *request.to))
+                           : trace_from(request, mandrel, start.at);
+    TautString string = taut_string(path);
+    SlipMeasure slip = measure_slip(mandrel.surface, path, string, {.method = request.method});
+    std::string words = std::to_string(path.size()) + " points, " + fixed(path.back().s_mm, 3) +
+                        " mm, ended at: " + end + ", start moved " + fixed(start.moved_mm, 4) +
+                        " mm onto the surface, worst slip ratio " + fixed(slip.worst, 4) +
+                        ", bridging " + fixed(string.worst_gap_mm, 3) + " mm";
+    return {std::move(path), std::move(string), std::move(slip.slip), std::move(words)};
+}
+
+TraceTable trace_table(const Mandrel& mandrel, const TraceRequest& request) {
+    TracedPath traced = trace_path(mandrel, request);
+    return {table(traced, request.file_frame ? file_from_mandrel_mm(mandrel)
+                                             : Eigen::Isometry3d::Identity()),
+            std::move(traced.words)};
 }
 
 }  // namespace meshwind

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -24,14 +25,25 @@ struct TraceRequest {
     bool file_frame = false;  ///< output in the file's axes, in mm; else the mandrel frame
 };
 
+/// A path of the surface, and what holds on it. Mandrel frame.
+struct TracedPath {
+    SurfacePath path;
+    TautString string;
+    std::vector<double> slip;  ///< per station, measured from the finished path
+    std::string words;         ///< what happened, in one line
+};
+
+/// Traces from the start, or connects it with the given end. \throws InputError trace.*
+[[nodiscard]] TracedPath trace_path(const Mandrel& mandrel, const TraceRequest& request);
+
 struct TraceTable {
     std::string csv;
     std::string words;  ///< what happened, in one line
 };
 
-/// Traces from the start, or connects it with the given end. The table is
-/// `point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,bridge_mm`. The slip is
-/// measured from the finished path. \throws InputError trace.*
+/// trace_path() as a table with the columns
+/// `point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,bridge_mm`.
+/// \throws InputError trace.*
 [[nodiscard]] TraceTable trace_table(const Mandrel& mandrel, const TraceRequest& request);
 
 }  // namespace meshwind
