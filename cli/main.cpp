@@ -94,9 +94,10 @@ void add_job(CLI::App& app, JobArguments& job, const char* meaning) {
 }
 
 void add_wind_options(CLI::App& app, WindArguments& options, bool required) {
-    auto* mandrel =
-        app.add_option("mandrel", options.mandrel, "mesh of the part: " + mesh_endings())
-            ->type_name("FILE");
+    auto* mandrel = app.add_option("mandrel", options.mandrel,
+                                   "mesh of the part: " + mesh_endings() +
+                                       "; or the outline of a body of revolution: .csv or .dxf")
+                        ->type_name("FILE");
     if (required) {
         mandrel->required();
     }

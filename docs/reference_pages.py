@@ -259,7 +259,7 @@ _meshwind_fill() {
     local what=$1 current=$2
     case ${what%% *} in
     mesh)
-        _meshwind_files "$current" stl STL obj ply off
+        _meshwind_files "$current" stl STL obj ply off csv dxf
         _meshwind_named "$current" '*.stl' data data/meshes
         _meshwind_named "$current" '*.obj' data/meshes
         [[ $what != *' '* ]] || COMPREPLY+=($(compgen -W "${what#* }" -- "$current"))

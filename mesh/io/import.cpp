@@ -93,6 +93,7 @@ TriangleSoup read_format(std::string_view bytes, const std::string& name) {
                        format == ".igs" || format == ".brep";
     throw InputError("mesh.unknown_format", name,
                      "the ending '" + format + "' is not known, use " + mesh_endings() +
+                         ", or .csv or .dxf for the outline of a body of revolution" +
                          (solid ? "; CAD exports a solid as .stl, and gmsh -2 PART" + format +
                                       " -o PART.stl makes one without it"
                                 : ""));

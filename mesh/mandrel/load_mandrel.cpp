@@ -18,6 +18,7 @@
 #include "mesh/io/import.h"
 #include "mesh/mandrel/remarks.h"
 #include "mesh/mandrel/swept_part.h"
+#include "mesh/profile/profile_file.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/weld.h"
 #include "mesh/revolution/crease_rings.h"
@@ -428,6 +429,15 @@ TriangleSoup refined_wall(const Mandrel& mandrel, double edge_mm) {
 }
 
 Mandrel load_mandrel(const std::filesystem::path& file, const MandrelOptions& options) {
+    if (is_profile(file)) {
+        const ProfileFile profile = read_profile(file);
+        MandrelOptions about_axis = options;
+        if (!about_axis.axis) {
+            about_axis.axis = {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+        }
+        return build(swept_profile(profile, file.string()), profile.stated_unit_mm, file.string(),
+                     about_axis);
+    }
     TriangleSoup soup = read_triangles(file);
     return build(std::move(soup), stated_unit_mm(file), file.string(), options);
 }
