@@ -7,10 +7,15 @@
 #include <iterator>
 
 #include "core/error.h"
+#include "core/text/text_number.h"
 #include "mesh/revolution/swept_wall.h"
 
 namespace meshwind {
 namespace {
+
+// A curve is at most so many times as long as its chord from one point to the next: an arc of 150
+// degrees is 1.4 times.
+constexpr double kMostSwing = 1.5;
 
 // A profile is a few lines, or some thousand points.
 constexpr std::uintmax_t kMostBytes = 64 << 20;
@@ -53,6 +58,17 @@ ProfileFile read_profile(const std::filesystem::path& file) {
 
 TriangleSoup swept_profile(const ProfileFile& profile, const std::string& file) {
     const Meridian meridian(profile.nodes);
+    for (const MeridianPiece& piece : meridian.pieces()) {
+        if (!(piece.length_mm <= kMostSwing * (piece.to_mm - piece.from_mm).norm())) {
+            throw InputError(
+                "profile.smooth", file,
+                "goes through no smooth curve from x = " + fixed(piece.from_mm.y(), 4) +
+                    ", r = " + fixed(piece.from_mm.x(), 4) +
+                    " to x = " + fixed(piece.to_mm.y(), 4) + ", r = " + fixed(piece.to_mm.x(), 4) +
+                    "; mend the points, give more of them, or say in columns line and "
+                    "crease where it is none");
+        }
+    }
     const double radius = meridian.at(meridian.widest_mm()).radius_mm;
     const double height = std::abs(profile.nodes.back().z_mm - profile.nodes.front().z_mm);
     LabelledMesh wall = swept_wall(meridian, std::hypot(2.0 * radius, 2.0 * radius, height));

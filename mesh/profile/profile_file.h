@@ -47,7 +47,8 @@ struct ProfileFile {
 
 /// The surface that the profile sweeps, outside in front, in rings of triangles whose vertices lie
 /// on it to rounding (mesh/revolution/swept_wall.h). \param file name for the errors
-/// \throws InputError profile.points where it would take too many triangles
+/// \throws InputError profile.smooth where no smooth curve goes through the points;
+/// profile.points where it would take too many triangles
 [[nodiscard]] TriangleSoup swept_profile(const ProfileFile& profile, const std::string& file);
 
 }  // namespace meshwind

@@ -115,7 +115,8 @@ std::vector<Place> rings_of(const Meridian& meridian, double size_mm) {
     std::vector<Place> places;
     std::size_t stretch = 0;
     for (std::size_t i = 0; i < meridian.pieces().size(); ++i) {
-        while (bounds[stretch + 1] <= meridian.nodes_mm()[i]) {
+        // Nodes may coincide to rounding.
+        while (stretch + 2 < bounds.size() && bounds[stretch + 1] <= meridian.nodes_mm()[i]) {
             ++stretch;
         }
         append_places(meridian, i, bounds[stretch + 1] - bounds[stretch], size_mm, places);

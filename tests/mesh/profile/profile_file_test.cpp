@@ -147,6 +147,24 @@ TEST(ProfileCsv, RefusesInTheLine) {
     }
 }
 
+// Points that lie on no smooth curve, found by the fuzzer: the spline through them is 1e65 long.
+TEST(ProfileCsv, RefusesWhatIsNoSmoothCurve) {
+    const ProfileFile wild = read_profile_csv(table({{-2020, 54.9871},
+                                                     {-203.1266, 46.4749},
+                                                     {-2.0164, 43.5324},
+                                                     {-206.9808, 31.224},
+                                                     {-207.569, 28.1765},
+                                                     {-2204, 92485},
+                                                     {-204.8477, 40.5426},
+                                                     {-205.6193, 37.5088},
+                                                     {-206.3306, 34.4343},
+                                                     {-206.9808, 31.224},
+                                                     {-207.569, 28.1765},
+                                                     {-208, 92485}}),
+                                              "a.csv");
+    EXPECT_EQ(code_of([&] { (void)swept_profile(wild, "a.csv"); }), "profile.smooth");
+}
+
 using Pairs = std::vector<std::pair<int, std::string>>;
 
 std::string dxf(const std::vector<Pairs>& entities, const std::string& before = "") {
