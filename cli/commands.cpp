@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -20,7 +20,6 @@
 #include "core/error.h"
 #include "core/files/project_files.h"
 #include "core/files/write_file.h"
-#include "core/text/digest.h"
 #include "core/text/text_file.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
@@ -52,10 +51,7 @@ namespace {
 namespace fs = std::filesystem;
 
 double unit_mm(const std::string& name) {
-    static const std::map<std::string, double> kUnits = {{"", 0.0},   {"auto", 0.0}, {"um", 1e-3},
-                                                         {"mm", 1.0}, {"cm", 10.0},  {"m", 1000.0},
-                                                         {"in", 25.4}};
-    return kUnits.at(name);
+    return name.empty() ? 0.0 : mm_per(name).value();
 }
 
 Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
@@ -153,11 +149,8 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
                                        .mandrel_frame = post->frame == "mandrel",
                                        .farthest_mm = post->within_mm};
     }
-    const auto mandrel = [&](const Job& asked) {
-        Mandrel read = load_mandrel(mandrel_file, mandrel_options(asked, unit_mm(common.units)));
-        options.mandrel_digest = "sha256 " + sha256_hex(read_text_file(mandrel_file));
-        return read;
-    };
+    const MandrelOf mandrel =
+        mandrel_reader(mandrel_file, unit_mm(common.units), options.mandrel_digest);
     spare_inputs(arguments.out, {mandrel_file, options.files.machine, options.files.job,
                                  post != nullptr ? fs::path(post->points) : fs::path()});
     OutputFolder folder(arguments.out);  // unusable: better known now
@@ -177,14 +170,6 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
     return exit_code(post != nullptr ? post->points : arguments.mandrel, run.checks, common);
 }
 
-// The plan's table for a program: "path-2.csv" for "program-2.ngc", if there is one.
-NamedText table_of(const VerifyArguments& arguments, const std::string& name) {
-    const fs::path plan = arguments.plan;
-    const fs::path numbered = plan / (name + suffix_of(arguments.program) + ".csv");
-    const fs::path file = fs::exists(numbered) ? numbered : plan / (name + ".csv");
-    return {file.string(), read_text_file(file)};
-}
-
 std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double file_unit_mm) {
     std::vector<std::string> names = arguments.mandrels;
     if (names.empty()) {
@@ -192,20 +177,11 @@ std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double fi
     }
     std::vector<StudyMandrel> mandrels;
     for (const std::string& name : names) {
-        if (name == "cylinder") {
-            for (const double radius_mm : arguments.radii_mm) {
-                mandrels.push_back(cylinder_study(radius_mm));
-            }
-        } else if (name == "torus") {
-            mandrels.push_back(torus_study());
-        } else if (name == "ellipsoid") {
-            mandrels.push_back(ellipsoid_study());
-        } else if (name == "tee") {
-            mandrels.push_back(tee_study());
-        } else {
-            mandrels.push_back(
-                file_study(load_mandrel(find_input(name), {.unit_mm = file_unit_mm})));
+        std::vector<StudyMandrel> known = known_studies(name, arguments.radii_mm);
+        if (known.empty()) {
+            known.push_back(file_study(load_mandrel(find_input(name), {.unit_mm = file_unit_mm})));
         }
+        std::move(known.begin(), known.end(), std::back_inserter(mandrels));
     }
     return mandrels;
 }
@@ -248,8 +224,8 @@ int run_verify_command(const VerifyArguments& arguments, const Common& common) {
     require_turns_without_plan(job, files.job);
     inputs.program = {arguments.program, read_text_file(arguments.program)};
     if (!arguments.plan.empty()) {
-        inputs.path = table_of(arguments, "path");
-        inputs.motion = table_of(arguments, "motion");
+        inputs.path = plan_table(arguments.plan, arguments.program, "path");
+        inputs.motion = plan_table(arguments.plan, arguments.program, "motion");
     }
     std::optional<OutputFolder> folder;
     if (!arguments.out.empty()) {

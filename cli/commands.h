@@ -81,7 +81,8 @@ struct TraceArguments {
 struct StudyArguments {
     /// cylinder, torus, ellipsoid, tee or a file; empty: the four
     std::vector<std::string> mandrels;
-    std::vector<double> radii_mm{20.0, 70.0, 450.0};  ///< of the cylinders
+    std::vector<double> radii_mm{kStudyRadii_mm.begin(),
+                                 kStudyRadii_mm.end()};  ///< of the cylinders
     MeshSizeOptions options;
     std::string out;
 };

@@ -1,10 +1,15 @@
 #include "pipeline/load_inputs.h"
 
+#include <utility>
 #include <variant>
 
+#include "core/text/digest.h"
 #include "core/text/text_file.h"
 #include "machines/machine_json.h"
 #include "mesh/io/import.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "pipeline/run_names.h"
+#include "pipeline/setup.h"
 
 namespace meshwind {
 namespace {
@@ -43,6 +48,22 @@ Job job_of_text(std::string_view text, const std::string& name, const std::files
         }
     }
     return job;
+}
+
+MandrelOf mandrel_reader(std::filesystem::path file, double unit_mm, std::string& digest) {
+    return [file = std::move(file), unit_mm, &digest](const Job& job) {
+        Mandrel mandrel = load_mandrel(file, mandrel_options(job, unit_mm));
+        digest = "sha256 " + sha256_hex(read_text_file(file));
+        return mandrel;
+    };
+}
+
+NamedText plan_table(const std::filesystem::path& plan, const std::filesystem::path& program,
+                     const std::string& name) {
+    const std::filesystem::path numbered = plan / (name + suffix_of(program) + ".csv");
+    const std::filesystem::path file =
+        std::filesystem::exists(numbered) ? numbered : plan / (name + ".csv");
+    return {file.string(), read_text_file(file)};
 }
 
 LandingText read_landing_points(const std::filesystem::path& file) {

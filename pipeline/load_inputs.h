@@ -8,6 +8,8 @@
 
 #include "machines/machine.h"
 #include "pipeline/job/job.h"
+#include "pipeline/verify_text.h"
+#include "pipeline/wind.h"
 
 namespace meshwind {
 
@@ -24,6 +26,16 @@ namespace meshwind {
 [[nodiscard]] Job job_of_text(std::string_view text, const std::string& name,
                               const std::filesystem::path& folder,
                               std::span<const JobSetting> settings = {});
+
+/// Reads a mandrel's file as a job asks for it, for wind(). \param digest is told what the
+/// programs' heads say of the file; must outlive the reader
+[[nodiscard]] MandrelOf mandrel_reader(std::filesystem::path file, double unit_mm,
+                                       std::string& digest);
+
+/// A table of a plan's folder for one of its programs, "path-2.csv" for "program-2.ngc" where there
+/// is one. \param name "path" or "motion" \throws IoError io.cannot_read
+[[nodiscard]] NamedText plan_table(const std::filesystem::path& plan,
+                                   const std::filesystem::path& program, const std::string& name);
 
 /// The landing points of a file.
 /// \throws IoError io.cannot_read

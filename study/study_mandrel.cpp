@@ -82,6 +82,22 @@ StudyMandrel tee_study() {
     return study;
 }
 
+std::vector<StudyMandrel> known_studies(const std::string& name, std::span<const double> radii_mm) {
+    std::vector<StudyMandrel> studies;
+    if (name == "cylinder") {
+        for (const double radius_mm : radii_mm) {
+            studies.push_back(cylinder_study(radius_mm));
+        }
+    } else if (name == "torus") {
+        studies.push_back(torus_study());
+    } else if (name == "ellipsoid") {
+        studies.push_back(ellipsoid_study());
+    } else if (name == "tee") {
+        studies.push_back(tee_study());
+    }
+    return studies;
+}
+
 StudyMandrel file_study(Mandrel mandrel) {
     StudyMandrel study;
     study.mandrel = std::make_unique<Mandrel>(std::move(mandrel));

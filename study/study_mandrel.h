@@ -1,9 +1,11 @@
 /// The parts of a study: meshes of any edge length of one surface, and what is exact on it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,14 @@ struct StudyMandrel {
 [[nodiscard]] StudyMandrel torus_study();
 [[nodiscard]] StudyMandrel ellipsoid_study();
 [[nodiscard]] StudyMandrel tee_study();
+
+/// Radii of the cylinders where none are asked for.
+inline constexpr std::array kStudyRadii_mm = {20.0, 70.0, 450.0};
+
+/// The mandrels that a study knows by a name: "cylinder" of each radius, "torus", "ellipsoid",
+/// "tee". \return none for any other name
+[[nodiscard]] std::vector<StudyMandrel> known_studies(const std::string& name,
+                                                      std::span<const double> radii_mm);
 
 /// A part of which only its mesh is known: the mesh and coarser ones of it, against paths by
 /// TraceMethod::Patches on the mesh refined once. \throws InputError refine.too_many

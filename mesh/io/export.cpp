@@ -1,7 +1,6 @@
 #include "mesh/io/export.h"
 
 #include <bit>
-#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/text/text_number.h"
+#include "mesh/io/import.h"
 
 namespace meshwind {
 namespace {
@@ -110,10 +110,7 @@ std::string off_text(const TriangleSoup& soup) {
 }  // namespace
 
 MeshFormat mesh_format_of(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& letter : extension) {
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    }
+    const std::string extension = lower_ending(file);
     if (extension == ".stl") {
         return MeshFormat::Stl;
     }

@@ -83,7 +83,7 @@ StlKind kind_of_stl(std::string_view bytes) {
 }
 
 TriangleSoup read_format(std::string_view bytes, const std::string& name) {
-    const std::string format = lower(std::filesystem::path(name).extension().string());
+    const std::string format = lower_ending(name);
     for (const MeshReader& reader : kMeshReaders) {
         if (format == reader.ending) {
             return reader.read(bytes, name);
@@ -138,6 +138,14 @@ TriangleSoup read_stl(std::string_view bytes, const std::string& name) {
     return triangles_of(read_text_stl(bytes, name));
 }
 
+std::string read_part_file(const std::filesystem::path& file) {
+    return read_bytes(file, std::string::npos);
+}
+
+std::string lower_ending(const std::filesystem::path& file) {
+    return lower(file.extension().string());
+}
+
 std::string mesh_endings() {
     std::string endings;
     for (std::size_t i = 0; i < kMeshReaders.size(); ++i) {
@@ -148,7 +156,7 @@ std::string mesh_endings() {
 }
 
 TriangleSoup read_triangles(const std::filesystem::path& file) {
-    return parse_triangles(read_bytes(file, std::string::npos), file.string());
+    return parse_triangles(read_part_file(file), file.string());
 }
 
 TriangleSoup parse_triangles(std::string_view bytes, const std::string& name) {

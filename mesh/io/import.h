@@ -20,7 +20,13 @@ namespace meshwind {
 /// the byte; Interrupted
 [[nodiscard]] TriangleSoup read_triangles(const std::filesystem::path& file);
 
-/// The same of a file's bytes. \param name for the errors; its ending tells the format
+/// The bytes of a file of a part. \throws as read_triangles() for a file that cannot be read
+[[nodiscard]] std::string read_part_file(const std::filesystem::path& file);
+
+/// ".stl" of "PART.STL"; empty without an ending.
+[[nodiscard]] std::string lower_ending(const std::filesystem::path& file);
+
+/// read_triangles() of a file's bytes. \param name for the errors; its ending tells the format
 [[nodiscard]] TriangleSoup parse_triangles(std::string_view bytes, const std::string& name);
 
 /// Endings of files that are read, in words: ".stl, .obj, .ply or .off".

@@ -149,16 +149,13 @@ private:
 
     void find_lines() {
         const std::size_t chords = points_.size() - 1;
-        std::vector<char> line(chords, chords == 1 ? 1 : 0);
-        for (std::size_t i = 0; i < chords && chords > 1; ++i) {
+        for (std::size_t i = 0; i < chords; ++i) {
             const double before = i > 0 ? chord(i - 1).norm() : 0.0;
             const double behind = i + 1 < chords ? chord(i + 1).norm() : 0.0;
             const bool goes_on = (i > 0 && turn_rad(i) < kSameLine_rad) ||
                                  (i + 1 < chords && turn_rad(i + 1) < kSameLine_rad);
-            line[i] = goes_on || chord(i).norm() > kLongChord * std::max(before, behind) ? 1 : 0;
-        }
-        for (std::size_t i = 0; i < chords; ++i) {
-            points_[i].line = points_[i].line || line[i] != 0;
+            points_[i].line = points_[i].line || goes_on ||
+                              chord(i).norm() > kLongChord * std::max(before, behind);
         }
     }
 

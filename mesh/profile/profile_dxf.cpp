@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "core/error.h"
 #include "core/text/text_number.h"
@@ -96,12 +97,12 @@ public:
 
     bool next() {
         std::string_view code;
-        do {
+        while (code.empty()) {  // values may be empty, codes are not: blank lines behind the end
             if (rest_.empty()) {
                 return false;
             }
             code = line();
-        } while (code.empty() && rest_.empty());
+        }
         const auto number = number_of(code);
         if (!number || *number != std::floor(*number) || std::abs(*number) > 9999.0) {
             refuse("profile.drawing", "has no group code of a DXF; save the drawing as ASCII DXF");
@@ -212,9 +213,9 @@ private:
             return false;
         }
         if (units && text_.code() == 70) {
-            static const std::map<int, double> kUnits = {
+            static const std::map<double, double> kUnits = {
                 {1, 25.4}, {4, 1.0}, {5, 10.0}, {6, 1000.0}, {13, 1e-3}};
-            const auto known = kUnits.find(static_cast<int>(text_.number()));
+            const auto known = kUnits.find(text_.number());
             unit_mm_ = known != kUnits.end() ? known->second : 0.0;
         }
         return true;
@@ -342,16 +343,13 @@ private:
 class Chain {
 public:
     Chain(std::vector<Piece> pieces, std::string file) : file_(std::move(file)) {
-        Vector2d low = Vector2d::Constant(0.0);
-        Vector2d high = low;
-        for (std::size_t i = 0; i < pieces.size(); ++i) {
-            for (const Vector2d& p : {pieces[i].from, pieces[i].to}) {
-                low = i == 0 ? p : Vector2d(low.cwiseMin(p));
-                high = i == 0 ? p : Vector2d(high.cwiseMax(p));
-            }
+        Eigen::AlignedBox2d box;
+        for (const Piece& piece : pieces) {
+            box.extend(piece.from);
+            box.extend(piece.to);
         }
-        same_ = kSamePlaceShare * (high - low).norm();
-        if (high.y() <= same_) {  // drawn below the axis
+        same_ = box.isEmpty() ? 0.0 : kSamePlaceShare * box.sizes().norm();
+        if (!box.isEmpty() && box.max().y() <= same_) {  // drawn below the axis
             for (Piece& piece : pieces) {
                 for (Vector2d* p : {&piece.from, &piece.to, &piece.centre}) {
                     p->y() = -p->y();

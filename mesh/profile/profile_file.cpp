@@ -1,13 +1,10 @@
 #include "mesh/profile/profile_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "core/error.h"
 #include "core/text/text_number.h"
+#include "mesh/io/import.h"
 #include "mesh/revolution/swept_wall.h"
 
 namespace meshwind {
@@ -17,43 +14,17 @@ namespace {
 // degrees is 1.4 times.
 constexpr double kMostSwing = 1.5;
 
-// A profile is a few lines, or some thousand points.
-constexpr std::uintmax_t kMostBytes = 64 << 20;
-
-std::string ending_of(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending;
-}
-
-std::string text_of(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) {
-        throw IoError("mesh.missing_file", file.string(), "no such file, check the name");
-    }
-    std::ifstream stream(file, std::ios::binary);
-    if (!std::filesystem::is_regular_file(file, error) || !stream) {
-        throw IoError("mesh.unreadable", file.string(), "cannot be read, check its permissions");
-    }
-    if (std::filesystem::file_size(file, error) > kMostBytes) {
-        throw InputError("profile.points", file.string(),
-                         "is larger than 64 MB; a profile has a few lines or points");
-    }
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 bool is_profile(const std::filesystem::path& file) {
-    const std::string ending = ending_of(file);
+    const std::string ending = lower_ending(file);
     return ending == ".csv" || ending == ".dxf";
 }
 
 ProfileFile read_profile(const std::filesystem::path& file) {
-    const std::string text = text_of(file);
-    return ending_of(file) == ".dxf" ? read_profile_dxf(text, file.string())
-                                     : read_profile_csv(text, file.string());
+    const std::string text = read_part_file(file);
+    return lower_ending(file) == ".dxf" ? read_profile_dxf(text, file.string())
+                                        : read_profile_csv(text, file.string());
 }
 
 TriangleSoup swept_profile(const ProfileFile& profile, const std::string& file) {

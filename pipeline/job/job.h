@@ -137,6 +137,9 @@ struct Job {
 /// Millimetres per unit; 0 for Auto, which leaves the choice to the reader of the mandrel.
 [[nodiscard]] double mm_per(LengthUnit unit);
 
+/// The same of a unit's word in job files, "mm"; none where there is no such unit.
+[[nodiscard]] std::optional<double> mm_per(std::string_view word);
+
 /// One value that is put over what a file says: key layers.0.kind, value hoop.
 struct JobSetting {
     std::string key;    ///< keys and indices, joined by dots

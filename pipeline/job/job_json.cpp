@@ -22,6 +22,14 @@ double mm_per(LengthUnit unit) {
     return kMillimetres[static_cast<std::size_t>(unit)];
 }
 
+std::optional<double> mm_per(std::string_view word) {
+    const auto& words = length_words();
+    const auto found = std::find(words.begin(), words.end(), word);
+    return found == words.end()
+               ? std::nullopt
+               : std::optional(mm_per(static_cast<LengthUnit>(found - words.begin())));
+}
+
 std::string_view name_of(LayerKind kind) {
     return layer_words()[static_cast<std::size_t>(kind)];
 }

@@ -142,7 +142,7 @@ Key<Job::MandrelJob> turn_key() {
 const KeyTable<Job::MandrelJob>& mandrel_keys() {
     using Owner = Job::MandrelJob;
     static const KeyTable<Owner> kTable = {{
-        word("units", &Owner::units, {"auto", "um", "mm", "cm", "m", "in"},
+        word("units", &Owner::units, length_words(),
              "length of a unit of the mandrel's file; auto: what the file states, else mm, else "
              "metres if the part is under 10 units"),
         axis_key(),
@@ -485,6 +485,11 @@ SchemaJson forced_turn_rule() {
 }
 
 }  // namespace
+
+const Words& length_words() {
+    static const Words kWords = {"auto", "um", "mm", "cm", "m", "in"};
+    return kWords;
+}
 
 const Words& layer_words() {
     static const Words kWords = {"auto",  "helical",  "hoop",    "polar",

@@ -218,7 +218,8 @@ void bind_run(py::module_& module) {
                                })
         .def_property_readonly("fibres", &fibres_of_layer);
 
-    py::class_<OwnedRun, std::shared_ptr<OwnedRun>>(module, "Run")
+    // Python keeps the report there that it has made of the text.
+    py::class_<OwnedRun, std::shared_ptr<OwnedRun>>(module, "Run", py::dynamic_attr())
         .def_property_readonly("ok", [](const OwnedRun& self) { return self.run.passed(); })
         .def_property_readonly("usable", [](const OwnedRun& self) { return self.run.usable; })
         .def_property_readonly("remarks", [](const OwnedRun& self) { return self.run.remarks; })

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,7 +20,6 @@
 #include "core/files/project_files.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
-#include "core/text/digest.h"
 #include "core/text/text_file.h"
 #include "core/version.h"
 #include "mesh/mandrel/load_mandrel.h"
@@ -65,9 +67,6 @@ private:
     static inline struct sigaction before_ {};
 };
 
-// Of the cylinder that a study knows by name.
-constexpr double kCylinderRadius_mm = 70.0;
-
 // The job of a file, or of a dictionary that Python has made a text.
 struct JobSource {
     fs::path file;
@@ -77,6 +76,17 @@ struct JobSource {
         return text.empty() ? load_job(file) : job_of_text(text, "job", {});
     }
 };
+
+// A unit's word, or none: as the job and the file have it.
+using Units = std::optional<std::string>;
+
+double mm_of(const Units& units) {
+    const std::optional<double> known = mm_per(units.value_or("auto"));
+    if (!known) {
+        throw std::invalid_argument("units are auto, um, mm, cm, m or in, not '" + *units + "'");
+    }
+    return *known;
+}
 
 std::function<void(const std::string&, double)> progress_of(const py::object& called) {
     if (called.is_none()) {
@@ -93,16 +103,16 @@ std::function<void(const std::string&, double)> progress_of(const py::object& ca
     };
 }
 
-std::shared_ptr<Mandrel> load(const fs::path& file, const JobSource& job, double unit_mm) {
+std::shared_ptr<Mandrel> load(const fs::path& file, const JobSource& job, const Units& units) {
     const EndsOnInterrupt ends;
     const py::gil_scoped_release unlock;
     return std::make_shared<Mandrel>(
-        load_mandrel(find_input(file.string()), mandrel_options(job.read(), unit_mm)));
+        load_mandrel(find_input(file.string()), mandrel_options(job.read(), mm_of(units))));
 }
 
 // As the command line winds (cli/commands.cpp).
 std::shared_ptr<OwnedRun> wind_file(const fs::path& mandrel, const fs::path& machine,
-                                    const JobSource& source, double unit_mm, std::uint64_t seed,
+                                    const JobSource& source, const Units& units, std::uint64_t seed,
                                     double effort, bool force, const py::object& progress) {
     const EndsOnInterrupt ends;
     WindOptions options;
@@ -116,31 +126,27 @@ std::shared_ptr<OwnedRun> wind_file(const fs::path& mandrel, const fs::path& mac
     require_machine_file(options.files.machine);
     const Machine loaded = load_machine(options.files.machine);
     const Job job = source.read();
-    const auto read = [&](const Job& asked) {
-        Mandrel part = load_mandrel(file, mandrel_options(asked, unit_mm));
-        options.mandrel_digest = "sha256 " + sha256_hex(read_text_file(file));
-        return part;
-    };
-    return std::make_shared<OwnedRun>(wind(MandrelOf(read), loaded, job, options));
+    const MandrelOf read = mandrel_reader(file, mm_of(units), options.mandrel_digest);
+    return std::make_shared<OwnedRun>(wind(read, loaded, job, options));
 }
 
 std::string verify_file(const fs::path& program, const fs::path& mandrel, const fs::path& machine,
-                        const JobSource& source, const fs::path& path_table,
-                        const fs::path& motion_table, double unit_mm, std::uint64_t seed) {
+                        const JobSource& source, const fs::path& plan, const Units& units,
+                        std::uint64_t seed) {
     const EndsOnInterrupt ends;
     const py::gil_scoped_release unlock;
     const InputFiles files{.machine = find_input(machine.string()), .job = source.file};
     require_machine_file(files.machine);
     const Job job = source.read();
     Setup setup =
-        make_setup(load_mandrel(find_input(mandrel.string()), mandrel_options(job, unit_mm)),
+        make_setup(load_mandrel(find_input(mandrel.string()), mandrel_options(job, mm_of(units))),
                    load_machine(files.machine), job, files);
     require_turns_without_plan(job, files.job);
     VerifyInputs inputs;
     inputs.program = {program.string(), read_text_file(program)};
-    if (!path_table.empty()) {
-        inputs.path = NamedText{path_table.string(), read_text_file(path_table)};
-        inputs.motion = NamedText{motion_table.string(), read_text_file(motion_table)};
+    if (!plan.empty()) {
+        inputs.path = plan_table(plan, program, "path");
+        inputs.motion = plan_table(plan, program, "motion");
     }
     RunContext context;
     context.seed = seed;
@@ -154,7 +160,7 @@ std::shared_ptr<TracedPath> trace_on(const std::shared_ptr<Mandrel>& mandrel,
     return std::make_shared<TracedPath>(trace_path(*mandrel, request));
 }
 
-std::string study(const std::vector<fs::path>& files, double unit_mm, MeshSizeOptions options,
+std::string study(const std::vector<fs::path>& files, const Units& units, MeshSizeOptions options,
                   const py::object& progress) {
     const EndsOnInterrupt ends;
     options.context.progress = progress_of(progress);
@@ -162,12 +168,11 @@ std::string study(const std::vector<fs::path>& files, double unit_mm, MeshSizeOp
     std::vector<StudyMandrel> mandrels;
     for (const fs::path& file : files) {
         const std::string name = file.string();
-        mandrels.push_back(name == "torus"       ? torus_study()
-                           : name == "ellipsoid" ? ellipsoid_study()
-                           : name == "tee"       ? tee_study()
-                           : name == "cylinder"
-                               ? cylinder_study(kCylinderRadius_mm)
-                               : file_study(load_mandrel(find_input(name), {.unit_mm = unit_mm})));
+        std::vector<StudyMandrel> known = known_studies(name, kStudyRadii_mm);
+        if (known.empty()) {
+            known.push_back(file_study(load_mandrel(find_input(name), {.unit_mm = mm_of(units)})));
+        }
+        std::move(known.begin(), known.end(), std::back_inserter(mandrels));
     }
     options.validate();
     return study_json(run_study(mandrels, options));
@@ -224,7 +229,7 @@ PYBIND11_MODULE(_meshwind, module) {
                                       .length_mm = length_mm,
                                       .method = walk ? TraceMethod::Walk : TraceMethod::Patches});
         });
-    module.def("study_mesh_size", [](const std::vector<fs::path>& mandrels, double unit_mm,
+    module.def("study_mesh_size", [](const std::vector<fs::path>& mandrels, const Units& units,
                                      const std::vector<double>& edges_mm, std::optional<int> paths,
                                      std::uint64_t seed, const py::object& progress) {
         MeshSizeOptions options;
@@ -233,6 +238,6 @@ PYBIND11_MODULE(_meshwind, module) {
         }
         options.paths = paths.value_or(options.paths);
         options.context.seed = seed;
-        return study(mandrels, unit_mm, std::move(options), progress);
+        return study(mandrels, units, std::move(options), progress);
     });
 }

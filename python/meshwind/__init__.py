@@ -26,15 +26,6 @@ from .errors import Error, InputError, IoError, NumericalError  # noqa: E402
 __all__ = ["Error", "Fibre", "InputError", "IoError", "Layer", "Layup", "Mandrel", "NumericalError", "Path", "Piece", "Rim",
            "Run", "Verification", "load_mandrel", "set_threads", "study_mesh_size", "trace", "verify", "wind"]
 
-_UNITS_MM = {None: 0.0, "auto": 0.0, "um": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
-
-
-def _unit_mm(units):
-    if units not in _UNITS_MM:
-        raise ValueError(f"units are {', '.join(str(unit) for unit in _UNITS_MM)}, not {units!r}")
-    return _UNITS_MM[units]
-
-
 def _job(job):
     """A job of a dictionary, of a file, or the defaults."""
     if job is None:
@@ -56,7 +47,7 @@ def load_mandrel(file, job=None, *, units=None):
     job    dictionary, job file, or None: the defaults
     units  of the file: "um", "mm", "cm", "m", "in"; None: as the job and the file have it
     """
-    return _meshwind.load_mandrel(_os.fspath(file), _job(job), _unit_mm(units))
+    return _meshwind.load_mandrel(_os.fspath(file), _job(job), units)
 
 
 def wind(mandrel, machine="six_axis.json", job=None, *, units=None, seed=1, effort=1.0, force=False, progress=None):
@@ -70,7 +61,7 @@ def wind(mandrel, machine="six_axis.json", job=None, *, units=None, seed=1, effo
 
     Raises InputError for what cannot be wound at all. What a plan cannot do is a check that failed: run.ok, run.checks.
     """
-    return _meshwind.wind(_os.fspath(mandrel), _os.fspath(machine), _job(job), _unit_mm(units), seed, effort, force, progress)
+    return _meshwind.wind(_os.fspath(mandrel), _os.fspath(machine), _job(job), units, seed, effort, force, progress)
 
 
 class Verification:
@@ -92,15 +83,8 @@ class Verification:
 
 def verify(program, mandrel, machine="six_axis.json", job=None, *, plan=None, units=None, seed=1):
     """Winds a program's text again and judges it. plan: folder of the run that made it, to compare with."""
-    program = _pathlib.Path(program)
-    tables = ["", ""]
-    if plan is not None:
-        # Of program-2.ngc it is path-2.csv, where there is one.
-        suffix = program.stem[program.stem.index("-"):] if "-" in program.stem else ""
-        tables = [str(next((file for file in (_pathlib.Path(plan) / f"{name}{suffix}.csv",) if file.exists()),
-                           _pathlib.Path(plan) / f"{name}.csv")) for name in ("path", "motion")]
-    return Verification(_json.loads(_meshwind.verify(str(program), _os.fspath(mandrel), _os.fspath(machine), _job(job),
-                                                     *tables, _unit_mm(units), seed)))
+    return Verification(_json.loads(_meshwind.verify(_os.fspath(program), _os.fspath(mandrel), _os.fspath(machine), _job(job),
+                                                     "" if plan is None else _os.fspath(plan), units, seed)))
 
 
 def trace(mandrel, start, *, direction=None, angle_deg=None, to=None, slip_ratio=0.0, length_mm=10000.0, method="patches"):
@@ -122,13 +106,15 @@ def trace(mandrel, start, *, direction=None, angle_deg=None, to=None, slip_ratio
 def study_mesh_size(mandrels=("cylinder", "torus", "ellipsoid", "tee"), *, edges_mm=(), paths=None, units=None, seed=1,
                     progress=None):
     """Path errors against the mesh size, as study.json has them (docs/study.md). mandrels: names as by default, or files."""
-    return _json.loads(_meshwind.study_mesh_size([_os.fspath(mandrel) for mandrel in mandrels], _unit_mm(units),
+    return _json.loads(_meshwind.study_mesh_size([_os.fspath(mandrel) for mandrel in mandrels], units,
                                                  list(edges_mm), paths, seed, progress))
 
 
 def _report(run):
     """report.json of the run, as a dictionary (docs/files.md)."""
-    return _json.loads(run.report_text())
+    if not hasattr(run, "_made_report"):
+        run._made_report = _json.loads(run.report_text())
+    return run._made_report
 
 
 def _checks(run):

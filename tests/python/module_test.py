@@ -117,12 +117,16 @@ class Winding(Module):
         self.assertAlmostEqual(laid / courses, 1.0, delta=0.05)
 
     def test_what_fails_has_no_program_but_by_force(self):
-        slips = {"tow": {"width": 12, "friction": 0.001}, "layers": [{"kind": "helical", "angle": 45}]}
+        slips = {"tow": {"width": 12, "friction": 0.001}, "layers": [{"kind": "hoop"}]}
         pipe = self.pipe()
-        run = meshwind.wind(pipe, job=slips)
-        self.assertFalse(run.ok)
-        self.assertFalse(run.usable)
-        self.assertTrue(any(not check["ok"] for check in run.checks.values()))
+        for force in (False, True):
+            run = meshwind.wind(pipe, job=slips, force=force)
+            self.assertFalse(run.ok)
+            self.assertFalse(run.checks["slip"]["ok"])
+            self.assertEqual(run.usable, force)
+            program = run.layers[0].fibres[0].program
+            self.assertEqual("FAILED" in (program or ""), force, program and program[:500])
+            self.assertIs(run.report, run.report)
 
     def test_verify(self):
         pipe = self.pipe()

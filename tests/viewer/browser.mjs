@@ -1,7 +1,8 @@
 // A browser without network and with software WebGL, and a page that notes whatever goes wrong.
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { existsSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const require = createRequire(new URL('../../viewer/package.json', import.meta.url));
@@ -28,6 +29,18 @@ export function launch() {
             '--enable-unsafe-swiftshader',
         ],
     });
+}
+
+/** The page and the folder for pictures, if there is one, of the command line. `usage`: what it is without the latter. */
+export function pageAndPictures(usage) {
+    const file = resolve(process.argv[2] ?? '');
+    const pictures = process.argv[3] && resolve(process.argv[3]);
+    if (!process.argv[2] || !existsSync(file)) {
+        console.error(`usage: node ${usage} [SCREENSHOTS]`);
+        process.exit(2);
+    }
+    if (pictures) mkdirSync(pictures, { recursive: true });
+    return { file, pictures };
 }
 
 /**

@@ -1,19 +1,13 @@
 // What the page of `inspect --page` shows and does, in a browser:
 //   node part_test.mjs PART.html [SCREENSHOTS]
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
-import { darkAndOnPaper, look, narrowPage, open, runTests, withoutWebGl } from './browser.mjs';
+import { join } from 'node:path';
+import { darkAndOnPaper, look, narrowPage, open, pageAndPictures, runTests, withoutWebGl } from './browser.mjs';
 import { arrayOf, readPayload, withPayload } from './payload.mjs';
 
-const file = resolve(process.argv[2] ?? '');
-const pictures = process.argv[3] && resolve(process.argv[3]);
-if (!process.argv[2] || !existsSync(file)) {
-    console.error('usage: node part_test.mjs PART.html [SCREENSHOTS]');
-    process.exit(2);
-}
-if (pictures) mkdirSync(pictures, { recursive: true });
+const { file, pictures } = pageAndPictures('part_test.mjs PART.html');
 const html = readFileSync(file, 'utf8');
 const payload = readPayload(html);
 const { mandrel } = payload.header.inspection;

@@ -1,16 +1,11 @@
 // The run whose page is tested: its payload, its programs, and what motion.csv says of them.
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join, resolve } from 'node:path';
+import { dirname, join } from 'node:path';
+import { pageAndPictures } from './browser.mjs';
 import { arrayOf, readCsv, readPayload, withPayload } from './payload.mjs';
 
-export const file = resolve(process.argv[2] ?? '');
-export const pictures = process.argv[3] && resolve(process.argv[3]);
-if (!process.argv[2] || !existsSync(file)) {
-    console.error('usage: node page_test.mjs REPORT.html [SCREENSHOTS]');
-    process.exit(2);
-}
-if (pictures) mkdirSync(pictures, { recursive: true });
+export const { file, pictures } = pageAndPictures('page_test.mjs REPORT.html');
 
 export const html = readFileSync(file, 'utf8');
 export const payload = readPayload(html);

@@ -1,18 +1,12 @@
 // What the page of a wall shows of it, in a browser:
 //   node wall_test.mjs REPORT.html [SCREENSHOTS]
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
-import { join, resolve } from 'node:path';
-import { look, open, runTests } from './browser.mjs';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { look, open, pageAndPictures, runTests } from './browser.mjs';
 import { arrayOf, readPayload } from './payload.mjs';
 
-const file = resolve(process.argv[2] ?? '');
-const pictures = process.argv[3] && resolve(process.argv[3]);
-if (!process.argv[2] || !existsSync(file)) {
-    console.error('usage: node wall_test.mjs REPORT.html [SCREENSHOTS]');
-    process.exit(2);
-}
-if (pictures) mkdirSync(pictures, { recursive: true });
+const { file, pictures } = pageAndPictures('wall_test.mjs REPORT.html');
 const payload = readPayload(readFileSync(file, 'utf8'));
 const state = (page) => page.evaluate(() => window.meshwind.state());
 
@@ -36,9 +30,12 @@ test('the face under the pointer tells both', async (browser) => {
     await page.keyboard.press('8');
     const box = await page.locator('#scene').boundingBox();
     await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
-    await page.waitForFunction(() => /asked/.test(document.getElementById('hover').textContent));
-    const asked = Number(/asked\s*(\d+)/.exec(await page.textContent('#hover'))[1]);
-    assert.ok(arrayOf(payload, 'wall/asked_layers').includes(asked), `${asked} layers`);
+    await page.waitForFunction(() => /wall/.test(document.getElementById('hover').textContent));
+    const [, laid, asked] = /wall\s*([\d.]+) of (\d+) layers/.exec(await page.textContent('#hover'));
+    const face = arrayOf(payload, 'wall/asked_layers').findIndex(
+        (n, f) => n === Number(asked) && Math.abs(arrayOf(payload, 'wall/laid_layers')[f] - laid) < 0.006,
+    );
+    assert.ok(face >= 0, `no face has ${laid} of ${asked} layers`);
 });
 
 await runTests(tests, () => {});

@@ -31,7 +31,9 @@ export function hoverHtml(page: Page, hit: Hit, layer: number | null): string {
     if (hit.face >= 0) {
         const values = layer === null ? page.total : page.layers[layer].values;
         const bare = values.layers[hit.face] > 0 ? '' : ' \u00b7 bare';
-        const wall: [string, string][] = page.wall ? [['asked', withUnit(page.wall.asked[hit.face], 'layers')]] : [];
+        const wall: [string, string][] = page.wall
+            ? [['wall', `${fixed(page.wall.laid[hit.face], 2)} of ${fixed(page.wall.asked[hit.face], 0)} layers`]]
+            : [];
         html +=
             `<h4>Mandrel, region ${page.region[hit.face]}${bare}</h4><dl>` +
             rows([
