@@ -138,6 +138,28 @@ constexpr const char* kCarryHelp =
     "  meshwind carry frame.stl --tow-width 6 --friction 0.4\n"
     "  meshwind carry axis.csv --machine my_robot.json --tool 0,0,120,0,0,0 --speed 30";
 
+constexpr const char* kCaseHelp =
+    "Winds the mandrel of one row of a table, as the main job does, into DIR/ID; then DIR/ID.json\n"
+    "says how that ended. Columns: id, a folder's name; mandrel; machine [six_axis.json]; job; "
+    "and\n"
+    "any key of a job, whose cell, if not empty, is put over it. Rows do not know of each other:\n"
+    "they run at the same time, on one computer or on many with a common disk.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind study cases cases.csv --row 7 -o out\n"
+    "  parallel meshwind --quiet study cases cases.csv --row {} -o out ::: 1 2 3 4\n";
+
+constexpr const char* kMergeHelp =
+    "Writes DIR/cases.csv: a line for each row, with its outcome, inputs and figures. Rows "
+    "without\n"
+    "an end, or whose inputs have changed since, are missing. Exit code 1 where rows failed or "
+    "are\n"
+    "missing.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind study merge cases.csv -o out\n"
+    "  sbatch --array=$(meshwind study merge cases.csv -o out --left) cases.sh\n";
+
 constexpr const char* kMeshSizeHelp =
     "Lays the same random fibres on ever finer meshes of known surfaces and compares them with "
     "the\n"

@@ -26,8 +26,10 @@ declare -gA _meshwind_words=(
     [carry]='-h --help --from-end --bend-turn --machine --tool --speed --tolerance --tolerance-angle --tube-radius --ring-radius --ring-distance --clearance --angle --tows --tow-width --passes --at-once --spool-radius --angle-tolerance --friction --tow-tex --name -o --out'
     [design]='-h --help vessel'
     [design vessel]='-h --help --radius --opening --length --ke --e1 --e2 --nu12 --design-radius --angles --band --thickness --density --wall --pressure --strength'
-    [study]='-h --help mesh-size'
+    [study]='-h --help mesh-size cases merge'
     [study mesh-size]='-h --help --mandrel --radius --edges --lambda --paths --length --free-length --irregular --regular --timing -o --out'
+    [study cases]='-h --help -o --out --row --effort'
+    [study merge]='-h --help -o --out --left'
 )
 # What an option takes: words, or mesh, machine, job, json, table, axis, program, folder, or - for anything else.
 declare -gA _meshwind_takes=(
@@ -180,6 +182,12 @@ declare -gA _meshwind_takes=(
     [study mesh-size --free-length]='-'
     [study mesh-size -o]='folder'
     [study mesh-size --out]='folder'
+    [study cases -o]='folder'
+    [study cases --out]='folder'
+    [study cases --row]='-'
+    [study cases --effort]='-'
+    [study merge -o]='folder'
+    [study merge --out]='folder'
 )
 # What a command takes besides options.
 declare -gA _meshwind_first=(
@@ -191,6 +199,8 @@ declare -gA _meshwind_first=(
     [trace]='mesh'
     [validate]='json'
     [carry]='axis'
+    [study cases]=''
+    [study merge]=''
 )
 
 # The folder that bare names are looked up in: $MESHWIND_HOME, the checkout, or the installation.

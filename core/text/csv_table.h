@@ -32,6 +32,8 @@ public:
 
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
     [[nodiscard]] std::size_t column(std::string_view name) const;
+    [[nodiscard]] std::size_t columns() const { return names_.size(); }
+    [[nodiscard]] std::string_view name(std::size_t column) const { return names_[column]; }
 
     /// Cells of the line.
     [[nodiscard]] std::string_view cell(std::size_t column) const { return cells_[column]; }

@@ -35,6 +35,7 @@ ALLOWED = [
     ("nlohmann/", "report/*"),
     ("nlohmann/", "cli/commands.cpp"),
     ("CLI/", "cli/main.cpp"),
+    ("CLI/", "cli/options.*"),
     ("pybind11/", "python/bindings/*"),
     ("tbb/", "core/parallel.cpp"),
     ("glpk.h", "core/linear_programme.cpp"),

@@ -1,0 +1,25 @@
+/// Many runs of the main job by a table: one row of it, and all of them together.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "cli/commands.h"
+
+namespace meshwind {
+
+struct CaseArguments {
+    std::string table;
+    std::size_t row = 0;  ///< from 1
+    std::string out = "cases";
+    double effort = 1.0;
+    bool left = false;  ///< of `study merge`: only the rows that are to be run, "3,7"
+};
+
+/// Winds one row into OUT/ID, and notes in OUT/ID.json how that ended. Returns the main job's code.
+int run_case(const CaseArguments& arguments, const Common& common);
+
+/// Writes OUT/cases.csv of all rows. Returns 1 where one failed or is missing, else 0.
+int run_merge(const CaseArguments& arguments, const Common& common);
+
+}  // namespace meshwind

@@ -1,0 +1,409 @@
+#include "cli/options.h"
+
+#include <charconv>
+#include <limits>
+
+#include "cli/usage.h"
+#include "core/units.h"
+#include "mesh/io/import.h"
+
+namespace meshwind {
+namespace {
+
+void add_png(CLI::App& app, PreviewOptions& options) {
+    auto* file = app.add_option("--png", options.file,
+                                "picture to write: mandrel and bands, the last wound on top")
+                     ->type_name("FILE");
+    app.add_option("--png-size", options.size, "its size in pixels")
+        ->type_name("WxH")
+        ->needs(file)
+        ->capture_default_str();
+    app.add_option("--png-colour", options.colour,
+                   "what its colours show: course by course, layers of the wall, slip up to the "
+                   "friction, angle to the spindle")
+        ->needs(file)
+        ->check(one_of({"course", "layers", "slip", "angle"}))
+        ->capture_default_str();
+}
+
+void add_job(CLI::App& app, JobArguments& job, const char* meaning) {
+    app.add_option("--job", job.file, meaning)->type_name("FILE");
+    app.add_option("--set", job.settings,
+                   "a value over that of the job, as often as wanted: tow.width=8, "
+                   "layers.0.angle=55")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+void add_effort(CLI::App& app, double& effort) {
+    app.add_option("--effort", effort,
+                   "how long the plan is improved: 4 takes about 4 times as long as 1, and saves "
+                   "fibre; 0.1 is for a first look")
+        ->type_name("N")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->capture_default_str();
+}
+
+// What stands for a parameter's value in the help.
+std::string name_of_unit(const MakeParameter& parameter) {
+    switch (parameter.unit) {
+        case MakeUnit::Angle:
+            return "DEG";
+        case MakeUnit::Ratio:
+            return "RATIO";
+        default:
+            return "MM";
+    }
+}
+
+void add_case_table(CLI::App& app, CaseArguments& arguments) {
+    app.add_option("table", arguments.table,
+                   "CSV: columns id, mandrel, and machine, job or a job's keys")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--out", arguments.out, "folder of all cases")
+        ->type_name("DIR")
+        ->capture_default_str();
+}
+
+}  // namespace
+
+CLI::Validator whole_number(std::uint64_t most) {
+    return {[most](const std::string& text) {
+                std::uint64_t value = 0;
+                const char* const end = text.data() + text.size();
+                const auto read = std::from_chars(text.data(), end, value);
+                const bool good = read.ec == std::errc() && read.ptr == end && value <= most;
+                return good ? std::string()
+                            : "'" + text + "' is no whole number from 0 to " + std::to_string(most);
+            },
+            ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string_view>& words) {
+    return CLI::Validator([words](const std::string& word) { return why_no_choice(word, words); },
+                          CLI::detail::generate_set(words));
+}
+
+void add_wind_options(CLI::App& app, WindArguments& options, bool required) {
+    auto* mandrel = app.add_option("mandrel", options.mandrel,
+                                   "mesh of the part: " + mesh_endings() +
+                                       "; or the outline of a body of revolution: .csv or .dxf")
+                        ->type_name("FILE");
+    if (required) {
+        mandrel->required();
+    }
+    app.add_option("--machine", options.machine,
+                   "machine file, JSON: axes, limits, eye, controller")
+        ->type_name("FILE")
+        ->capture_default_str();
+    add_job(app, options.job,
+            "job file, JSON: tow, layers, eye rule, tolerances, speed; without it defaults");
+    app.add_option("-o,--out", options.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
+    add_effort(app, options.effort);
+    add_png(app, options.png);
+}
+
+void add_post(CLI::App& app, PostArguments& options) {
+    app.add_option("points", options.points, "table of landing points, CSV; columns below")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
+    app.add_option("--machine", options.machine, "machine file, JSON")
+        ->type_name("FILE")
+        ->required();
+    add_job(app, options.job,
+            "job file, JSON: tow, eye rule, extensions, tolerances; its layers are not read; "
+            "without it defaults");
+    app.add_option("--frame", options.frame,
+                   "axes of the table. file: those of the mandrel's file; mandrel: those of "
+                   "meshwind's own tables, Z along the spindle, in mm")
+        ->check(one_of({"file", "mandrel"}))
+        ->capture_default_str();
+    app.add_option("--within", options.within_mm,
+                   "mm: a point further than this from the mandrel is refused")
+        ->type_name("MM")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("-o,--out", options.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
+    add_png(app, options.png);
+}
+
+void add_verify(CLI::App& app, VerifyArguments& options) {
+    app.add_option("program", options.program,
+                   "NC program, by meshwind or anybody; the machine file names its language")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("--mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
+    app.add_option("--machine", options.machine, "machine file")->type_name("FILE")->required();
+    add_job(app, options.job,
+            "job file: tow, friction, extensions, tolerances; without it the defaults hold");
+    app.add_option(
+           "--plan", options.plan,
+           "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
+           "path-2.csv and motion-2.csv")
+        ->type_name("DIR");
+    app.add_option("--tie-on", options.tie_on,
+                   "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
+                   "say it")
+        ->type_name("X,Y,Z");
+    app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv")
+        ->type_name("DIR");
+}
+
+void add_inspect(CLI::App& app, InspectArguments& options) {
+    app.add_option("mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
+    add_job(app, options.job,
+            "job file: units, axis, regions, ends and blends of the mandrel; without it defaults");
+    auto* refine = app.add_option("--refine", options.refine_mm,
+                                  "write the winding surface with edges of at most so many mm, new "
+                                  "vertices on its curved patches; frame and units of the file")
+                       ->type_name("MM");
+    app.add_option("-o,--out", options.out, "mesh file to write: .stl, .obj, .ply or .off")
+        ->type_name("FILE")
+        ->needs(refine);
+    app.add_option("--page", options.page, "page to write, .html: the part, by what it is")
+        ->type_name("FILE");
+}
+
+// One subcommand per kind, with an option for each of its parameters.
+void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>& values) {
+    app.require_subcommand(1);
+    app.fallthrough();
+    app.add_option("-o,--out", request.output, "mesh file to write: .stl, .obj, .ply or .off")
+        ->type_name("FILE");
+    app.add_option("--edge", request.options.edge_mm, "edge length, mm")
+        ->type_name("MM")
+        ->capture_default_str();
+    app.add_flag("--irregular", request.options.irregular,
+                 "jittered vertices and random diagonals");
+    app.add_flag("--solid", request.options.solid, "with inner wall and end faces");
+    app.add_option("--wall", request.options.wall_mm, "wall thickness of a solid, mm")
+        ->type_name("MM")
+        ->capture_default_str();
+    for (const MakeKind& kind : make_kinds()) {
+        CLI::App* sub = app.add_subcommand(std::string(kind.name), std::string(kind.meaning));
+        sub->fallthrough();
+        for (const MakeParameter& parameter : kind.parameters) {
+            const std::string name(parameter.name);
+            sub->add_option_function<double>(
+                   "--" + name, [&values, name](const double& value) { values[name] = value; },
+                   help_of(parameter))
+                ->type_name(name_of_unit(parameter));
+        }
+    }
+}
+
+CLI::Option* add_trace(CLI::App& app, TraceArguments& text) {
+    app.add_option("mandrel", text.mandrel, "mesh of the part")->type_name("FILE")->required();
+    app.add_option("--start", text.start, "X,Y,Z in the file's frame; snapped to the surface")
+        ->type_name("X,Y,Z")
+        ->required();
+    auto* direction = app.add_option("--direction", text.direction, "X,Y,Z in the file's frame")
+                          ->type_name("X,Y,Z");
+    auto* angle =
+        app.add_option("--angle", text.angle_deg,
+                       "degrees from the local axial direction, counter-clockwise from outside")
+            ->type_name("DEG");
+    direction->excludes(angle);
+    auto* to = app.add_option("--to", text.to,
+                              "X,Y,Z where the path ends, instead of a direction: its start angle "
+                              "is found")
+                   ->type_name("X,Y,Z");
+    to->excludes(direction)->excludes(angle);
+    app.add_option("--lambda", text.request.slip_ratio, "slip ratio kg / kn to steer with")
+        ->type_name("RATIO")
+        ->capture_default_str();
+    auto* length =
+        app.add_option("--length", text.request.length_mm, "longest path, mm")->type_name("MM");
+    length->capture_default_str()->excludes(to);
+    app.add_option("--method", text.method,
+                   "patches: solved on curved patches, accurate; walk: over the facets, fast")
+        ->check(one_of({"patches", "walk"}))
+        ->capture_default_str();
+    app.add_option("--frame", text.frame, "frame of the output")
+        ->check(one_of({"mandrel", "file"}))
+        ->capture_default_str();
+    app.add_option("-o,--out", text.out, "table to write")->type_name("FILE")->required();
+    return angle;
+}
+
+void add_mesh_size(CLI::App& app, StudyArguments& request) {
+    MeshSizeOptions& options = request.options;
+    request.out = "study-mesh-size";
+    app.add_option(
+           "--mandrel", request.mandrels,
+           "cylinder, torus, ellipsoid, tee, or a mesh file; several may be named [all four]")
+        ->type_name("NAME");
+    app.add_option("--radius", request.radii_mm, "radii of the cylinders, mm")
+        ->type_name("MM")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--edges", options.edges_mm, "edge lengths of the meshes, mm")
+        ->type_name("MM")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--lambda", options.slip_ratios,
+                   "slip ratios kg / kn to steer with; the eye is shown for the first")
+        ->type_name("RATIO")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--paths", options.paths, "fibres on each mesh")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--length", options.length_mm, "length of a fibre unless it meets a rim, mm")
+        ->type_name("MM")
+        ->capture_default_str();
+    app.add_option("--free-length", options.free_length_mm, "from landing point to eye, mm")
+        ->type_name("MM")
+        ->capture_default_str();
+    app.add_flag("--irregular,!--regular", options.irregular,
+                 "jittered vertices and random diagonals, as scans and CAD give them [irregular]");
+    app.add_flag("--timing", options.timing,
+                 "measure the cost of tracing too, one mesh at a time; writes timing.csv");
+    app.add_option("-o,--out", request.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
+}
+
+void add_case(CLI::App& app, CaseArguments& arguments) {
+    add_case_table(app, arguments);
+    app.add_option("--row", arguments.row, "which one to wind, from 1")->type_name("N")->required();
+    add_effort(app, arguments.effort);
+}
+
+void add_merge(CLI::App& app, CaseArguments& arguments) {
+    add_case_table(app, arguments);
+    app.add_flag("--left", arguments.left,
+                 "only print the rows that failed or are missing, 3,7: an array of jobs");
+}
+
+void add_carry(CLI::App& app, CarryArguments& text) {
+    CarryRequest& request = text.request;
+    app.add_option("axis", text.axis,
+                   "table of points along the frame's axis, CSV, columns below; or the frame's "
+                   "mesh: .stl, .obj, .ply, .off")
+        ->type_name("FILE")
+        ->required();
+    app.add_flag("--from-end", text.from_the_end, "of a mesh: begin at its other end");
+    app.add_option("--bend-turn", text.bend_turn_deg,
+                   "of a mesh: turn of the frame about its axis over each bend, degrees")
+        ->type_name("DEG")
+        ->capture_default_str();
+    app.add_option("--machine", text.machine,
+                   "machine file, JSON: a robot whose eye stands still, in the head's centre")
+        ->type_name("FILE")
+        ->capture_default_str();
+    app.add_option("--tool", text.tool,
+                   "X,Y,Z,A,B,C of the table's coordinates on the robot's flange, mm and degrees")
+        ->type_name("X,Y,Z,A,B,C")
+        ->capture_default_str();
+    const auto number = [&](const char* name, const char* unit, double& value, const char* help) {
+        app.add_option(name, value, help)->type_name(unit)->capture_default_str();
+    };
+    number("--speed", "MM/S", request.speed_mm_s, "speed of the frame through the head, mm/s");
+    number("--tolerance", "MM", request.tolerance_mm,
+           "how far the axis may be off the head's centre, mm");
+    number("--tolerance-angle", "DEG", request.tolerance_deg,
+           "how far the frame's turn may be off, degrees");
+    app.add_option("--tube-radius", request.tube_radius_mm,
+                   "radius of the frame's tube, mm; without it that of the mesh, or 20")
+        ->type_name("MM");
+    number("--ring-radius", "MM", request.ring_radius_mm, "radius of the rings' clear opening, mm");
+    number("--ring-distance", "MM", request.ring_distance_mm, "distance between the two rings, mm");
+    number("--clearance", "MM", request.clearance_mm,
+           "distance to keep between the frame and the bodies on the machine's base, mm");
+    number("--angle", "DEG", request.angle_deg,
+           "wanted angle of the rings' fibres from the axis, degrees");
+    app.add_option("--tows", request.tows, "tows on each ring")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--tow-width", request.tow_width_mm,
+                   "mm; without it the narrowest that covers the tube in one pass")
+        ->type_name("MM");
+    CarryWindingOptions& winding = request.winding;
+    app.add_option("--passes", winding.passes,
+                   "passes of each ring; 0: as few as cover the tube with tows of that width")
+        ->type_name("N")
+        ->check(CLI::Range(0, 100))
+        ->capture_default_str();
+    app.add_flag("--at-once", winding.at_once,
+                 "both rings wind on the way forth, instead of one on each way");
+    app.add_option("--spool-radius", winding.spool_radius_mm,
+                   "radius of the circle where fibres leave a ring, mm; without it its opening")
+        ->type_name("MM");
+    number("--angle-tolerance", "DEG", winding.angle_tolerance_deg,
+           "how far laid fibre may be off the angle on regular arms, degrees");
+    app.add_option("--friction", winding.friction,
+                   "of fibre on the tube: no more may be needed; without it the need is told")
+        ->type_name("RATIO");
+    app.add_option("--tow-tex", winding.tow_tex, "mass of the tow, g per km, to tell the fibre's")
+        ->type_name("TEX");
+    app.add_option("--name", request.name, "name of the program")
+        ->type_name("NAME")
+        ->capture_default_str();
+    app.add_option("-o,--out", text.out, "output folder")->type_name("DIR")->capture_default_str();
+}
+
+// The moduli are one ply, all three of them.
+void add_design_vessel(CLI::App& app, DesignRequest& request) {
+    VesselDesign& design = request.design;
+    const auto number = [&](const char* name, const char* unit, double& value, const char* help) {
+        app.add_option(name, value, help)->type_name(unit)->capture_default_str();
+    };
+    app.add_option("--radius", design.radius_mm, "radius of the cylinder, mm")
+        ->type_name("MM")
+        ->required();
+    app.add_option("--opening", design.opening_radius_mm, "radius of the polar openings, mm")
+        ->type_name("MM")
+        ->required();
+    app.add_option("--length", design.cylinder_length_mm, "length of the cylinder, mm")
+        ->type_name("MM")
+        ->required();
+    auto* ke = app.add_option("--ke", request.ke,
+                              "E2 (1 + nu12) / (E1 (1 + nu21)) of the ply; 0: fibres alone [0.1]")
+                   ->type_name("RATIO");
+    const auto modulus = [&](const char* name, const char* unit, double PlyStiffness::*member,
+                             const char* help) {
+        return app
+            .add_option_function<double>(
+                name,
+                [&request, member](const double& value) {
+                    request.ply = request.ply.value_or(PlyStiffness{});
+                    (*request.ply).*member = value;
+                },
+                help)
+            ->type_name(unit)
+            ->excludes(ke);
+    };
+    auto* e1 = modulus("--e1", "GPA", &PlyStiffness::e1_gpa, "stiffness along the fibres, GPa");
+    auto* e2 = modulus("--e2", "GPA", &PlyStiffness::e2_gpa, "stiffness across them, GPa");
+    auto* nu12 =
+        modulus("--nu12", "RATIO", &PlyStiffness::nu12, "Poisson's ratio for a pull along them");
+    e1->needs(e2)->needs(nu12);
+    e2->needs(e1);
+    nu12->needs(e1);
+    number("--design-radius", "MM", design.design_radius_mm,
+           "Clairaut radius of the geodesics the domes are made for, mm; 0: the opening's");
+    request.angles_deg = {10, 15, 20, 25, 30, 35, 40, 45, 50, 55};
+    app.add_option("--angles", request.angles_deg, "winding angles on the cylinder, degrees")
+        ->type_name("DEG")
+        ->delimiter(',')
+        ->capture_default_str();
+    number("--band", "MM", design.band_mm, "width of the band, mm");
+    number("--thickness", "MM", design.ply_mm, "thickness of the band, mm");
+    number("--density", "KG/M3", design.density_kg_m3, "of the band, kg/m3");
+    app.add_option("--wall", design.wall_mm, "wanted thickness on the cylinder, mm")
+        ->type_name("MM");
+    app.add_option("--pressure", design.pressure_mpa, "wanted pressure, MPa; needs --strength")
+        ->type_name("MPA");
+    app.add_option("--strength", design.strength_mpa,
+                   "of the band along its fibres, MPa, safety taken off")
+        ->type_name("MPA");
+}
+
+}  // namespace meshwind

@@ -1,0 +1,37 @@
+/// The options of the commands, as CLI11 reads them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/case_commands.h"
+#include "cli/commands.h"
+#include "cli/make_command.h"
+
+namespace meshwind {
+
+/// Digits and nothing else: the library behind options would take -1 for the largest number.
+[[nodiscard]] CLI::Validator whole_number(std::uint64_t most);
+
+/// In place of CLI::IsMember, whose words propose nothing.
+[[nodiscard]] CLI::Validator one_of(const std::vector<std::string_view>& words);
+
+void add_wind_options(CLI::App& app, WindArguments& options, bool required);
+void add_post(CLI::App& app, PostArguments& options);
+void add_verify(CLI::App& app, VerifyArguments& options);
+void add_inspect(CLI::App& app, InspectArguments& options);
+void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>& values);
+/// \return --angle
+CLI::Option* add_trace(CLI::App& app, TraceArguments& text);
+void add_mesh_size(CLI::App& app, StudyArguments& request);
+void add_case(CLI::App& app, CaseArguments& arguments);
+void add_merge(CLI::App& app, CaseArguments& arguments);
+void add_carry(CLI::App& app, CarryArguments& text);
+void add_design_vessel(CLI::App& app, DesignRequest& request);
+
+}  // namespace meshwind
