@@ -26,9 +26,9 @@ build_tests() {
 
 # build_release TARGETS: where ./meshwind builds, which then keeps to the warnings as errors of this.
 build_release() {
-    install_packages build test python
+    install_packages build test python cad
     prepare_page
-    build_tests release "$root" "$1" -DMESHWIND_BENCH=ON -DMESHWIND_PYTHON=ON "-DMESHWIND_VIEWER=$page"
+    build_tests release "$root" "$1" -DMESHWIND_BENCH=ON -DMESHWIND_PYTHON=ON -DMESHWIND_CAD=ON "-DMESHWIND_VIEWER=$page"
 }
 
 # build_instrumented TARGETS: one build for the sanitizers and for libFuzzer, by Clang: it builds instrumented code twice as

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "mesh/cad_face.h"
 #include "mesh/region.h"
 #include "mesh/repair_report.h"
 #include "mesh/rim.h"
@@ -33,12 +34,15 @@ struct MandrelOptions {
     };
     std::optional<Axis> axis{};                ///< in the file's frame and units; none: found
     std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
+    std::vector<std::int32_t> keep_faces{};    ///< of a CAD file, numbers from 1; empty: by regions
     /// Of every end with a leg, mm; none: what is no part of the leg (mesh/even/square_ends.h)
     std::optional<double> cut_ends_mm{};
     /// Lettering and the like is taken off up to this height, mm (mesh/even/details.h); none: 1 mm
     std::optional<double> remove_details_mm{};
     /// Crotches and steps are filled up for a ball of this radius (mesh/even/blend.h); 0: not
     double blend_mm = 0.0;
+    std::string solid{};   ///< of a CAD file, name or number from 1; empty: the only one
+    double edge_mm = 0.0;  ///< longest edge over a CAD file's faces; 0: by the part's size
     enum class Mesh { File, Even };
     /// Even: where the file's triangles are uneven, even ones over the same surface are wound
     /// (mesh/even/winding_mesh.h)
@@ -68,6 +72,8 @@ struct Mandrel {
     Surface surface;                         ///< what is wound
     std::vector<Region> regions;
     std::vector<Rim> rims;
+    std::vector<CadFace> cad_faces;      ///< of a CAD file, mandrel frame; empty of others
+    std::vector<std::int32_t> cad_face;  ///< per face of `surface`: index in cad_faces, -1: none
     TriangleSoup details;           ///< lettering and the like that was taken off, mandrel frame
     std::vector<WallPiece> pieces;  ///< largest first; one where all of it hangs together
     SpindleAxis axis;

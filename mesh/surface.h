@@ -19,6 +19,7 @@ struct FitReport {
     int quadratic = 0;  ///< fell back again, to degree two
     int reduced = 0;    ///< ruled where nothing is known: long facets between two end circles
     int averaged = 0;   ///< last: angle-weighted facet normal, curvature from facets
+    int exact = 0;      ///< not fitted: a CAD file's faces
 };
 
 /// What a walk reads of a face, packed: all of it in one cache line.
@@ -52,6 +53,7 @@ struct Surface {
     /// convex.
     std::vector<Eigen::Matrix3d> shape_operator_per_mm;
     std::vector<HeightJet> jet;           ///< per corner index: the fitted surface about the corner
+    std::vector<std::uint8_t> exact;      ///< per corner index: 1 where it is not fitted but known
     std::vector<WalkFace> walk_face;      ///< per face: the above once more
     std::vector<WalkCorner> walk_corner;  ///< per corner index: the above once more
     double mean_edge_mm = 0.0;

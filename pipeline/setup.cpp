@@ -172,6 +172,11 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
         options.axis = {job.mandrel.axis->origin, job.mandrel.axis->direction};
     }
     options.keep_regions = job.mandrel.keep_regions;
+    options.keep_faces = job.mandrel.keep_faces;
+    if (!options.keep_regions.empty() && !options.keep_faces.empty()) {
+        throw InputError("job.keep_twice", "job: /mandrel/keep_faces",
+                         "stands beside \"keep_regions\"; give one of them");
+    }
     options.cut_ends_mm = job.mandrel.cut_ends_mm;
     options.remove_details_mm = job.mandrel.remove_details_mm;
     if (!job.mandrel.blend_mm) {
@@ -182,6 +187,8 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
     }
     options.blend_mm = *job.mandrel.blend_mm;
     options.mesh = job.mandrel.mesh;
+    options.solid = job.mandrel.solid;
+    options.edge_mm = job.mandrel.edge_mm.value_or(0.0);
     return options;
 }
 

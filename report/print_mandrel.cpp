@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "core/text/text_number.h"
 #include "core/units.h"
@@ -76,6 +78,32 @@ void print_regions(std::ostream& out, const Mandrel& m) {
     if (shown < m.regions.size()) {
         out << "            and " << m.regions.size() - shown << " smaller ones, " << wound
             << " of them wound, together " << fixed(area, 2) << " mm2\n";
+    }
+}
+
+void print_cad_faces(std::ostream& out, const Mandrel& m) {
+    if (m.cad_faces.empty()) {
+        return;
+    }
+    out << "faces         of the CAD part\n    number  kind         radius mm      area mm2  "
+           "region\n";
+    std::vector<std::size_t> by_area(m.cad_faces.size());
+    std::iota(by_area.begin(), by_area.end(), std::size_t{0});
+    std::stable_sort(by_area.begin(), by_area.end(), [&](std::size_t a, std::size_t b) {
+        return m.cad_faces[a].area_mm2 > m.cad_faces[b].area_mm2;
+    });
+    const std::size_t shown = std::min(kRegionsShown, by_area.size());
+    for (std::size_t i = 0; i < shown; ++i) {
+        const CadFace& face = m.cad_faces[by_area[i]];
+        std::string kind = face.kind;
+        kind.resize(10, ' ');
+        out << padded(std::to_string(by_area[i] + 1), 10) << "  " << kind
+            << padded(face.radius_mm > 0.0 ? fixed(face.radius_mm, 3) : "", 12)
+            << padded(fixed(face.area_mm2, 2), 14)
+            << padded(face.region >= 0 ? std::to_string(face.region) : "gone", 8) << "\n";
+    }
+    if (shown < by_area.size()) {
+        out << "            and " << by_area.size() - shown << " smaller ones\n";
     }
 }
 
@@ -179,6 +207,7 @@ void print_mandrel(std::ostream& out, const Inspection& found) {
     print_size(out, mandrel);
     print_repairs(out, mandrel.repairs);
     print_regions(out, mandrel);
+    print_cad_faces(out, mandrel);
     out << "rims          " << mandrel.rims.size() << (mandrel.rims.empty() ? " (closed)\n" : "\n");
     for (const Rim& rim : mandrel.rims) {
         out << padded(std::to_string(rim.id), 10) << "  centre " << triple(rim.centre_mm, 3)
@@ -190,7 +219,8 @@ void print_mandrel(std::ostream& out, const Inspection& found) {
     out << "surface       " << mandrel.surface.face.size() << " triangles, mean edge "
         << fixed(mandrel.surface.mean_edge_mm, 3) << " mm; smooth fit at " << fit.quartic
         << " corners quartic, " << fit.cubic << " cubic, " << fit.quadratic << " quadratic, "
-        << fit.reduced << " reduced, " << fit.averaged << " averaged\n";
+        << fit.reduced << " reduced, " << fit.averaged << " averaged";
+    out << (fit.exact > 0 ? "; exact at " + std::to_string(fit.exact) + "\n" : "\n");
     print_revolution(out, found.revolution);
     print_tube(out, found.tube);
     print_accuracy(out, found.accuracy);

@@ -33,6 +33,24 @@ json repairs_of(const RepairReport& r) {
             {"components", r.components}};
 }
 
+json cad_faces_of(const std::vector<CadFace>& faces) {
+    json rows = json::array();
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const CadFace& face = faces[i];
+        json& row = rows.emplace_back(
+            json{{"number", i + 1}, {"kind", face.kind}, {"area_mm2", face.area_mm2}});
+        row["region"] = face.region >= 0 ? json(face.region) : json(nullptr);
+        if (face.radius_mm > 0.0) {
+            row["radius_mm"] = face.radius_mm;
+        }
+        if (!face.axis_direction.isZero()) {
+            row["axis"] = {{"point_mm", json_of(face.axis_point_mm)},
+                           {"direction", json_of(face.axis_direction)}};
+        }
+    }
+    return rows;
+}
+
 }  // namespace
 
 json mandrel_report(const Mandrel& mandrel) {
@@ -58,36 +76,41 @@ json mandrel_report(const Mandrel& mandrel) {
         area += region.kept ? region.area_mm2 : 0.0;
     }
     const FitReport& fit = mandrel.surface.fit;
-    return {{"file", mandrel.file},
-            {"unit_mm", mandrel.unit_mm},
-            {"unit_rule", mandrel.unit_rule},
-            {"triangles", mandrel.surface.face.size()},
-            {"file_triangles", mandrel.winding_mesh.file_triangles},
-            {"file_to_mandrel", matrix_of(mandrel.file_to_mandrel)},
-            {"axis", {{"rule", mandrel.axis.rule}, {"residual_mm", mandrel.axis.residual_mm}}},
-            {"rims", rims},
-            {"area_mm2", area},
-            {"regions", regions},
-            {"repairs", repairs_of(mandrel.repairs)},
-            {"winding_mesh",
-             {{"own", mandrel.winding_mesh.own},
-              {"swept", mandrel.winding_mesh.swept},
-              {"least_quality", report_number(mandrel.winding_mesh.least_quality)},
-              {"ruled_shapes", mandrel.winding_mesh.ruled_shapes},
-              {"deviation_mm", report_number(mandrel.winding_mesh.deviation_mm)},
-              {"details", mandrel.winding_mesh.details},
-              {"details_mm2", report_number(mandrel.winding_mesh.details_mm2)},
-              {"details_mm", report_number(mandrel.winding_mesh.details_mm)},
-              {"blend_mm", report_number(mandrel.winding_mesh.blend_mm)},
-              {"blended_mm2", report_number(mandrel.winding_mesh.blended_mm2)},
-              {"filled_mm3", report_number(mandrel.winding_mesh.filled_mm3)}}},
-            {"smooth_fit",
-             {{"quartic", fit.quartic},
-              {"cubic", fit.cubic},
-              {"quadratic", fit.quadratic},
-              {"reduced", fit.reduced},
-              {"averaged", fit.averaged}}},
-            {"remarks", mandrel.remarks}};
+    json report{{"file", mandrel.file},
+                {"unit_mm", mandrel.unit_mm},
+                {"unit_rule", mandrel.unit_rule},
+                {"triangles", mandrel.surface.face.size()},
+                {"file_triangles", mandrel.winding_mesh.file_triangles},
+                {"file_to_mandrel", matrix_of(mandrel.file_to_mandrel)},
+                {"axis", {{"rule", mandrel.axis.rule}, {"residual_mm", mandrel.axis.residual_mm}}},
+                {"rims", rims},
+                {"area_mm2", area},
+                {"regions", regions},
+                {"repairs", repairs_of(mandrel.repairs)},
+                {"winding_mesh",
+                 {{"own", mandrel.winding_mesh.own},
+                  {"swept", mandrel.winding_mesh.swept},
+                  {"least_quality", report_number(mandrel.winding_mesh.least_quality)},
+                  {"ruled_shapes", mandrel.winding_mesh.ruled_shapes},
+                  {"deviation_mm", report_number(mandrel.winding_mesh.deviation_mm)},
+                  {"details", mandrel.winding_mesh.details},
+                  {"details_mm2", report_number(mandrel.winding_mesh.details_mm2)},
+                  {"details_mm", report_number(mandrel.winding_mesh.details_mm)},
+                  {"blend_mm", report_number(mandrel.winding_mesh.blend_mm)},
+                  {"blended_mm2", report_number(mandrel.winding_mesh.blended_mm2)},
+                  {"filled_mm3", report_number(mandrel.winding_mesh.filled_mm3)}}},
+                {"smooth_fit",
+                 {{"quartic", fit.quartic},
+                  {"cubic", fit.cubic},
+                  {"quadratic", fit.quadratic},
+                  {"reduced", fit.reduced},
+                  {"averaged", fit.averaged}}},
+                {"remarks", mandrel.remarks}};
+    if (!mandrel.cad_faces.empty()) {
+        report["smooth_fit"]["exact"] = fit.exact;
+        report["cad_faces"] = cad_faces_of(mandrel.cad_faces);
+    }
+    return report;
 }
 
 json revolution_report(const RevolutionFinding& finding) {

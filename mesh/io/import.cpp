@@ -89,14 +89,10 @@ TriangleSoup read_format(std::string_view bytes, const std::string& name) {
             return reader.read(bytes, name);
         }
     }
-    const bool solid = format == ".step" || format == ".stp" || format == ".iges" ||
-                       format == ".igs" || format == ".brep";
     throw InputError("mesh.unknown_format", name,
                      "the ending '" + format + "' is not known, use " + mesh_endings() +
-                         ", or .csv or .dxf for the outline of a body of revolution" +
-                         (solid ? "; CAD exports a solid as .stl, and gmsh -2 PART" + format +
-                                      " -o PART.stl makes one without it"
-                                : ""));
+                         "; as a mandrel also .step, .iges or .brep of CAD, and .csv or .dxf for "
+                         "the outline of a body of revolution");
 }
 
 void check_finite(const TriangleSoup& soup, const std::string& name) {

@@ -137,6 +137,7 @@ public:
         }
         Surface surface =
             freeze_surface(soup_, {.feature = feature_, .region = region_, .rim = rim_});
+        keep_exact(surface);
         for (std::size_t f = wall_.face.size(); f < surface.face.size(); ++f) {
             const Circle& circle = circle_[circle_of_[f - wall_.face.size()]];
             for (std::size_t c = 0; c < 3; ++c) {
@@ -148,6 +149,19 @@ public:
     }
 
 private:
+    void keep_exact(Surface& surface) const {
+        for (std::size_t f = 0; f < wall_.face.size(); ++f) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                const std::size_t known = at(wall_.corner[f][c]);
+                if (wall_.exact[known] != 0) {
+                    set_jet(surface, at(surface.corner[f][c]),
+                            {wall_.jet[known], wall_.normal[known],
+                             wall_.shape_operator_per_mm[known]});
+                }
+            }
+        }
+    }
+
     void add_face(const std::array<Index, 3>& face) {
         soup_.faces.push_back(face);
         circle_of_.push_back(circle_.size() - 1);

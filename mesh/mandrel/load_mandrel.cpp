@@ -9,6 +9,8 @@
 #include "core/interrupt.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "mesh/brep/exact_corners.h"
+#include "mesh/brep/read_cad.h"
 #include "mesh/edge_table.h"
 #include "mesh/even/blend.h"
 #include "mesh/even/slivers.h"
@@ -126,6 +128,63 @@ void keep_named_regions(Segmentation& segmentation, const std::vector<std::int32
     }
 }
 
+// Area and triangles of regions that have changed. What is cut off an end is an end cap.
+void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& segmentation) {
+    for (std::size_t id = segmentation.regions.size(); id < count; ++id) {
+        Region end;
+        end.id = static_cast<std::int32_t>(id);
+        end.kind = RegionKind::EndCap;
+        end.visible_fraction = 1.0;
+        segmentation.regions.push_back(end);
+    }
+    for (Region& region : segmentation.regions) {
+        region.triangles = 0;
+        region.area_mm2 = 0.0;
+    }
+    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+        Region& region = segmentation.regions[static_cast<std::size_t>(segmentation.region[f])];
+        ++region.triangles;
+        region.area_mm2 += area_mm2(whole.points_mm, whole.faces[f]);
+    }
+}
+
+// What is kept of a CAD part's faces becomes a region of its own.
+void keep_named_faces(const CadMesh* cad, const TriangleSoup& whole,
+                      const std::vector<std::int32_t>& numbers, const std::string& name,
+                      Segmentation& segmentation) {
+    if (numbers.empty()) {
+        return;
+    }
+    const std::size_t count = cad != nullptr ? cad->faces.size() : 0;
+    for (const std::int32_t number : numbers) {
+        if (number < 1 || static_cast<std::size_t>(number) > count) {
+            throw InputError(
+                "mesh.no_such_face", name,
+                "has no face " + std::to_string(number) +
+                    (cad != nullptr ? ", its faces are 1 to " + std::to_string(count) +
+                                          " (see meshwind inspect)"
+                                    : ", only CAD files have faces; keep_regions is for others"));
+        }
+    }
+    const std::set<std::int32_t> wanted(numbers.begin(), numbers.end());
+    const ExactCorners known = exact_corners(*cad, whole);
+    Region kept;
+    kept.id = static_cast<std::int32_t>(segmentation.regions.size());
+    kept.kind = RegionKind::OuterWall;
+    kept.visible_fraction = 1.0;
+    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+        if (wanted.count(known.face[f] + 1) != 0) {
+            segmentation.region[f] = kept.id;
+        }
+    }
+    for (Region& region : segmentation.regions) {
+        region.kept = false;
+    }
+    kept.kept = true;
+    segmentation.regions.push_back(kept);
+    count_regions(whole, segmentation.regions.size(), segmentation);
+}
+
 std::string words_of(const Region& region) {
     const std::string why = region.kind == RegionKind::EndCap
                                 ? std::string("a flat end")
@@ -180,6 +239,14 @@ void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion) {
     }
 }
 
+std::vector<CadFace> moved(std::vector<CadFace> faces, const Eigen::Isometry3d& motion) {
+    for (CadFace& face : faces) {
+        face.axis_point_mm = motion * face.axis_point_mm;
+        face.axis_direction = motion.linear() * face.axis_direction;
+    }
+    return faces;
+}
+
 LabelledView view(const TriangleSoup& whole, const Segmentation& segmentation) {
     return {whole, segmentation.region, segmentation.feature, segmentation.neighbours};
 }
@@ -215,26 +282,6 @@ void take(LabelledMesh&& part, Mandrel& mandrel, Segmentation& segmentation) {
     segmentation.region = std::move(part.region);
     segmentation.feature = std::move(part.feature);
     segmentation.neighbours = face_neighbours(mandrel.whole.faces);
-}
-
-// Area and triangles of regions that have changed. What is cut off an end is an end cap.
-void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& segmentation) {
-    for (std::size_t id = segmentation.regions.size(); id < count; ++id) {
-        Region end;
-        end.id = static_cast<std::int32_t>(id);
-        end.kind = RegionKind::EndCap;
-        end.visible_fraction = 1.0;
-        segmentation.regions.push_back(end);
-    }
-    for (Region& region : segmentation.regions) {
-        region.triangles = 0;
-        region.area_mm2 = 0.0;
-    }
-    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-        Region& region = segmentation.regions[static_cast<std::size_t>(segmentation.region[f])];
-        ++region.triangles;
-        region.area_mm2 += area_mm2(whole.points_mm, whole.faces[f]);
-    }
 }
 
 // Takes off what is no part of the ends' legs.
@@ -344,8 +391,31 @@ std::vector<Eigen::Vector3d> leave_crumbs(std::vector<WallPiece>& pieces,
     return crumbs_mm;
 }
 
+void add_cad_remarks(const CadMesh& cad, Mandrel& mandrel) {
+    constexpr double kNoteworthy_mm = 1e-3;
+    if (cad.sewn_edges > 0) {
+        add_remark(mandrel,
+                   std::to_string(cad.sewn_edges) +
+                       " edges of the CAD part's faces were apart and are sewn",
+                   {});
+    }
+    if (cad.open_edges > 0) {
+        add_remark(mandrel,
+                   "the CAD part is open: " + std::to_string(cad.open_edges) +
+                       " of its edges are of one face only",
+                   {});
+    }
+    if (cad.off_face_mm > kNoteworthy_mm) {
+        add_remark(mandrel,
+                   "edges of the CAD part are up to " + fixed(cad.off_face_mm, 3) +
+                       " mm off its faces: paths there are no better",
+                   {});
+    }
+}
+
+// \param cad that the triangles are of, or nullptr
 Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& name,
-              const MandrelOptions& options) {
+              const MandrelOptions& options, const CadMesh* cad = nullptr) {
     check_options(options, name);
     check_triangles(file_units, name);
     Mandrel mandrel;
@@ -366,10 +436,11 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     mandrel.winding_mesh.file_triangles = mandrel.whole.faces.size();
     Segmentation segmentation = segment(mandrel.whole);
     keep_named_regions(segmentation, options.keep_regions, name);
+    keep_named_faces(cad, mandrel.whole, options.keep_faces, name, segmentation);
     check_wall(segmentation.regions, name);
     mandrel.pieces = wall_pieces(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
     std::vector<Eigen::Vector3d> crumbs_mm;
-    if (options.keep_regions.empty()) {
+    if (options.keep_regions.empty() && options.keep_faces.empty()) {
         crumbs_mm = leave_crumbs(mandrel.pieces, segmentation.regions);
     }
     check_interrupt();
@@ -391,12 +462,26 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     note(cuts, wall.rims.rims);
     auto& [kept, rims, frame] = wall;
 
+    std::optional<ExactCorners> exact;
+    std::vector<std::int32_t> face_region;
+    if (cad != nullptr) {
+        exact = exact_corners(*cad, kept.soup);
+        face_region = regions_of_faces(*cad, mandrel.whole, segmentation.region);
+        mark_bend_borders(*cad, *exact, kept);
+    }
     move(mandrel.whole, frame.mandrel_from_file);
     move(mandrel.details, frame.mandrel_from_file);
     move(kept.soup, frame.mandrel_from_file);
-    const FreezeInput frozen{.feature = kept.feature, .region = kept.region, .rim = rims.of_edge};
+    const auto freeze = [&, &rims = rims, &frame = frame, &kept = kept] {
+        Surface surface = freeze_surface(
+            kept.soup, {.feature = kept.feature, .region = kept.region, .rim = rims.of_edge});
+        if (exact) {
+            set_exact(*cad, *exact, frame.mandrel_from_file, surface);
+        }
+        return surface;
+    };
     check_interrupt();
-    mandrel.surface = freeze_surface(kept.soup, frozen);
+    mandrel.surface = freeze();
     check_interrupt();
     mandrel.whole_region = std::move(segmentation.region);
     mandrel.regions = std::move(segmentation.regions);
@@ -404,7 +489,14 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     move(mandrel.rims, frame.mandrel_from_file);
     const RevolutionFinding found = find_revolution(mandrel.surface, mandrel.rims);
     if (found.body && mark_crease_rings(*found.body, kept.soup, kept.feature)) {
-        mandrel.surface = freeze_surface(kept.soup, frozen);
+        mandrel.surface = freeze();
+    }
+    if (exact) {
+        mandrel.cad_face = std::move(exact->face);
+        mandrel.cad_faces = moved(cad->faces, frame.mandrel_from_file);
+        for (std::size_t i = 0; i < face_region.size(); ++i) {
+            mandrel.cad_faces[i].region = face_region[i];
+        }
     }
     mandrel.axis = frame.axis;
     mandrel.file_to_mandrel = frame.mandrel_from_file * Eigen::Scaling(mandrel.unit_mm);
@@ -414,6 +506,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     move(rims.holes_mm, frame.mandrel_from_file);
     move(crumbs_mm, frame.mandrel_from_file);
     add_remarks(mandrel, rims.holes_mm, crumbs_mm);
+    if (cad != nullptr) {
+        add_cad_remarks(*cad, mandrel);
+    }
     return mandrel;
 }
 
@@ -437,6 +532,20 @@ Mandrel load_mandrel(const std::filesystem::path& file, const MandrelOptions& op
         }
         return build(swept_profile(profile, file.string()), profile.stated_unit_mm, file.string(),
                      about_axis);
+    }
+    if (is_cad(file)) {
+        CadMesh cad = read_cad(file, options.solid, options.edge_mm);
+        if (options.unit_mm > 0.0 && options.unit_mm != cad.unit_mm) {
+            throw InputError("mesh.bad_unit", file.string(),
+                             "states its unit itself, " + fixed(cad.unit_mm, 3) +
+                                 " mm; leave --units and the job's \"units\" out");
+        }
+        TriangleSoup file_units = cad.soup;
+        for (std::size_t v = 0; v < file_units.points_mm.size(); ++v) {
+            file_units.points_mm[v] /= cad.unit_mm;
+            cad.soup.points_mm[v] = file_units.points_mm[v] * cad.unit_mm;  // to the same bits
+        }
+        return build(std::move(file_units), cad.unit_mm, file.string(), options, &cad);
     }
     TriangleSoup soup = read_triangles(file);
     return build(std::move(soup), stated_unit_mm(file), file.string(), options);

@@ -9,7 +9,9 @@
 
 namespace meshwind {
 
-/// Reads, repairs, segments and freezes a mandrel file (STL, OBJ, PLY, OFF).
+/// Reads, repairs, segments and freezes a mandrel file: triangles (STL, OBJ, PLY, OFF), outlines
+/// (mesh/profile/profile_file.h) or CAD (mesh/brep/read_cad.h), of which normals and curvature are
+/// exact.
 /// \throws IoError mesh.unreadable; InputError mesh.* with the file, the place and the mend
 [[nodiscard]] Mandrel load_mandrel(const std::filesystem::path& file,
                                    const MandrelOptions& options = {});

@@ -59,6 +59,7 @@ void fit_all(Surface& surface, std::size_t corners) {
     surface.shape_operator_per_mm.resize(corners);
     surface.jet.resize(corners);
     surface.walk_corner.resize(corners);
+    surface.exact.assign(corners, 0);
     for (std::size_t i = 0; i < corners; ++i) {
         set_jet(surface, i, jets[i]);
     }

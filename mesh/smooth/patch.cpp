@@ -17,6 +17,13 @@ using Eigen::Vector3d;
 // out: the normals' errors would turn the tangent.
 constexpr double kMinCreaseSine = 0.17;
 
+// Sine of the angle between the normals of both sides (0.06 deg) below which they are the same: the
+// faces of a CAD part meet as nearly where they are meant to be tangent.
+constexpr double kSmoothSine = 1e-3;
+
+// And share of its chord by which the middles of an edge, as both sides have it, may be apart.
+constexpr double kSmoothGap = 1e-4;
+
 // Cosine of the largest angle between a patch and its facet (60 deg).
 constexpr double kMinFacing = 0.5;
 
@@ -72,6 +79,41 @@ bool is_crease(const Surface& surface, std::int32_t face, std::size_t edge) {
     return surface.feature[at(face)][edge] != 0 && surface.neighbour[at(face)][edge] != kNoFace;
 }
 
+// What the jets of an edge's two corners lift the middle of its chord by.
+Vector3d middle_lift(const Surface& surface, const std::array<std::int32_t, 2>& corner,
+                     const Vector3d& chord) {
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t i = 0; i < 2; ++i) {
+        const HeightJet& jet = surface.jet[at(corner[i])];
+        const Vector3d half = (i == 0 ? 0.5 : -0.5) * (jet.frame.transpose() * chord);
+        sum += (height_at(jet, half.x(), half.y()).value - half.z()) * jet.frame.col(2);
+    }
+    return 0.5 * sum;
+}
+
+// Whether both sides know the same normals and the same curve along an edge: a border of fits, over
+// which the surface is smooth. Bent to a curve of its own, a patch would only become uneven.
+bool is_smooth(const Surface& surface, std::int32_t face, std::size_t edge) {
+    const std::size_t to = (edge + 1) % 3;
+    const Side from_side = side_of(surface, face, edge, edge);
+    const Side to_side = side_of(surface, face, edge, to);
+    const auto differ = [](const Side& side) {
+        return side.normal.cross(side.normal_across).norm() > kSmoothSine;
+    };
+    if (differ(from_side) || differ(to_side)) {
+        return false;
+    }
+    const auto& vertex = surface.face[at(face)];
+    const auto& here = surface.corner[at(face)];
+    const auto& there = surface.corner[at(from_side.face_across)];
+    const Vector3d chord =
+        surface.position_mm[at(vertex[to])] - surface.position_mm[at(vertex[edge])];
+    const Vector3d gap =
+        middle_lift(surface, {here[edge], here[to]}, chord) -
+        middle_lift(surface, {there[from_side.corner_across], there[to_side.corner_across]}, chord);
+    return gap.norm() < kSmoothGap * chord.norm();
+}
+
 // Whether two creases run on into each other at a face's corner, as where a cap's triangle has two
 // edges on its rim: both along their tangent, they would close the corner.
 bool is_ear(const Surface& surface, std::int32_t face, std::size_t corner) {
@@ -110,7 +152,7 @@ Patch::Patch(const Surface& surface, std::int32_t face) {
                                     : Vector3d(-corner.along_v);
     }
     for (std::size_t e = 0; e < 3; ++e) {
-        if (is_crease(surface, face, e)) {
+        if (is_crease(surface, face, e) && !is_smooth(surface, face, e)) {
             add_crease(surface, face, e);
         }
     }

@@ -54,6 +54,7 @@ struct WallPart {
         Eigen::Vector3d most;
     };
     std::optional<std::int32_t> region{};
+    std::optional<std::int32_t> cad_face{};  ///< number from 1
     std::optional<Box> box{};                ///< in the file's frame and units
     std::optional<Eigen::Vector3d> point{};  ///< in the file's frame and units
     std::optional<std::int32_t> rim{};
@@ -96,12 +97,15 @@ struct Job {
         LengthUnit units = LengthUnit::Auto;      ///< as `meshwind inspect` reads the part
         std::optional<MandrelAxis> axis;          ///< none: found
         std::vector<std::int32_t> keep_regions;   ///< region ids; empty: the outer wall
+        std::vector<std::int32_t> keep_faces;     ///< of a CAD file, from 1; empty: by regions
         std::optional<double> cut_ends_mm;        ///< >= 0; none: what is no part of an end's leg
         std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
         std::optional<double> blend_mm = 0.0;  ///< 0: crotches and steps stay sharp; none: by trial
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;
-        double extension_mm = 100.0;   ///< >= 0; room for turns beyond each rim
-        bool extension_given = false;  ///< by the job's author; else it may be made longer
+        std::string solid{};              ///< of a CAD file; empty: the only one
+        std::optional<double> edge_mm{};  ///< > 0, over a CAD file's faces; none: by its size
+        double extension_mm = 100.0;      ///< >= 0; room for turns beyond each rim
+        bool extension_given = false;     ///< by the job's author; else it may be made longer
         TurnKind turn = TurnKind::Friction;
         PinWish pins{};  ///< read where the kind of turn does (turn_kinds.h)
     };

@@ -39,31 +39,43 @@ Key<Job::MandrelJob> axis_key() {
             text};
 }
 
-Key<Job::MandrelJob> regions_key() {
+// A list of numbers, "auto" or left out where there are none.
+Key<Job::MandrelJob> numbers_key(std::string_view name,
+                                 std::vector<std::int32_t> Job::MandrelJob::*field, int first,
+                                 bool written_as_auto, std::string_view meaning) {
     const SchemaJson list = {
-        {"type", "array"}, {"minItems", 1}, {"items", count_schema(0, kMostId)}};
-    const auto read = [](const JsonValue& value, Job::MandrelJob& mandrel) {
+        {"type", "array"}, {"minItems", 1}, {"items", count_schema(first, kMostId)}};
+    const auto read = [=](const JsonValue& value, Job::MandrelJob& mandrel) {
         if (is_auto(value)) {
             return;
         }
         for (const JsonValue& id : value.array()) {
-            mandrel.keep_regions.push_back(static_cast<std::int32_t>(id.integer(0, kMostId)));
+            (mandrel.*field).push_back(static_cast<std::int32_t>(id.integer(first, kMostId)));
         }
-        if (mandrel.keep_regions.empty()) {
-            value.fail("json.out_of_range", "is empty; list region ids or write \"auto\"");
+        if ((mandrel.*field).empty()) {
+            value.fail("json.out_of_range", "is empty; list numbers or write \"auto\"");
         }
     };
-    const auto text = [](const Job::MandrelJob& mandrel) {
+    const auto text = [=](const Job::MandrelJob& mandrel) {
         std::string ids;
-        for (const std::int32_t id : mandrel.keep_regions) {
+        for (const std::int32_t id : mandrel.*field) {
             ids += (ids.empty() ? "" : ",") + std::to_string(id);
         }
-        return ids.empty() ? string_text(kAutoWord) : "[" + ids + "]";
+        return !ids.empty() ? "[" + ids + "]" : written_as_auto ? string_text(kAutoWord) : ids;
     };
-    return {"keep_regions",
-            "ids of the regions that are wound, as meshwind inspect lists them; auto: the outer "
-            "wall",
-            or_word(kAutoWord, list), read, text};
+    return {name, meaning, or_word(kAutoWord, list), read, text};
+}
+
+Key<Job::MandrelJob> regions_key() {
+    return numbers_key("keep_regions", &Job::MandrelJob::keep_regions, 0, true,
+                       "ids of the regions that are wound, as meshwind inspect lists them; auto: "
+                       "the outer wall");
+}
+
+Key<Job::MandrelJob> faces_key() {
+    return numbers_key("keep_faces", &Job::MandrelJob::keep_faces, 1, false,
+                       "instead of regions: numbers of the faces of a CAD file that are wound, as "
+                       "meshwind inspect lists them");
 }
 
 const KeyTable<PinWish>& pin_keys() {
@@ -147,6 +159,7 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
              "metres if the part is under 10 units"),
         axis_key(),
         regions_key(),
+        faces_key(),
         number("cut_ends", &Owner::cut_ends_mm, kCutRange,
                "mm that are cut off each end; without it rounded lips, tabs and notches, which are "
                "no part of the end's leg"),
@@ -156,6 +169,12 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
                "uneven"),
         blend_key(),
         mesh_key(),
+        any_text("solid", &Owner::solid,
+                 "of a CAD file with several solids: the name or number of the one to be wound, as "
+                 "the message that refuses the file lists them"),
+        number("edge", &Owner::edge_mm, kLengthRange,
+               "mm, longest edge of the triangles over a CAD file's faces; without it by the "
+               "part's size, and shorter where a face is curved"),
         told(number("extension", &Owner::extension_mm, kExtensionRange,
                     "mm of room beyond each rim where the fibre turns; where it is not given, and "
                     "checks fail, longer ones are tried"),

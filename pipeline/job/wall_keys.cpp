@@ -62,12 +62,12 @@ Key<WallPart> point_key() {
         [](const WallPart& part) { return part.point ? vector_text(*part.point) : std::string(); }};
 }
 
-// A number of a region or rim.
+// A number of a region, rim or face.
 Key<WallPart> id_key(std::string_view name, std::optional<std::int32_t> WallPart::*field,
-                     std::string_view meaning) {
-    return {name, meaning, count_schema(0, kMostId),
+                     std::string_view meaning, std::int64_t first = 0) {
+    return {name, meaning, count_schema(first, kMostId),
             [=](const JsonValue& value, WallPart& part) {
-                part.*field = static_cast<std::int32_t>(value.integer(0, kMostId));
+                part.*field = static_cast<std::int32_t>(value.integer(first, kMostId));
             },
             [=](const WallPart& part) {
                 return part.*field ? std::to_string(*(part.*field)) : std::string();
@@ -76,11 +76,11 @@ Key<WallPart> id_key(std::string_view name, std::optional<std::int32_t> WallPart
 
 // One place, and a distance where the place needs one.
 void check_place(const JsonObject& object, const WallPart& part) {
-    const int places =
-        (part.region ? 1 : 0) + (part.box ? 1 : 0) + (part.point ? 1 : 0) + (part.rim ? 1 : 0);
+    const int places = (part.region ? 1 : 0) + (part.cad_face ? 1 : 0) + (part.box ? 1 : 0) +
+                       (part.point ? 1 : 0) + (part.rim ? 1 : 0);
     if (places != 1) {
         object.value().fail("job.wall_place",
-                            "give one of \"region\", \"box\", \"point\" and \"rim\"");
+                            "give one of \"region\", \"face\", \"box\", \"point\" and \"rim\"");
     }
     if ((part.point || part.rim) != part.within_mm.has_value()) {
         object.value().fail("job.wall_place",
@@ -94,6 +94,8 @@ const KeyTable<WallPart>& part_keys() {
     static const KeyTable<WallPart> kTable = {
         {
             id_key("region", &WallPart::region, "a region, as meshwind inspect lists them"),
+            id_key("face", &WallPart::cad_face,
+                   "a face of a CAD file, as meshwind inspect lists them", 1),
             box_key(),
             point_key(),
             id_key("rim", &WallPart::rim, "what lies \"within\" so many mm of this rim"),
@@ -103,7 +105,7 @@ const KeyTable<WallPart>& part_keys() {
         },
         [](const JsonObject& object, WallPart& part) { check_place(object, part); },
         schema_rules(R"({
-          "oneOf": [{"required": ["region"]}, {"required": ["box"]},
+          "oneOf": [{"required": ["region"]}, {"required": ["face"]}, {"required": ["box"]},
                     {"required": ["point", "within"]}, {"required": ["rim", "within"]}],
           "anyOf": [{"required": ["layers"], "not": {"required": ["thickness"]}},
                     {"required": ["thickness"], "not": {"required": ["layers"]}}]

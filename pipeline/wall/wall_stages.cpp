@@ -97,6 +97,14 @@ private:
                              "region " + std::to_string(*part.region) +
                                  " is no part of the wall; meshwind inspect lists its regions");
         }
+        const auto& faces = bare_.cad_face;
+        if (part.cad_face &&
+            std::find(faces.begin(), faces.end(), *part.cad_face - 1) == faces.end()) {
+            throw InputError("job.no_face", here + "/face",
+                             "face " + std::to_string(*part.cad_face) +
+                                 " is no part of the wall; meshwind inspect lists the faces of a "
+                                 "CAD file");
+        }
         if (part.rim && at(*part.rim) >= bare_.rims.size()) {
             throw InputError("job.no_rim", here + "/rim",
                              "there is no rim " + std::to_string(*part.rim) +
@@ -113,6 +121,9 @@ private:
     [[nodiscard]] bool holds(const WallPart& part, const SurfacePoint& place) const {
         if (part.region) {
             return bare_.surface.region[at(place.face)] == *part.region;
+        }
+        if (part.cad_face) {
+            return bare_.cad_face[at(place.face)] == *part.cad_face - 1;
         }
         const Eigen::Vector3d position = position_mm(bare_.surface, place);
         if (part.box) {

@@ -2,7 +2,8 @@
 ///
 ///     cad_part SEED FOLDER
 ///
-/// writes FOLDER/part_SEED.stl, and FOLDER/part_SEED.json with what is true of it. The same seed
+/// writes FOLDER/part_SEED.stl, the same in exact faces as .step where it has them all, and
+/// FOLDER/part_SEED.json with what is true of it. The same seed
 /// gives the same files with the same version of Open CASCADE.
 #include <charconv>
 #include <cstdint>
@@ -60,7 +61,9 @@ int make(std::uint64_t seed, const std::string& folder) {
         }
         const std::string name = "part_" + std::to_string(seed);
         const std::string stl = name + ".stl";
+        const bool exact = !part.skin && !built->missing;
         if (!write_stl(folder + "/" + stl, triangles, options, random) ||
+            (exact && !write_step(folder + "/" + name + ".step", built->shape, options)) ||
             !write_text(folder + "/" + name + ".json",
                         truth_json(seed, stl, part, options, triangles.size()))) {
             std::fprintf(stderr, "%s: cannot be written\n", (folder + "/" + name).c_str());

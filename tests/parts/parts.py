@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Asks the program about parts that a generator makes at random, and compares its answers with the truth.
 
-    parts.py GENERATOR PROGRAM [--count 200] [--seed 1] [--wind N] [--folder DIR] [--jobs N]
+    parts.py GENERATOR PROGRAM [--count 200] [--seed 1] [--wind N] [--step] [--folder DIR] [--jobs N]
 
 GENERATOR is the program of cad_part.cpp; part SEED, SEED + 1 ... are made. `inspect` understands a part if it finds the
 unit, a rim on each end (radius within 1 %, centre within 2 % of the radius from the leg's axis, direction within a
@@ -190,6 +190,12 @@ class Asker:
         line = dict.fromkeys(COLUMNS, "")
         line.update(seed=seed, kind=truth["kind"], details=" ".join(truth["details"]), export=" ".join(flags),
                     cause=truth["cause"] or "", triangles=made["triangles"])
+        if self.options.step:
+            step = self.folder / f"part_{seed}.step"
+            if not step.exists():
+                line["outcome"] = "no exact part"
+                return line
+            truth["file"], truth["options"] = step.name, []
         code, output, errors, seconds = run(
             [self.options.program, "inspect", "--json", self.folder / truth["file"], *truth["options"]], INSPECT_S)
         line["inspect_s"] = f"{seconds:.2f}"
@@ -244,6 +250,7 @@ def understood(line):
 
 def summary(lines):
     """Prints the sums. Whether they are good enough."""
+    lines = [line for line in lines if line["outcome"] != "no exact part"]
     plain = [line for line in lines if not line["cause"]]
     spoilt = [line for line in lines if line["cause"]]
     wound = [line for line in plain if line["wind"]]
@@ -274,6 +281,7 @@ def main():
     parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="of a main job")
     parser.add_argument("--machine", type=pathlib.Path, default=ROOT / "machines/six_axis.json")
     parser.add_argument("--folder", type=pathlib.Path, help="where parts and outputs stay; without it they are deleted")
+    parser.add_argument("--step", action="store_true", help="the exact parts, not their triangles")
     parser.add_argument("--jobs", type=int, default=1, help="parts at a time")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:

@@ -7,9 +7,17 @@
 #include <fstream>
 #include <map>
 
+#include <BRepBuilderAPI_Copy.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
 #include <Poly_Triangulation.hxx>
+#include <STEPControl_Controller.hxx>
+#include <STEPControl_Writer.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
@@ -224,6 +232,22 @@ bool write_stl(const std::string& file, const std::vector<Triangle>& triangles,
     }
     out.close();
     return !out.fail();
+}
+
+bool write_step(const std::string& file, const TopoDS_Shape& shape, const ExportOptions& options) {
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+    STEPControl_Controller::Init();  // before the unit is set, or the writer has another
+    Interface_Static::SetCVal("write.step.unit", options.unit_mm == 1000.0 ? "M"
+                                                 : options.unit_mm == 25.4 ? "INCH"
+                                                                           : "MM");
+    // Without the triangles.
+    TopoDS_Shape bare = BRepBuilderAPI_Copy(shape).Shape();
+    BRepTools::Clean(bare);
+    const TopoDS_Shape moved =
+        options.moved ? BRepBuilderAPI_Transform(bare, options.motion, true).Shape() : bare;
+    STEPControl_Writer writer;
+    writer.Transfer(moved, STEPControl_AsIs);
+    return writer.Write(file.c_str()) == IFSelect_RetDone;
 }
 
 }  // namespace cad_part

@@ -48,4 +48,8 @@ struct Triangle {
 [[nodiscard]] bool write_stl(const std::string& file, const std::vector<Triangle>& triangles,
                              const ExportOptions& options, Random& random);
 
+/// The exact faces in the file's units, where the triangles are. \return whether it is written
+[[nodiscard]] bool write_step(const std::string& file, const TopoDS_Shape& shape,
+                              const ExportOptions& options);
+
 }  // namespace cad_part

@@ -96,7 +96,7 @@ class BadInput(program.ProgramTest):
                                      "mesh.bad_line" if name == "words.obj" else "mesh.not_a_mesh")
 
     def test_unknown_format(self):
-        self.refused_mandrel("part.step", "ISO-10303-21;\n", "mesh.unknown_format")
+        self.refused_mandrel("part.3mf", "PK\n", "mesh.unknown_format")
 
     def test_truncated_binary_stl(self):
         whole = self.make("cylinder", "--edge", "10").read_bytes()

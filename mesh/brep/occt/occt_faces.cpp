@@ -1,0 +1,485 @@
+#include "mesh/brep/occt/occt_faces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
+#include <Poly_Triangulation.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopTools_ListOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <gp_Cone.hxx>
+#include <gp_Cylinder.hxx>
+#include <gp_Pnt.hxx>
+#include <gp_Sphere.hxx>
+#include <gp_Torus.hxx>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "core/units.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// The first mesh: how far its triangles are off the faces, as a share of the part, and by how much
+// they turn along an edge.
+constexpr double kFirstDeflection = 1e-3;
+constexpr double kFirstTurn_rad = 0.15;
+
+// Newton's way to the nearest point ends when it moves by less, mm, or has made so many steps.
+constexpr double kFound_mm = 1e-10;
+constexpr int kMostSteps = 30;
+
+// Edges are looked along at so many places for the nearest point.
+constexpr int kEdgePlaces = 64;
+
+// Rings and spokes of the places about a point at which its surface is evaluated.
+constexpr int kJetRings = 3;
+constexpr int kJetSpokes = 12;
+constexpr double kJetReach = 1.0;          // of the longest edge there,
+constexpr double kJetNearest = 0.15;       // of that, places that are taken
+constexpr double kJetMostTurn_rad = 0.35;  // but so that the surface turns by no more
+
+constexpr double kFlat_per_mm = 1e-9;
+
+// The tangents of a place span less of a square than this share where it is a pole.
+constexpr double kPole = 1e-7;
+
+Vector3d vector_of(const gp_XYZ& p) {
+    return {p.X(), p.Y(), p.Z()};
+}
+Vector3d vector_of(const gp_Pnt& p) {
+    return vector_of(p.XYZ());
+}
+Vector3d vector_of(const gp_Vec& v) {
+    return vector_of(v.XYZ());
+}
+Vector3d vector_of(const gp_Dir& d) {
+    return vector_of(d.XYZ());
+}
+
+struct SurfacePlace {
+    Vector3d at, by_u, by_v, by_uu, by_vv, by_uv;
+};
+
+SurfacePlace evaluate(const BRepAdaptor_Surface& surface, const Vector2d& uv) {
+    gp_Pnt p;
+    gp_Vec u, v, uu, vv, uv_second;
+    surface.D2(uv.x(), uv.y(), p, u, v, uu, vv, uv_second);
+    return {vector_of(p),  vector_of(u),  vector_of(v),
+            vector_of(uu), vector_of(vv), vector_of(uv_second)};
+}
+
+std::string kind_of(GeomAbs_SurfaceType type) {
+    switch (type) {
+        case GeomAbs_Plane:
+            return "plane";
+        case GeomAbs_Cylinder:
+            return "cylinder";
+        case GeomAbs_Cone:
+            return "cone";
+        case GeomAbs_Sphere:
+            return "sphere";
+        case GeomAbs_Torus:
+            return "torus";
+        case GeomAbs_BezierSurface:
+        case GeomAbs_BSplineSurface:
+            return "spline";
+        default:
+            return "other";
+    }
+}
+
+void take_axis(const gp_Ax1& axis, CadFace& face) {
+    face.axis_point_mm = vector_of(axis.Location());
+    face.axis_direction = vector_of(axis.Direction());
+}
+
+}  // namespace
+
+struct OcctFaces::Face {
+    TopoDS_Face face;
+    BRepAdaptor_Surface surface;  // without its borders
+    bool reversed = false;
+    std::vector<Vector2d> uv;  // where points are looked for from
+    std::vector<Vector3d> at_mm;
+
+    explicit Face(const TopoDS_Face& of)
+        : face(of), surface(of, Standard_False), reversed(of.Orientation() == TopAbs_REVERSED) {}
+
+    [[nodiscard]] Vector2d clamped(Vector2d uv_wanted) const {
+        if (!surface.IsUPeriodic()) {
+            uv_wanted.x() =
+                std::clamp(uv_wanted.x(), surface.FirstUParameter(), surface.LastUParameter());
+        }
+        if (!surface.IsVPeriodic()) {
+            uv_wanted.y() =
+                std::clamp(uv_wanted.y(), surface.FirstVParameter(), surface.LastVParameter());
+        }
+        return uv_wanted;
+    }
+
+    // Newton's steps from the nearest known place; where the distance's second derivative is not
+    // positive, those of Gauss.
+    [[nodiscard]] std::optional<Vector2d> nearest(const Vector3d& p) const {
+        if (uv.empty()) {
+            return {};
+        }
+        std::size_t best = 0;
+        for (std::size_t i = 1; i < at_mm.size(); ++i) {
+            best = (at_mm[i] - p).squaredNorm() < (at_mm[best] - p).squaredNorm() ? i : best;
+        }
+        Vector2d place = uv[best];
+        for (int step = 0; step < kMostSteps; ++step) {
+            const SurfacePlace s = evaluate(surface, place);
+            const Vector3d off = s.at - p;
+            Eigen::Matrix2d metric;
+            metric << s.by_u.squaredNorm(), s.by_u.dot(s.by_v), s.by_u.dot(s.by_v),
+                s.by_v.squaredNorm();
+            Eigen::Matrix2d bent;
+            bent << s.by_uu.dot(off), s.by_uv.dot(off), s.by_uv.dot(off), s.by_vv.dot(off);
+            const Eigen::Matrix2d whole = metric + bent;
+            const Eigen::Matrix2d& used =
+                whole.determinant() > 0.0 && whole.trace() > 0.0 ? whole : metric;
+            if (!(used.determinant() > 0.0)) {
+                return {};
+            }
+            const Vector2d slope(s.by_u.dot(off), s.by_v.dot(off));
+            const Vector2d next = clamped(place - used.inverse() * slope);
+            const Vector2d moved = next - place;
+            place = next;
+            if ((moved.x() * s.by_u + moved.y() * s.by_v).norm() < kFound_mm) {
+                return place;
+            }
+        }
+        return {};
+    }
+};
+
+struct OcctFaces::Edge {
+    BRepAdaptor_Curve curve;
+    std::vector<double> t;
+    std::vector<Vector3d> at_mm;
+
+    explicit Edge(const TopoDS_Edge& edge) : curve(edge) {
+        const double first = curve.FirstParameter();
+        const double last = curve.LastParameter();
+        for (int i = 0; i <= kEdgePlaces; ++i) {
+            t.push_back(first + (last - first) * i / kEdgePlaces);
+            at_mm.push_back(vector_of(curve.Value(t.back())));
+        }
+    }
+
+    [[nodiscard]] Vector3d nearest(const Vector3d& p) const {
+        std::size_t best = 0;
+        for (std::size_t i = 1; i < at_mm.size(); ++i) {
+            best = (at_mm[i] - p).squaredNorm() < (at_mm[best] - p).squaredNorm() ? i : best;
+        }
+        double place = t[best];
+        Vector3d at = at_mm[best];
+        for (int step = 0; step < kMostSteps; ++step) {
+            gp_Pnt point;
+            gp_Vec first;
+            gp_Vec second;
+            curve.D2(place, point, first, second);
+            const Vector3d off = vector_of(point) - p;
+            const Vector3d along = vector_of(first);
+            const double metric = along.squaredNorm();
+            const double whole = metric + vector_of(second).dot(off);
+            const double used = whole > 0.0 ? whole : metric;
+            if (!(used > 0.0)) {
+                break;
+            }
+            const double next = std::clamp(place - along.dot(off) / used, t.front(), t.back());
+            const double moved = std::abs(next - place) * std::sqrt(metric);
+            place = next;
+            at = vector_of(curve.Value(place));
+            if (moved < kFound_mm) {
+                break;
+            }
+        }
+        return at;
+    }
+};
+
+OcctFaces::OcctFaces(const TopoDS_Shape& shape) : shape_(shape) {
+    TopTools_IndexedMapOfShape faces;
+    TopExp::MapShapes(shape, TopAbs_FACE, faces);
+    for (int i = 1; i <= faces.Extent(); ++i) {
+        faces_.emplace_back(TopoDS::Face(faces(i)));
+    }
+    TopTools_IndexedDataMapOfShapeListOfShape faces_of;
+    TopExp::MapShapesAndUniqueAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of);
+    for (int i = 1; i <= faces_of.Extent(); ++i) {
+        const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(i));
+        if (BRep_Tool::Degenerated(edge) || faces_of(i).Extent() > 2 || faces_of(i).Extent() == 0) {
+            continue;
+        }
+        std::int32_t a = faces.FindIndex(faces_of(i).First()) - 1;
+        std::int32_t b = -1;
+        if (faces_of(i).Extent() == 2) {
+            b = faces.FindIndex(faces_of(i).Last()) - 1;
+        } else if (BRep_Tool::IsClosed(edge, TopoDS::Face(faces_of(i).First()))) {
+            continue;  // a seam, of no border
+        }
+        if (b >= 0 && b < a) {
+            std::swap(a, b);
+        }
+        border_[{a, b}].push_back(edges_.size());
+        edges_.emplace_back(edge);
+    }
+}
+
+OcctFaces::~OcctFaces() = default;
+
+OcctMesh OcctFaces::first_mesh() {
+    Bnd_Box box;
+    BRepBndLib::Add(shape_, box);
+    IMeshTools_Parameters wanted;
+    wanted.Deflection = kFirstDeflection * std::sqrt(box.SquareExtent());
+    wanted.Angle = kFirstTurn_rad;
+    wanted.InParallel = Standard_False;
+    const BRepMesh_IncrementalMesh mesher(shape_, wanted);
+
+    OcctMesh mesh;
+    TopTools_IndexedMapOfShape edges;
+    TopTools_IndexedMapOfShape vertices;
+    TopExp::MapShapes(shape_, TopAbs_EDGE, edges);
+    TopExp::MapShapes(shape_, TopAbs_VERTEX, vertices);
+    // Points of edges by the edge's number and theirs along it, points of vertices as those of no
+    // edge.
+    std::map<std::pair<int, int>, std::int32_t> shared;
+    std::vector<int> used(static_cast<std::size_t>(edges.Extent()) + 1, 0);
+    const auto point_at = [&](const std::pair<int, int>& key, const Vector3d& p,
+                              std::int32_t face) {
+        const auto [found, is_new] =
+            shared.try_emplace(key, static_cast<std::int32_t>(mesh.soup.points_mm.size()));
+        if (is_new) {
+            mesh.soup.points_mm.push_back(p);
+        } else {
+            const double off =
+                (mesh.soup.points_mm[static_cast<std::size_t>(found->second)] - p).norm();
+            if (off > mesh.off_face_mm) {
+                mesh.off_face_mm = off;
+                mesh.off_face = face;
+            }
+        }
+        return found->second;
+    };
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+        Face& face = faces_[f];
+        const auto number = static_cast<std::int32_t>(f);
+        TopLoc_Location location;
+        const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face.face, location);
+        if (triangles.IsNull() || triangles->NbTriangles() == 0) {
+            mesh.failed_faces.push_back(number);
+            continue;
+        }
+        const gp_Trsf& moved = location.Transformation();
+        const auto node = [&](int i) { return vector_of(triangles->Node(i).Transformed(moved)); };
+        std::vector<std::int32_t> point(static_cast<std::size_t>(triangles->NbNodes()) + 1, -1);
+        for (TopExp_Explorer at(face.face, TopAbs_EDGE); at.More(); at.Next()) {
+            const TopoDS_Edge& edge = TopoDS::Edge(at.Current());
+            const Handle(Poly_PolygonOnTriangulation) polygon =
+                BRep_Tool::PolygonOnTriangulation(edge, triangles, location);
+            if (polygon.IsNull()) {
+                continue;
+            }
+            const int id = edges.FindIndex(edge);
+            ++used[static_cast<std::size_t>(id)];
+            const bool point_only = BRep_Tool::Degenerated(edge);
+            const TopoDS_Vertex first = TopExp::FirstVertex(edge);
+            const TopoDS_Vertex last = TopExp::LastVertex(edge);
+            for (int i = 1; i <= polygon->NbNodes(); ++i) {
+                const int n = polygon->Node(i);
+                const bool at_first = point_only || i == 1;
+                std::pair<int, int> key(id, i);
+                Vector3d p = node(n);
+                if (at_first || i == polygon->NbNodes()) {
+                    const TopoDS_Vertex& vertex = at_first ? first : last;
+                    key = {0, vertices.FindIndex(vertex)};
+                    point_at(key, vector_of(BRep_Tool::Pnt(vertex)), number);
+                }
+                point[static_cast<std::size_t>(n)] = point_at(key, p, number);
+            }
+        }
+        for (int n = 1; n <= triangles->NbNodes(); ++n) {
+            face.at_mm.push_back(node(n));
+            if (triangles->HasUVNodes()) {
+                const gp_Pnt2d uv = triangles->UVNode(n);
+                face.uv.emplace_back(uv.X(), uv.Y());
+            }
+            if (point[static_cast<std::size_t>(n)] < 0) {
+                point[static_cast<std::size_t>(n)] =
+                    static_cast<std::int32_t>(mesh.soup.points_mm.size());
+                mesh.soup.points_mm.push_back(node(n));
+            }
+        }
+        const bool turned = face.reversed != moved.IsNegative();
+        for (int t = 1; t <= triangles->NbTriangles(); ++t) {
+            int a = 0, b = 0, c = 0;
+            triangles->Triangle(t).Get(a, b, c);
+            if (turned) {
+                std::swap(b, c);
+            }
+            const std::array<std::int32_t, 3> corners = {point[static_cast<std::size_t>(a)],
+                                                         point[static_cast<std::size_t>(b)],
+                                                         point[static_cast<std::size_t>(c)]};
+            if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) {
+                mesh.soup.faces.push_back(corners);
+                mesh.face.push_back(number);
+            }
+        }
+    }
+    for (int i = 1; i <= edges.Extent(); ++i) {
+        mesh.open_edges += used[static_cast<std::size_t>(i)] == 1 &&
+                                   !BRep_Tool::Degenerated(TopoDS::Edge(edges(i)))
+                               ? 1
+                               : 0;
+    }
+    return mesh;
+}
+
+std::vector<CadFace> OcctFaces::describe() const {
+    TopTools_IndexedDataMapOfShapeListOfShape solids_of;
+    TopTools_IndexedMapOfShape solids;
+    TopExp::MapShapes(shape_, TopAbs_SOLID, solids);
+    TopExp::MapShapesAndAncestors(shape_, TopAbs_FACE, TopAbs_SOLID, solids_of);
+    std::vector<CadFace> faces;
+    for (const Face& of : faces_) {
+        CadFace& face = faces.emplace_back();
+        const BRepAdaptor_Surface& surface = of.surface;
+        face.kind = kind_of(surface.GetType());
+        switch (surface.GetType()) {
+            case GeomAbs_Plane:
+                take_axis(surface.Plane().Axis(), face);
+                break;
+            case GeomAbs_Cylinder:
+                face.radius_mm = surface.Cylinder().Radius();
+                take_axis(surface.Cylinder().Axis(), face);
+                break;
+            case GeomAbs_Cone:
+                take_axis(surface.Cone().Axis(), face);
+                break;
+            case GeomAbs_Sphere:
+                face.radius_mm = surface.Sphere().Radius();
+                face.axis_point_mm = vector_of(surface.Sphere().Location());
+                break;
+            case GeomAbs_Torus:
+                face.radius_mm = surface.Torus().MinorRadius();
+                take_axis(surface.Torus().Axis(), face);
+                break;
+            default:
+                break;
+        }
+        if (solids_of.Contains(of.face) && !solids_of.FindFromKey(of.face).IsEmpty()) {
+            face.solid = solids.FindIndex(solids_of.FindFromKey(of.face).First()) - 1;
+        }
+    }
+    return faces;
+}
+
+std::optional<Vector3d> OcctFaces::on_face(std::int32_t face, const Vector3d& p) {
+    const Face& of = faces_[static_cast<std::size_t>(face)];
+    const std::optional<Vector2d> uv = of.nearest(p);
+    return uv ? std::optional(vector_of(of.surface.Value(uv->x(), uv->y()))) : std::nullopt;
+}
+
+std::optional<Vector3d> OcctFaces::on_border(std::int32_t face, std::int32_t other,
+                                             const Vector3d& p) {
+    const auto key = other >= 0 && other < face ? std::pair(other, face) : std::pair(face, other);
+    const auto found = border_.find(key);
+    if (found == border_.end()) {
+        return {};
+    }
+    std::optional<Vector3d> best;
+    for (const std::size_t edge : found->second) {
+        const Vector3d at = edges_[edge].nearest(p);
+        if (!best || (at - p).norm() < (*best - p).norm()) {
+            best = at;
+        }
+    }
+    return best;
+}
+
+std::optional<Jet> OcctFaces::jet(std::int32_t face, const Vector3d& p, double reach_mm) {
+    const Face& of = faces_[static_cast<std::size_t>(face)];
+    const std::optional<Vector2d> uv = of.nearest(p);
+    if (!uv) {
+        return {};
+    }
+    const SurfacePlace s = evaluate(of.surface, *uv);
+    const Vector3d cross = s.by_u.cross(s.by_v);
+    if (!(cross.norm() > kPole * s.by_u.norm() * s.by_v.norm()) ||
+        !(s.by_u.norm() > 0.0 && s.by_v.norm() > 0.0)) {
+        return {};
+    }
+    const Vector3d normal = (of.reversed ? -1.0 : 1.0) * cross.normalized();
+    // Directions along the surface whose rates of u and v are known: an orthonormal frame.
+    const Vector3d x = s.by_u.normalized();
+    const Vector3d y = cross.normalized().cross(x);
+    Eigen::Matrix2d rates;  // columns: of u and v by the frame
+    rates << s.by_u.dot(x), s.by_v.dot(x), s.by_u.dot(y), s.by_v.dot(y);
+    const Eigen::Matrix2d to_uv = rates.inverse();
+    // Exact: how the normal changes along the surface.
+    const Vector3d n = cross.normalized();
+    Eigen::Matrix2d second;
+    second << s.by_uu.dot(n), s.by_uv.dot(n), s.by_uv.dot(n), s.by_vv.dot(n);
+    const Eigen::Matrix2d bent = -to_uv.transpose() * second * to_uv;
+    Jet jet;
+    jet.height.frame << x, y, normal;
+    jet.normal = normal;
+    const double side = of.reversed ? -1.0 : 1.0;
+    jet.shape_operator_per_mm =
+        side * (jet.height.frame.leftCols<2>() * bent * jet.height.frame.leftCols<2>().transpose());
+    if (reach_mm > 0.0) {
+        const double most_turn_mm = kJetMostTurn_rad / std::max(bent.norm(), kFlat_per_mm);
+        const double reach = std::min(kJetReach * reach_mm, most_turn_mm);
+        std::vector<Vector3d> around;
+        for (int ring = 1; ring <= kJetRings; ++ring) {
+            for (int spoke = 0; spoke < kJetSpokes; ++spoke) {
+                const double angle = 2.0 * kPi * (spoke + 0.5 * (ring % 2)) / kJetSpokes;
+                const double far = reach * ring / kJetRings;
+                const Vector2d at = of.clamped(
+                    *uv + to_uv * Vector2d(far * std::cos(angle), far * std::sin(angle)));
+                const Vector3d place = vector_of(of.surface.Value(at.x(), at.y()));
+                // Where the surface ends beside the point, places fall onto it.
+                if ((place - s.at).norm() > kJetNearest * reach) {
+                    around.push_back(place);
+                }
+            }
+        }
+        const std::optional<Jet> fit = fit_jet(s.at, normal, around);
+        if (fit) {
+            jet.height = fit->height;
+            jet.terms = fit->terms;
+            return jet;
+        }
+    }
+    jet.height.frame.col(1) *= side;  // right-handed
+    jet.height.coefficient[kJetX2] = -0.5 * side * bent(0, 0);
+    jet.height.coefficient[kJetX2 + 1] = -bent(0, 1);
+    jet.height.coefficient[kJetX2 + 2] = -0.5 * side * bent(1, 1);
+    jet.terms = JetTerms::Quadratic;
+    return jet;
+}
+
+}  // namespace meshwind

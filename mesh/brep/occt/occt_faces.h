@@ -1,0 +1,55 @@
+/// The faces and edges of an Open CASCADE shape as exact surfaces, and a first mesh of them.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <TopoDS_Shape.hxx>
+
+#include "mesh/brep/even_part.h"
+
+namespace meshwind {
+
+/// Triangles between points of the exact edges and faces, as narrow as the faces allow.
+struct OcctMesh {
+    TriangleSoup soup;  ///< points that faces share are there once
+    std::vector<std::int32_t> face;
+    double off_face_mm = 0.0;  ///< largest distance of a shared point from one of its faces
+    std::int32_t off_face = -1;
+    int open_edges = 0;
+    std::vector<std::int32_t> failed_faces;
+};
+
+/// Not thread-safe: Open CASCADE keeps what it evaluated last.
+class OcctFaces : public ExactFaces {
+public:
+    /// \param shape of which faces and edges are numbered in its order
+    explicit OcctFaces(const TopoDS_Shape& shape);
+    ~OcctFaces() override;
+
+    /// Also gives each face the places from which its points are looked for. \pre before the below
+    [[nodiscard]] OcctMesh first_mesh();
+    [[nodiscard]] std::vector<CadFace> describe() const;
+
+    [[nodiscard]] std::optional<Eigen::Vector3d> on_face(std::int32_t face,
+                                                         const Eigen::Vector3d& p) override;
+    [[nodiscard]] std::optional<Eigen::Vector3d> on_border(std::int32_t face, std::int32_t other,
+                                                           const Eigen::Vector3d& p) override;
+    [[nodiscard]] std::optional<Jet> jet(std::int32_t face, const Eigen::Vector3d& p,
+                                         double reach_mm) override;
+
+private:
+    struct Face;
+    struct Edge;
+
+    TopoDS_Shape shape_;
+    std::vector<Face> faces_;
+    std::vector<Edge> edges_;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::size_t>> border_;
+};
+
+}  // namespace meshwind

@@ -1,0 +1,22 @@
+/// A face of a CAD part, as its file has it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <Eigen/Core>
+
+namespace meshwind {
+
+/// A face of a CAD part.
+struct CadFace {
+    std::string kind;         ///< "plane", "cylinder", "cone", "sphere", "torus", "spline", "other"
+    double radius_mm = 0.0;   ///< of cylinders, spheres and the tube of tori; 0: none
+    double area_mm2 = 0.0;    ///< of its triangles
+    std::int32_t solid = -1;  ///< number of its solid, -1: of none
+    std::int32_t region = -1;  ///< of the mandrel, in which most of it lies
+    Eigen::Vector3d axis_point_mm = Eigen::Vector3d::Zero();
+    Eigen::Vector3d axis_direction = Eigen::Vector3d::Zero();  ///< unit; zero where it has none
+};
+
+}  // namespace meshwind

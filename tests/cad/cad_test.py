@@ -1,0 +1,147 @@
+"""CAD files from their bytes to a program, against the faces that Open CASCADE itself evaluates (cad_files.cpp).
+
+argv: PROGRAM CAD_FILES SOURCE_FOLDER [unittest options]
+"""
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "programs"))
+import program  # noqa: E402
+
+CAD_FILES = ""
+
+
+class CadTest(program.ProgramTest):
+    def cad(self, kind, unit="mm", ending=".step"):
+        file = self.folder / f"{kind}_{unit}{ending}"
+        subprocess.run([CAD_FILES, "make", kind, unit, file], check=True, capture_output=True)
+        return file
+
+    def inspected(self, file, *options):
+        return json.loads(self.done("inspect", file, "--json", *options).stdout)["mandrel"]
+
+    def off_faces_mm(self, file, start, direction, length_mm, step_mm):
+        """How far a traced geodesic ends from that on the exact faces, and its length."""
+        table = self.folder / "path.csv"
+        self.done("trace", file, "--start", ",".join(map(str, start)), "--direction", ",".join(map(str, direction)),
+                  "--length", length_mm, "--frame", "file", "-o", table)
+        rows = list(csv.DictReader(table.read_text().splitlines()))
+        first, last = rows[0], rows[-1]
+        at = [first[key] for key in ("x_mm", "y_mm", "z_mm", "tx", "ty", "tz")]
+        exact = subprocess.run([CAD_FILES, "geodesic", file, last["s_mm"], str(step_mm)], input=" ".join(at),
+                               capture_output=True, text=True, check=True).stdout.split()
+        return math.dist([float(last[key]) for key in ("x_mm", "y_mm", "z_mm")], list(map(float, exact[:3]))), \
+            float(last["s_mm"])
+
+    def test_units_and_formats_give_the_same_part(self):
+        for file, unit_mm in ((self.cad("tee"), 1.0), (self.cad("tee", "inch"), 25.4), (self.cad("tee", "m"), 1000.0)):
+            with self.subTest(file.name):
+                part = self.inspected(file)
+                self.assertEqual((part["unit_mm"], part["unit_rule"]), (unit_mm, "file"))
+                radii = sorted(rim["radius"] for rim in part["rims"])
+                for radius, wanted in zip(radii, (40.0, 50.0, 50.0), strict=True):
+                    self.assertAlmostEqual(radius, wanted, delta=1e-6)  # digits of the file
+                kinds = sorted(face["kind"] for face in part["cad_faces"])
+                self.assertEqual(kinds, ["cylinder"] * 2 + ["plane"] * 3 + ["spline"] * 2)
+        for ending in (".igs", ".brep"):
+            with self.subTest(ending):
+                part = self.inspected(self.cad("elbow", ending=ending))
+                self.assertEqual(len(part["rims"]), 2)
+                self.assertEqual([part["kind"] for part in part["tube"]["parts"]], ["straight", "bend", "straight"])
+                self.assertEqual("14 edges of the CAD part's faces were apart and are sewn" in part["remarks"],
+                                 ending == ".igs")
+
+    def test_corners_are_the_exact_faces(self):
+        part = self.inspected(self.cad("wye"))
+        fit = part["smooth_fit"]
+        self.assertEqual(fit["exact"], sum(count for kind, count in fit.items() if kind != "exact"))
+        self.assertGreater(part["winding_mesh"]["least_quality"], 0.3)  # no sliver
+        self.assertFalse(part["winding_mesh"]["own"])
+        run, branch = (next(face for face in part["cad_faces"] if abs(face.get("radius_mm", 0) - radius) < 1e-6)
+                       for radius in (50, 40))
+        self.assertAlmostEqual(abs(run["axis"]["direction"][2]), 1.0, delta=1e-9)
+        self.assertAlmostEqual(abs(branch["axis"]["direction"][2]), 0.5, delta=1e-9)
+        self.assertEqual((run["region"], branch["region"]), (0, 0))
+
+    def test_geodesics_on_the_exact_faces(self):
+        # On a torus and along a cylinder 1e-4 mm per metre, across it the error of patches over edges of R/10. The table has
+        # 1e-6 mm at both ends.
+        torus = self.cad("torus")
+        off_mm, length_mm = self.off_faces_mm(torus, (160, 160, 40), (0.3, -1, -0.5), 600, 0.2)
+        self.assertGreater(length_mm, 150.0)
+        self.assertLess(off_mm, 1e-4 * length_mm / 1000.0 + 2e-6)
+        off_mm, length_mm = self.off_faces_mm(self.cad("pipe"), (50, 0, -140), (0, 1, 0.5), 500, 0.5)
+        self.assertLess(off_mm, 2e-3 * length_mm / 1000.0)
+        # Over the blend of a tee, two borders where the curvature jumps: 0.02 mm over 300 mm.
+        off_mm, length_mm = self.off_faces_mm(self.cad("tee"), (36, -35, -90), (0.25, 0.2, 1), 300, 0.1)
+        self.assertGreater(length_mm, 150.0)
+        self.assertLess(off_mm, 0.02)
+
+    def test_a_tee_and_a_vessel_are_wound(self):
+        for kind in ("tee", "vessel"):
+            with self.subTest(kind):
+                file = self.cad(kind, "inch")
+                self.done(file, "--machine", "six_axis.json", "-o", kind, "--effort", "0.3")
+                report = json.loads((self.folder / kind / "report.json").read_text())
+                self.assertTrue(all(check["ok"] for check in report["checks"].values()))
+                self.done("verify", f"{kind}/program.ngc", "--mandrel", file, "--machine", "six_axis.json")
+
+    def test_the_same_bytes_again(self):
+        file = self.cad("tee")
+        outputs = {self.done("inspect", file, "--json", "--threads", threads).stdout for threads in (1, 2, 2)}
+        self.assertEqual(len(outputs), 1)
+
+    def test_several_solids(self):
+        file = self.cad("two")
+        self.refused(file, "mesh.several_solids", "1 (60 x 60 x 200 mm)", "2 (40 x 40 x 100 mm)")
+        job = self.write("job.json", '{"mandrel": {"solid": "2"}}')
+        self.assertAlmostEqual(self.inspected(file, "--job", job)["rims"][0]["radius"], 20.0, delta=1e-6)
+        job = self.write("job.json", '{"mandrel": {"solid": "3"}}')
+        self.refused(file, "mesh.no_such_solid", '"3"', options=("--job", job))
+
+    def test_edges_are_no_longer_than_asked(self):
+        file = self.cad("pipe")
+        count = []
+        for edge in (4, 2):
+            job = self.write("job.json", json.dumps({"mandrel": {"edge": edge}}))
+            count.append(self.inspected(file, "--job", job)["triangles"])
+        self.assertAlmostEqual(count[1] / count[0], 4.0, delta=0.6)
+
+    def test_broken_files(self):
+        whole = self.cad("tee").read_bytes()
+        for name, content in (("empty.step", b""), ("cut.step", whole[:len(whole) // 2]), ("words.stp", b"solid x\n" * 9),
+                              ("words.igs", b"a stormy night\n" * 9), ("words.brep", b"a stormy night\n" * 9)):
+            with self.subTest(name):
+                self.refused(self.write(name, content), "mesh.not_cad", name)
+        self.refused(self.folder / "none.step", "mesh.missing_file")
+        self.refused(self.write("tee.step", whole), "mesh.bad_unit", options=("--units", "m"))
+        os.environ["MESHWIND_CAD"] = "/none"
+        self.addCleanup(os.environ.pop, "MESHWIND_CAD")
+        self.refused(self.write("tee.step", whole), "mesh.no_cad", "libocct-data-exchange-dev")
+
+    def test_a_reader_that_dies_is_told_of(self):
+        reader = self.write("reader.sh", "#!/bin/sh\nkill -SEGV $$\n")
+        reader.chmod(0o755)
+        os.environ["MESHWIND_CAD"] = str(reader)
+        self.addCleanup(os.environ.pop, "MESHWIND_CAD")
+        self.refused(self.cad("pipe"), "mesh.cad_failed", "signal 11")
+        reader.write_text("#!/bin/sh\necho meshwind CAD mesh 1\n")
+        self.refused(self.cad("pipe"), "mesh.cad_failed")
+
+    def refused(self, file, code, *words, options=()):
+        result = self.run_program("inspect", file, "--json", *options)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        error = json.loads(result.stdout or result.stderr)["error"]
+        self.assertEqual(error["code"], code)
+        for word in words:
+            self.assertIn(word, result.stdout + result.stderr)
+
+
+if __name__ == "__main__":
+    CAD_FILES = sys.argv.pop(2)
+    program.main(__name__)
