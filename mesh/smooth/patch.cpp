@@ -91,8 +91,9 @@ Vector3d middle_lift(const Surface& surface, const std::array<std::int32_t, 2>& 
     return 0.5 * sum;
 }
 
-// Whether both sides know the same normals and the same curve along an edge: a border of fits, over
-// which the surface is smooth. Bent to a curve of its own, a patch would only become uneven.
+// Whether both sides know the same normals and the same curve along an edge, from exact faces: a
+// border over which the surface is smooth. Bent to a curve of its own, a patch would only become
+// uneven. One-sided fits are not as good: their patches have to be joined.
 bool is_smooth(const Surface& surface, std::int32_t face, std::size_t edge) {
     const std::size_t to = (edge + 1) % 3;
     const Side from_side = side_of(surface, face, edge, edge);
@@ -106,6 +107,12 @@ bool is_smooth(const Surface& surface, std::int32_t face, std::size_t edge) {
     const auto& vertex = surface.face[at(face)];
     const auto& here = surface.corner[at(face)];
     const auto& there = surface.corner[at(from_side.face_across)];
+    for (const std::int32_t corner :
+         {here[edge], here[to], there[from_side.corner_across], there[to_side.corner_across]}) {
+        if (surface.exact[at(corner)] == 0) {
+            return false;
+        }
+    }
     const Vector3d chord =
         surface.position_mm[at(vertex[to])] - surface.position_mm[at(vertex[edge])];
     const Vector3d gap =

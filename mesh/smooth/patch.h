@@ -39,9 +39,9 @@ struct PatchPlace {
 /// the same normal up to the error of the fits. On a feature edge, where the two sides have
 /// different polynomials, both follow the cubic between the crease's tangents at its two ends, of
 /// sixth order on a circle; where that would close a corner between two creases, the chord. Where
-/// the two sides have the same normals, as at borders of CAD faces, they are left as they are.
-/// Accuracy against the smooth surface, for fits of degree four: position fifth order, normal
-/// fourth, curvature third in the edge length (tests/mesh/smooth/patch_test.cpp).
+/// both sides are exact and have the same normals, as at borders of CAD faces, they are left as
+/// they are. Accuracy against the smooth surface, for fits of degree four: position fifth order,
+/// normal fourth, curvature third in the edge length (tests/mesh/smooth/patch_test.cpp).
 class Patch {
 public:
     /// \pre face is a face of `surface`, which outlives the patch

@@ -37,7 +37,7 @@ class Completion(unittest.TestCase):
     def test_commands(self):
         self.assertEqual(self.offered("ver"), ["verify"])
         self.assertIn("study", self.offered(""))
-        self.assertEqual(self.offered("study", ""), ["mesh-size"])
+        self.assertEqual(self.offered("study", ""), ["cases", "merge", "mesh-size"])
         self.assertEqual(self.offered("--quiet", "make", "iso"), ["isotensoid"])
 
     def test_kinds_of_mandrels(self):

@@ -74,7 +74,10 @@ struct PinnedPipe {
         const Vector3d off = place - rim.centre_mm;
         const Vector3d x = rim_reference(rim);
         const double azimuth = std::atan2(off.dot(rim.axis.cross(x)), off.dot(x));
-        const double around = std::remainder(azimuth - crossing.azimuth_rad - kPi, 2.0 * kPi) + kPi;
+        // From a little before the crossing, where rounding may put its first point.
+        const double middle_rad = 0.9 * kPi;
+        const double around =
+            std::remainder(azimuth - crossing.azimuth_rad - middle_rad, 2.0 * kPi) + middle_rad;
         return {rim.radius_mm * around, off.dot(rim.axis)};
     }
 };
