@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -52,19 +53,6 @@ namespace fs = std::filesystem;
 
 double unit_mm(const std::string& name) {
     return name.empty() ? 0.0 : mm_per(name).value();
-}
-
-Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
-    Eigen::Vector3d v;
-    std::istringstream in(text);
-    std::array<char, 2> comma{};
-    std::string rest;
-    if (!(in >> v.x() >> comma[0] >> v.y() >> comma[1] >> v.z()) || comma[0] != ',' ||
-        comma[1] != ',' || in >> rest || !v.allFinite()) {
-        throw InputError("cli.vector", option,
-                         "'" + text + "' is not three numbers; write them as X,Y,Z without blanks");
-    }
-    return v;
 }
 
 // What takes seconds at most tells of its phases on a terminal alone: a log needs no line of them.
@@ -175,11 +163,13 @@ std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double fi
     if (names.empty()) {
         names = {"cylinder", "torus", "ellipsoid", "tee"};
     }
+    const std::vector<double>& edges_mm = arguments.options.edges_mm;
+    const double shortest_mm = *std::min_element(edges_mm.begin(), edges_mm.end());
     std::vector<StudyMandrel> mandrels;
     for (const std::string& name : names) {
         std::vector<StudyMandrel> known = known_studies(name, arguments.radii_mm);
         if (known.empty()) {
-            known.push_back(file_study(load_mandrel(find_input(name), {.unit_mm = file_unit_mm})));
+            known.push_back(study_of_file(find_input(name), file_unit_mm, shortest_mm));
         }
         std::move(known.begin(), known.end(), std::back_inserter(mandrels));
     }
@@ -187,6 +177,19 @@ std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double fi
 }
 
 }  // namespace
+
+Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
+    Eigen::Vector3d v;
+    std::istringstream in(text);
+    std::array<char, 2> comma{};
+    std::string rest;
+    if (!(in >> v.x() >> comma[0] >> v.y() >> comma[1] >> v.z()) || comma[0] != ',' ||
+        comma[1] != ',' || in >> rest || !v.allFinite()) {
+        throw InputError("cli.vector", option,
+                         "'" + text + "' is not three numbers; write them as X,Y,Z without blanks");
+    }
+    return v;
+}
 
 int run_wind(const WindArguments& arguments, const Common& common) {
     return run_main_job(arguments, nullptr, common);
@@ -371,11 +374,21 @@ std::string main_job_words(const MachineClass& what) {
                : "can be run";
 }
 
+// Those of files that are read come from the tables that read them, those of results are files.
+std::string schema_text(const std::string& name) {
+    if (name == kJobSchema) {
+        return job_schema_text();
+    }
+    if (name == kMachineSchema) {
+        return machine_schema_text();
+    }
+    return read_text_file((project_home() / "data/schema" / (name + ".schema.json")).string());
+}
+
 // A machine file names its schema; everything else is read as a job.
 int run_validate(const ValidateArguments& arguments, const Common& common) {
     if (!arguments.schema.empty()) {
-        std::cout << (arguments.schema == kMachineSchema ? machine_schema_text()
-                                                         : job_schema_text());
+        std::cout << schema_text(arguments.schema);
         return kDone;
     }
     const std::string& name = arguments.file;

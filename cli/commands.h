@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "cli/exit_codes.h"
 #include "pipeline/trace_table.h"
 #include "postproc/ringhead/carry.h"
@@ -58,6 +60,8 @@ struct VerifyArguments {
 // The schemas that `validate --schema` prints.
 inline constexpr const char* kJobSchema = "job";
 inline constexpr const char* kMachineSchema = "machine";
+inline constexpr const char* kReportSchema = "report";
+inline constexpr const char* kLayupSchema = "layup";
 
 struct ValidateArguments {
     std::string file;
@@ -93,6 +97,10 @@ struct CarryArguments {
     double bend_turn_deg = 180.0;  ///< of a mesh: keeps longitudinal fibre from bridging in bends
     CarryRequest request;
 };
+
+/// Three numbers, "X,Y,Z". \param option that has them, for the words
+/// \throws InputError cli.vector
+[[nodiscard]] Eigen::Vector3d vector_of(const std::string& option, const std::string& text);
 
 /// Each runs one command: files are looked up as find_input() does, summary or JSON go to stdout,
 /// progress and a line for each failed check to stderr. Return the exit code.

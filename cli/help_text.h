@@ -25,7 +25,8 @@ constexpr const char* kMainHelp =
     "\n"
     "meshwind COMMAND --help has the options of a command and its own examples. A bare name that "
     "is\n"
-    "not in the current folder is looked up in data/meshes, data and machines of the checkout or "
+    "not in the current folder is looked up in data (meshes, materials) and machines of the "
+    "checkout or "
     "of\n"
     "the installation, or of $MESHWIND_HOME where that is set.\n"
     "\n"
@@ -160,6 +161,24 @@ constexpr const char* kMergeHelp =
     "  meshwind study merge cases.csv -o out\n"
     "  sbatch --array=$(meshwind study merge cases.csv -o out --left) cases.sh\n";
 
+constexpr const char* kExportFeHelp =
+    "Every triangle of the mandrel is a shell with the plies that a run lays on it (layup.json).\n"
+    "The deck is ready to be run: material, supports that hold the body and strain nothing, and\n"
+    "loads in balance. Pressure pulls at the rims as lids over them would.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind export fe meshwind-out --format abaqus -o tee.inp\n"
+    "  meshwind export fe meshwind-out --format nastran --axial 10000 --rims 1,2\n";
+
+constexpr const char* kStrengthHelp =
+    "Computes the deck of export fe with CalculiX (Debian: calculix-ccx), and judges the stresses\n"
+    "of every ply by the criterion of Tsai and Wu: by how much the load can grow until the first\n"
+    "ply fails, where, and which.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind strength meshwind-out --pressure 4\n"
+    "  meshwind strength meshwind-out --material my_glass.json --moment 0,250000,0 -o bent\n";
+
 constexpr const char* kMeshSizeHelp =
     "Lays the same random fibres on ever finer meshes of known surfaces and compares them with "
     "the\n"
@@ -171,8 +190,9 @@ constexpr const char* kMeshSizeHelp =
     "of\n"
     "order k.\n"
     "Cylinders are compared with closed forms; torus, ellipsoid and tee with the differential\n"
-    "equation of their exact surface; a file with itself, coarsened: choose edges well above its\n"
-    "own, and mind that what its own mesh has wrong is not seen.\n"
+    "equation of their exact surface; a CAD part with its exact faces; another file with itself,\n"
+    "coarsened: choose edges well above its own, and mind that what its own mesh has wrong is not\n"
+    "seen.\n"
     "To choose a mesh for a part: take the row of the surface most like it, and the edge length "
     "at\n"
     "which the error that matters is small enough.\n"

@@ -19,6 +19,7 @@
 #include "cli/interrupt.h"
 #include "cli/make_command.h"
 #include "cli/options.h"
+#include "cli/shell_commands.h"
 #include "cli/streams.h"
 #include "cli/usage.h"
 #include "core/error.h"
@@ -110,11 +111,13 @@ int run(const std::vector<std::string>& arguments) {
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
     validate->add_option("file", validate_options.file, "JSON file")->type_name("FILE");
     validate
-        ->add_option("--schema", validate_options.schema,
-                     "print the JSON Schema of job or machine files instead")
+        ->add_option(
+            "--schema", validate_options.schema,
+            "print the JSON Schema of job or machine files instead, or of the results report.json "
+            "and layup.json")
         ->expected(0, 1)
         ->default_str(kJobSchema)
-        ->check(one_of({kJobSchema, kMachineSchema}));
+        ->check(one_of({kJobSchema, kMachineSchema, kReportSchema, kLayupSchema}));
     CarryArguments carry_text;
     CLI::App* carry = app.add_subcommand(
         "carry", "a program for a robot that carries a frame through a fixed ring head");
@@ -136,8 +139,17 @@ int run(const std::vector<std::string>& arguments) {
     add_case(*one_case, case_arguments);
     CLI::App* merge = study->add_subcommand("merge", "what came of all rows, in one table");
     add_merge(*merge, case_arguments);
+    ShellArguments shell_arguments;
+    CLI::App* exporting = app.add_subcommand("export", "a run for other programs");
+    exporting->require_subcommand(1);
+    CLI::App* export_fe =
+        exporting->add_subcommand("fe", "the wall as shells with plies, for finite elements");
+    add_export_fe(*export_fe, shell_arguments);
+    CLI::App* strength =
+        app.add_subcommand("strength", "where a wound wall fails first, by CalculiX");
+    add_strength(*strength, shell_arguments);
     app.footer(kMainHelp);
-    for (CLI::App* command : {design, study}) {
+    for (CLI::App* command : {design, study, exporting}) {
         command->fallthrough();
         command->footer(std::string("\n") + kCommonHelp);
     }
@@ -152,7 +164,9 @@ int run(const std::vector<std::string>& arguments) {
                                         {design_vessel, kDesignHelp},
                                         {mesh_size, kMeshSizeHelp},
                                         {one_case, kCaseHelp},
-                                        {merge, kMergeHelp}}) {
+                                        {merge, kMergeHelp},
+                                        {export_fe, kExportFeHelp},
+                                        {strength, kStrengthHelp}}) {
         command->fallthrough();
         command->footer(std::string(more) + "\n\n" + kCommonHelp);
     }
@@ -212,6 +226,12 @@ int run(const std::vector<std::string>& arguments) {
     }
     if (merge->parsed()) {
         return run_merge(case_arguments, common);
+    }
+    if (export_fe->parsed()) {
+        return run_export_fe(shell_arguments, common);
+    }
+    if (strength->parsed()) {
+        return run_strength(shell_arguments, common);
     }
     if (validate->parsed()) {
         return run_validate(validate_options, common);

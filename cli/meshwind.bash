@@ -5,7 +5,7 @@
 _meshwind_common='--threads --seed --units --json --quiet --force'
 # Options and commands by command; - is the program itself.
 declare -gA _meshwind_words=(
-    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify inspect make trace validate carry design study'
+    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify inspect make trace validate carry design study export strength'
     [wind]='-h --help --machine --job --set -o --out --effort --png --png-size --png-colour'
     [post]='-h --help --mandrel --machine --job --set --frame --within -o --out --png --png-size --png-colour'
     [verify]='-h --help --mandrel --machine --job --set --plan --tie-on -o --out'
@@ -30,6 +30,9 @@ declare -gA _meshwind_words=(
     [study mesh-size]='-h --help --mandrel --radius --edges --lambda --paths --length --free-length --irregular --regular --timing -o --out'
     [study cases]='-h --help -o --out --row --effort'
     [study merge]='-h --help -o --out --left'
+    [export]='-h --help fe'
+    [export fe]='-h --help --material --pressure --axial --moment --rims --merge --plies --format -o --out'
+    [strength]='-h --help --material --pressure --axial --moment --rims --merge --plies -o --out'
 )
 # What an option takes: words, or mesh, machine, job, json, table, axis, program, folder, or - for anything else.
 declare -gA _meshwind_takes=(
@@ -136,7 +139,7 @@ declare -gA _meshwind_takes=(
     [trace --frame]='mandrel file'
     [trace -o]='table'
     [trace --out]='table'
-    [validate --schema]='job machine'
+    [validate --schema]='job machine report layup'
     [carry --bend-turn]='-'
     [carry --machine]='machine'
     [carry --tool]='-'
@@ -188,6 +191,25 @@ declare -gA _meshwind_takes=(
     [study cases --effort]='-'
     [study merge -o]='folder'
     [study merge --out]='folder'
+    [export fe --material]='-'
+    [export fe --pressure]='-'
+    [export fe --axial]='-'
+    [export fe --moment]='-'
+    [export fe --rims]='-'
+    [export fe --merge]='-'
+    [export fe --plies]='-'
+    [export fe --format]='calculix abaqus nastran'
+    [export fe -o]='mesh'
+    [export fe --out]='mesh'
+    [strength --material]='-'
+    [strength --pressure]='-'
+    [strength --axial]='-'
+    [strength --moment]='-'
+    [strength --rims]='-'
+    [strength --merge]='-'
+    [strength --plies]='-'
+    [strength -o]='folder'
+    [strength --out]='folder'
 )
 # What a command takes besides options.
 declare -gA _meshwind_first=(
@@ -201,6 +223,8 @@ declare -gA _meshwind_first=(
     [carry]='axis'
     [study cases]=''
     [study merge]=''
+    [export fe]='folder'
+    [strength]='folder'
 )
 
 # The folder that bare names are looked up in: $MESHWIND_HOME, the checkout, or the installation.

@@ -6,6 +6,7 @@
 #include "cli/usage.h"
 #include "core/units.h"
 #include "mesh/io/import.h"
+#include "report/shell/decks.h"
 
 namespace meshwind {
 namespace {
@@ -63,6 +64,44 @@ void add_case_table(CLI::App& app, CaseArguments& arguments) {
         ->required();
     app.add_option("-o,--out", arguments.out, "folder of all cases")
         ->type_name("DIR")
+        ->capture_default_str();
+}
+
+void add_shell(CLI::App& app, ShellArguments& arguments) {
+    app.add_option("run", arguments.run, "output folder of a run, or its layup.json")
+        ->type_name("DIR")
+        ->capture_default_str();
+    app.add_option("--material", arguments.material,
+                   "material file, JSON: ply with strengths, matrix, liner")
+        ->type_name("FILE")
+        ->capture_default_str();
+    ShellLoads& loads = arguments.request.loads;
+    app.add_option_function<double>(
+           "--pressure",
+           [&arguments](const double& value) {
+               arguments.request.loads.pressure_mpa = value;
+               arguments.pressure_given = true;
+           },
+           "inside, on the wall and on lids over its rims, MPa; 1 where there is no other load")
+        ->type_name("MPA");
+    app.add_option("--axial", loads.axial_n, "tension between two rims, N")->type_name("N");
+    app.add_option("--moment", arguments.moment,
+                   "between two rims, N mm: bending or twisting by its direction")
+        ->type_name("X,Y,Z");
+    app.add_option("--rims", arguments.rims,
+                   "the two rims that are pulled at; without it the two that face away from each "
+                   "other")
+        ->type_name("N")
+        ->delimiter(',');
+    app.add_option("--merge", arguments.request.merge_deg,
+                   "plies of one layer within this angle are computed as one, degrees")
+        ->type_name("DEG")
+        ->check(CLI::Range(0.0, 90.0))
+        ->capture_default_str();
+    app.add_option("--plies", arguments.request.most_plies,
+                   "most plies of an element; the nearest angles of more are merged")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
         ->capture_default_str();
 }
 
@@ -280,6 +319,25 @@ void add_merge(CLI::App& app, CaseArguments& arguments) {
     add_case_table(app, arguments);
     app.add_flag("--left", arguments.left,
                  "only print the rows that failed or are missing, 3,7: an array of jobs");
+}
+
+void add_export_fe(CLI::App& app, ShellArguments& arguments) {
+    add_shell(app, arguments);
+    std::vector<std::string_view> names;
+    for (const DeckFormat& format : deck_formats()) {
+        names.push_back(format.name);
+    }
+    app.add_option("--format", arguments.format, "program that the deck is for")
+        ->check(one_of(names))
+        ->capture_default_str();
+    app.add_option("-o,--out", arguments.out, "deck to write [wall.inp or wall.bdf]")
+        ->type_name("FILE");
+}
+
+void add_strength(CLI::App& app, ShellArguments& arguments) {
+    add_shell(app, arguments);
+    app.add_option("-o,--out", arguments.out, "folder to write [meshwind-strength]")
+        ->type_name("DIR");
 }
 
 void add_carry(CLI::App& app, CarryArguments& text) {

@@ -12,6 +12,7 @@
 #include "cli/case_commands.h"
 #include "cli/commands.h"
 #include "cli/make_command.h"
+#include "cli/shell_commands.h"
 
 namespace meshwind {
 
@@ -31,6 +32,8 @@ CLI::Option* add_trace(CLI::App& app, TraceArguments& text);
 void add_mesh_size(CLI::App& app, StudyArguments& request);
 void add_case(CLI::App& app, CaseArguments& arguments);
 void add_merge(CLI::App& app, CaseArguments& arguments);
+void add_export_fe(CLI::App& app, ShellArguments& arguments);
+void add_strength(CLI::App& app, ShellArguments& arguments);
 void add_carry(CLI::App& app, CarryArguments& text);
 void add_design_vessel(CLI::App& app, DesignRequest& request);
 

@@ -1,5 +1,6 @@
 #include "report/layup_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -22,6 +23,10 @@ constexpr double kPlaces_per_mm = 1e6;     // lengths, areas, thicknesses
 constexpr double kParts_per_unit = 1e7;    // unit vectors
 constexpr double kParts_per_degree = 1e3;  // angles
 constexpr double kParts_per_layer = 1e6;   // numbers of layers
+
+// Plies whose directions layup.vtu has: on most of a wall more than lie there, and each is an
+// array.
+constexpr std::size_t kMostDirections = 12;
 
 // \param of "" for all layers, "_of_layer_2" for one
 void add_cells(const LayupArrays& arrays, const std::string& of, std::vector<CellArray>& cells) {
@@ -51,6 +56,12 @@ public:
         std::vector<CellArray> cells;
         add_cells(layup_.all(), "", cells);
         cells.push_back({"region", std::span<const std::int32_t>(surface_.region)});
+        cells.push_back({"axis_1", std::span<const Vector3d>(layup_.axes())});
+        const std::vector<std::vector<Vector3d>> directions = directions_of_plies();
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            cells.push_back({"fibre_direction_of_ply_" + std::to_string(k + 1),
+                             std::span<const Vector3d>(directions[k])});
+        }
         const WallArrays& walls = layup_.walls();
         if (!walls.asked_layers.empty()) {
             cells.push_back({"wall_layers_asked", std::span(walls.asked_layers)});
@@ -93,6 +104,25 @@ public:
     }
 
 private:
+    // Per ply from the bottom, of each triangle; zero where there is none.
+    [[nodiscard]] std::vector<std::vector<Vector3d>> directions_of_plies() const {
+        std::vector<std::vector<Vector3d>> directions;
+        for (std::size_t f = 0; f < surface_.face.size(); ++f) {
+            const std::vector<LayupPly> plies = layup_.plies(f);
+            const std::size_t told = std::min(plies.size(), kMostDirections);
+            while (directions.size() < told) {
+                directions.emplace_back(surface_.face.size(), Vector3d::Zero());
+            }
+            const Vector3d& axis_1 = layup_.axes()[f];
+            const Vector3d axis_2 = layup_.normal(f).cross(axis_1);
+            for (std::size_t k = 0; k < told; ++k) {
+                directions[k][f] =
+                    std::cos(plies[k].angle_rad) * axis_1 + std::sin(plies[k].angle_rad) * axis_2;
+            }
+        }
+        return directions;
+    }
+
     static void append_rounded(std::string& text, double value, double parts) {
         append_shortest(text, std::round(value * parts) / parts);
     }

@@ -9,8 +9,9 @@
 namespace meshwind {
 namespace {
 
-constexpr int kPositionDecimals = 6;  // a nanometre: below any use, above no file's noise
-constexpr int kVtkTriangle = 5;       // VTK's cell type number
+constexpr int kPositionDecimals = 6;   // a nanometre: below any use, above no file's noise
+constexpr int kDirectionDecimals = 4;  // 0.006 deg: an arrow
+constexpr int kVtkTriangle = 5;        // VTK's cell type number
 constexpr std::size_t kNumbersPerLine = 12;
 
 void append_number(std::string& text, double value) {
@@ -77,17 +78,28 @@ void append_lines(std::string& text, std::size_t count, const Generator& number_
     }
 }
 
-void append_points(std::string& text, std::span<const Eigen::Vector3d> points_mm) {
-    text += "<Points>\n";
-    open_array(text, kVtkType<double>, "Points", 3);
-    for (const Eigen::Vector3d& point : points_mm) {
+void append_vectors(std::string& text, std::string_view name,
+                    std::span<const Eigen::Vector3d> vectors, int decimals) {
+    open_array(text, kVtkType<double>, name, 3);
+    for (const Eigen::Vector3d& vector : vectors) {
         for (int axis = 0; axis < 3; ++axis) {
-            append_fixed(text, point[axis], kPositionDecimals);
+            append_fixed(text, vector[axis], decimals);
             text += axis == 2 ? '\n' : ' ';
         }
     }
     close_array(text);
-    text += "</Points>\n";
+}
+
+template <typename Number>
+void append_cells(std::string& text, std::string_view name, std::span<const Number> values) {
+    open_array(text, kVtkType<Number>, name);
+    append_lines(text, values.size(), [&](std::size_t i) { return values[i]; });
+    close_array(text);
+}
+
+void append_cells(std::string& text, std::string_view name,
+                  std::span<const Eigen::Vector3d> values) {
+    append_vectors(text, name, values, kDirectionDecimals);
 }
 
 void append_topology(std::string& text, std::span<const std::array<std::int32_t, 3>> triangles) {
@@ -117,16 +129,16 @@ std::string layup_vtu(std::span<const Eigen::Vector3d> points_mm,
         "<UnstructuredGrid>\n";
     text += "<Piece NumberOfPoints=\"" + std::to_string(points_mm.size()) + "\" NumberOfCells=\"" +
             std::to_string(triangles.size()) + "\">\n";
-    append_points(text, points_mm);
+    text += "<Points>\n";
+    append_vectors(text, "Points", points_mm, kPositionDecimals);
+    text += "</Points>\n";
     append_topology(text, triangles);
     text += "<CellData>\n";
     for (const CellArray& cell : cells) {
         std::visit(
-            [&]<typename Number>(std::span<const Number> values) {
+            [&](auto values) {
                 assert(values.size() == triangles.size());
-                open_array(text, kVtkType<Number>, cell.name);
-                append_lines(text, values.size(), [&](std::size_t i) { return values[i]; });
-                close_array(text);
+                append_cells(text, cell.name, values);
             },
             cell.values);
     }

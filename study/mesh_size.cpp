@@ -80,14 +80,13 @@ public:
 
     [[nodiscard]] MeshOutcome run(double edge_mm) const {
         MeshOutcome outcome;
-        TriangleSoup soup;
+        Surface surface;
         try {
-            soup = mandrel_.mesh({edge_mm, options_.irregular, options_.context.seed});
+            surface = mandrel_.mesh({edge_mm, options_.irregular, options_.context.seed});
         } catch (const InputError& error) {
             outcome.remark = error.what();
             return outcome;
         }
-        const Surface surface = frozen_surface(soup);
         const RayQuery query = query_of(surface);
         outcome.mean_edge_mm = surface.mean_edge_mm;
         outcome.triangles = surface.face.size();

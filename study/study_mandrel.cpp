@@ -10,7 +10,9 @@
 #include "core/random.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "mesh/brep/read_cad.h"
 #include "mesh/edge_table.h"
+#include "mesh/mandrel/load_mandrel.h"
 #include "mesh/segment/feature_edges.h"
 #include "mesh/segment/rims.h"
 #include "mesh/shapes/coarsen.h"
@@ -32,14 +34,17 @@ constexpr double kSampleShare = 0.2;
 constexpr double kLeastShare = 0.9;
 constexpr double kLeastCoarsening = 1.1;
 
+// Edges that stand for a CAD part's exact faces, of the shortest that are looked at.
+constexpr double kReferenceShare = 1.0 / 3.0;
+
 StudyMandrel made_study(const std::string& kind, const MakeValues& values, double sample_edge_mm) {
     StudyMandrel study;
     study.name = kind;
     study.samples = make_mandrel(kind, values, {.edge_mm = sample_edge_mm});
     study.mesh = [kind, values](const StudyMeshOptions& options) {
-        return make_mandrel(
+        return frozen_surface(make_mandrel(
             kind, values,
-            {.edge_mm = options.edge_mm, .irregular = options.irregular, .seed = options.seed});
+            {.edge_mm = options.edge_mm, .irregular = options.irregular, .seed = options.seed}));
     };
     return study;
 }
@@ -108,18 +113,42 @@ StudyMandrel file_study(Mandrel mandrel) {
         "patches on the mesh refined to edges of " + fixed(study.refined->mean_edge_mm, 2) + " mm";
     study.samples = {given.position_mm, given.face};
     study.reference = mesh_reference(*study.refined, {.method = TraceMethod::Patches});
-    study.mesh = [&given, name = study.name](const StudyMeshOptions& options) -> TriangleSoup {
+    study.mesh = [&given, name = study.name](const StudyMeshOptions& options) {
         if (!(options.edge_mm >= kLeastShare * given.mean_edge_mm)) {
             throw InputError("study.edge", name,
                              "its own edges are " + fixed(given.mean_edge_mm, 2) +
                                  " mm; a study of it takes no shorter ones");
         }
         TriangleSoup soup{given.position_mm, given.face};
-        return options.edge_mm < kLeastCoarsening * given.mean_edge_mm
-                   ? soup
-                   : coarsened(soup, options.edge_mm);
+        return frozen_surface(options.edge_mm < kLeastCoarsening * given.mean_edge_mm
+                                  ? soup
+                                  : coarsened(soup, options.edge_mm));
     };
     return study;
+}
+
+StudyMandrel cad_study(const std::filesystem::path& file, double shortest_mm) {
+    const double fine_mm = kReferenceShare * shortest_mm;
+    StudyMandrel study;
+    study.mandrel = std::make_unique<Mandrel>(load_mandrel(file, {.edge_mm = fine_mm}));
+    const Surface& fine = study.mandrel->surface;
+    study.name = study.mandrel->file;
+    study.reference_words = "the exact faces, by edges of " + fixed(fine.mean_edge_mm, 2) + " mm";
+    study.samples = {fine.position_mm, fine.face};
+    study.reference = mesh_reference(fine, {.method = TraceMethod::Patches});
+    // Every mesh in one frame: that of the finest.
+    const Eigen::Affine3d file_from_mandrel = study.mandrel->file_to_mandrel.inverse();
+    const MandrelOptions::Axis axis{file_from_mandrel.translation(),
+                                    file_from_mandrel.linear().col(2)};
+    study.mesh = [file, axis](const StudyMeshOptions& options) {
+        return load_mandrel(file, {.axis = axis, .edge_mm = options.edge_mm}).surface;
+    };
+    return study;
+}
+
+StudyMandrel study_of_file(const std::filesystem::path& file, double unit_mm, double shortest_mm) {
+    return is_cad(file) ? cad_study(file, shortest_mm)
+                        : file_study(load_mandrel(file, {.unit_mm = unit_mm}));
 }
 
 Surface frozen_surface(const TriangleSoup& soup) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -25,7 +26,7 @@ struct StudyMandrel {
     std::string reference_words;  ///< what the paths are compared with, in a few words
     std::unique_ptr<PathReference> reference;
     /// \throws InputError make.* or study.edge when the surface cannot be shown with such edges
-    std::function<TriangleSoup(const StudyMeshOptions&)> mesh;
+    std::function<Surface(const StudyMeshOptions&)> mesh;
     TriangleSoup samples;              ///< triangles on or near the surface: where paths may start
     std::unique_ptr<Mandrel> mandrel;  ///< of a file; what `mesh` uses
     std::unique_ptr<Surface> refined;  ///< of a file; what `reference` uses
@@ -50,6 +51,15 @@ inline constexpr std::array kStudyRadii_mm = {20.0, 70.0, 450.0};
 /// A part of which only its mesh is known: the mesh and coarser ones of it, against paths by
 /// TraceMethod::Patches on the mesh refined once. \throws InputError refine.too_many
 [[nodiscard]] StudyMandrel file_study(Mandrel mandrel);
+
+/// A CAD part: the wall that is wound of it with triangles of each edge length, against paths on
+/// its exact faces, as triangles of a third of the shortest have them (81 times as near, by the
+/// fourth order). \param shortest_mm of the study \throws Error as load_mandrel()
+[[nodiscard]] StudyMandrel cad_study(const std::filesystem::path& file, double shortest_mm);
+
+/// By the ending of its name: cad_study() or file_study().
+[[nodiscard]] StudyMandrel study_of_file(const std::filesystem::path& file, double unit_mm,
+                                         double shortest_mm);
 
 /// The winding surface of triangles, creases and rims as the import finds them.
 [[nodiscard]] Surface frozen_surface(const TriangleSoup& soup);

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> kFolders = {"data/meshes", "data", "machines"};
+constexpr std::array<const char*, 4> kFolders = {"data/meshes", "data", "data/materials",
+                                                 "machines"};
 
 std::vector<std::string> shipped_machines() {
     std::vector<std::string> names;

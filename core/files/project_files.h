@@ -12,8 +12,8 @@ namespace meshwind {
 [[nodiscard]] std::filesystem::path project_home();
 
 /// The file a user means by `name`: that path when it exists; else, for a bare name such as
-/// "tee.stl", the file of this name in data/meshes, data or machines of `project_home()`; else
-/// `name` as given.
+/// "tee.stl", the file of this name in data/meshes, data, data/materials or machines of
+/// `project_home()`; else `name` as given.
 [[nodiscard]] std::filesystem::path find_input(const std::string& name);
 
 /// \throws IoError io.cannot_read where there is no such file, with the nearest of the machines

@@ -165,16 +165,17 @@ std::string study(const std::vector<fs::path>& files, const Units& units, MeshSi
     const EndsOnInterrupt ends;
     options.context.progress = progress_of(progress);
     const py::gil_scoped_release unlock;
+    options.validate();
+    const double shortest_mm = *std::min_element(options.edges_mm.begin(), options.edges_mm.end());
     std::vector<StudyMandrel> mandrels;
     for (const fs::path& file : files) {
         const std::string name = file.string();
         std::vector<StudyMandrel> known = known_studies(name, kStudyRadii_mm);
         if (known.empty()) {
-            known.push_back(file_study(load_mandrel(find_input(name), {.unit_mm = mm_of(units)})));
+            known.push_back(study_of_file(find_input(name), mm_of(units), shortest_mm));
         }
         std::move(known.begin(), known.end(), std::back_inserter(mandrels));
     }
-    options.validate();
     return study_json(run_study(mandrels, options));
 }
 

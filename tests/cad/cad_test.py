@@ -82,6 +82,15 @@ class CadTest(program.ProgramTest):
         self.assertGreater(length_mm, 150.0)
         self.assertLess(off_mm, 0.02)
 
+    def test_a_study_compares_with_the_exact_faces(self):
+        study = json.loads(self.done("study", "mesh-size", "--mandrel", self.cad("pipe"), "--edges", "8", "--paths", "4",
+                                     "--length", "100", "--json", "-o", "study").stdout)
+        self.assertIn("exact faces", json.dumps(study["references"]))
+        ends = [line["points"][0]["worst"] for line in study["lines"]
+                if (line["method"], line["quantity"]) == ("patches", "path-end")]
+        self.assertTrue(ends)
+        self.assertLess(max(ends), 1e-3)
+
     def test_a_tee_and_a_vessel_are_wound(self):
         for kind in ("tee", "vessel"):
             with self.subTest(kind):

@@ -59,6 +59,11 @@ def obj_lines(text):
     return lines
 
 
+def numbers_of(arrays):
+    """Names of the arrays that have numbers, not directions."""
+    return {name for name, values in arrays.items() if not isinstance(values[0], tuple)}
+
+
 class Layup(program.ProgramTest):
     def wind(self, layers):
         mandrel = self.make("cylinder", "--radius", "40", "--length", "150", "--edge", "6")
@@ -81,8 +86,11 @@ class Layup(program.ProgramTest):
     def arrays(self, grid):
         data = grid.GetCellData()
         names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
-        arrays = {name: [data.GetArray(name).GetTuple1(f) for f in range(grid.GetNumberOfCells())]
-                  for name in names}
+        arrays = {}
+        for name in names:
+            array = data.GetArray(name)
+            read = array.GetTuple1 if array.GetNumberOfComponents() == 1 else array.GetTuple3
+            arrays[name] = [read(f) for f in range(grid.GetNumberOfCells())]
         self.assertEqual(len(arrays), len(names))
         return arrays
 
@@ -138,8 +146,25 @@ class Layup(program.ProgramTest):
             self.assertAlmostEqual(triangle["thickness_mm"], arrays["thickness_mm"][f], delta=1e-5)
             angle = sum(p[4] * abs(p[3]) for p in plies) / thickness
             self.assertAlmostEqual(angle, arrays["winding_angle_deg"][f], delta=1e-2)
+            self.check_directions(triangle, arrays, f)
             all_plies += [(triangle, ply) for ply in plies]
         return all_plies
+
+    def check_directions(self, triangle, arrays, f):
+        """The vectors of layup.vtu are those of layup.json."""
+        one, two = triangle["axis_1"], triangle["axis_2"]
+        wanted = {"axis_1": one}
+        for k in range(1, 13):
+            if f"fibre_direction_of_ply_{k}" in arrays:
+                wanted[f"fibre_direction_of_ply_{k}"] = [0.0, 0.0, 0.0]
+        for k, ply in enumerate(triangle["plies"][:12], 1):
+            angle = math.radians(ply[3])
+            wanted[f"fibre_direction_of_ply_{k}"] = [math.cos(angle) * a + math.sin(angle) * b for a, b in zip(one, two)]
+        for name, vector in wanted.items():
+            # A line has two senses: at 90 degrees rounding takes either.
+            sense = -1.0 if name != "axis_1" and dot(arrays[name][f], vector) < 0.0 else 1.0
+            for found, expected in zip(arrays[name][f], vector):
+                self.assertAlmostEqual(sense * found, expected, delta=2e-4)
 
     def pieces(self, suffix):
         pieces = {}
@@ -174,7 +199,7 @@ class Layup(program.ProgramTest):
         report = self.wind([{"kind": "helical", "angle": 50}])
         grid = self.grid()
         arrays = self.arrays(grid)
-        self.assertEqual(set(arrays), {q + unit for q, unit in QUANTITIES} | {"samples", "region"})
+        self.assertEqual(numbers_of(arrays), {q + unit for q, unit in QUANTITIES} | {"samples", "region"})
         self.check_areas(grid, arrays, report)
         self.check_ranges(arrays)
         self.samples_give(arrays, "", report["plan"]["coverage"])
@@ -216,7 +241,7 @@ class Layup(program.ProgramTest):
         grid = self.grid()
         arrays = self.arrays(grid)
         names = {q + of + unit for q, unit in QUANTITIES for of in ("", "_of_layer_1", "_of_layer_2")}
-        self.assertEqual(set(arrays), names | {"samples_of_layer_1", "samples_of_layer_2", "region"})
+        self.assertEqual(numbers_of(arrays), names | {"samples_of_layer_1", "samples_of_layer_2", "region"})
         self.check_areas(grid, arrays, report)
         self.check_ranges(arrays)
         for number in (1, 2):

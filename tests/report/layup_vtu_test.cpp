@@ -51,6 +51,14 @@ TEST(LayupVtu, HoldsPointsTrianglesAndValues) {
     EXPECT_NE(text.find("type=\"Int32\" Name=\"region\""), std::string::npos);
 }
 
+TEST(LayupVtu, DirectionsHaveThreeComponents) {
+    const std::vector<Eigen::Vector3d> axis = {{0.6, -0.8, 0.0}, {0.0, 0.0, 1.0}};
+    const std::vector<CellArray> cells = {{"axis_1", std::span<const Eigen::Vector3d>(axis)}};
+    const std::string text = layup_vtu(kSquare, kFaces, cells);
+    EXPECT_EQ(numbers_of(text, "axis_1"), (std::vector<double>{0.6, -0.8, 0, 0, 0, 1}));
+    EXPECT_NE(text.find("Name=\"axis_1\" NumberOfComponents=\"3\""), std::string::npos);
+}
+
 TEST(LayupVtu, ClosesEveryElement) {
     const std::vector<double> values = {1, 2};
     const std::vector<CellArray> cells = {{"a < \"b\" & c", std::span(values)}};

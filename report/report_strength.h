@@ -1,0 +1,45 @@
+/// What a finite element model of a run is made from, and what is told of it.
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "report/shell/shell_mesh.h"
+#include "report/shell/shell_model.h"
+#include "report/shell/strength.h"
+#include "report/shell/wall_material.h"
+
+namespace meshwind {
+
+struct ShellRequest {
+    std::filesystem::path run;  ///< folder of a run, or its layup.json
+    std::filesystem::path material;
+    ShellLoads loads;
+    double merge_deg = 5.0;       ///< plies of a layer within that are one
+    std::size_t most_plies = 15;  ///< of an element: memory grows with it
+};
+
+struct ShellWall {
+    ShellRequest request;
+    ShellMesh mesh;  ///< with merged plies
+    WallMaterial material;
+    PlyMerge merge;
+};
+
+/// \throws Error as read_shell_mesh() and read_wall_material()
+[[nodiscard]] ShellWall read_shell_wall(const ShellRequest& request);
+
+/// Material, loads, elements, plies and rims.
+[[nodiscard]] std::string shell_wall_json(const ShellWall& wall);
+void print_shell_wall(std::ostream& out, const ShellWall& wall);
+
+/// That, and the weakest ply of all and of each layer, with its place, angle and stresses.
+[[nodiscard]] std::string strength_json(const ShellWall& wall, const Strength& strength);
+void print_strength(std::ostream& out, const ShellWall& wall, const Strength& strength);
+
+/// Per triangle thickness, plies and utilisation: the share of the load at which its first ply
+/// fails, 0 without plies.
+[[nodiscard]] std::string strength_vtu(const ShellWall& wall, const Strength& strength);
+
+}  // namespace meshwind
