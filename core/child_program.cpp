@@ -37,6 +37,7 @@ public:
             posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
         }
         std::vector<char*> argv;
+        argv.reserve(words.size() + 1);
         for (std::string& word : words) {
             argv.push_back(word.data());
         }

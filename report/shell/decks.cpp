@@ -8,11 +8,11 @@
 namespace meshwind {
 
 const std::vector<DeckFormat>& deck_formats() {
-    static const std::vector<DeckFormat> formats = {
+    static const std::vector<DeckFormat> kFormats = {
         {"calculix", ".inp", ElementOrder::Quadratic, calculix_deck},
         {"abaqus", ".inp", ElementOrder::Linear, abaqus_deck},
         {"nastran", ".bdf", ElementOrder::Linear, nastran_deck}};
-    return formats;
+    return kFormats;
 }
 
 std::string ply_name(std::size_t element, std::size_t ply) {
@@ -93,8 +93,11 @@ void append_keyword_loads(std::string& text, const ShellModel& model) {
 void append_keyword_supports(std::string& text, const ShellModel& model) {
     text += "*BOUNDARY\n";
     for (const Support& one : model.support) {
-        const std::string axis = std::to_string(one.axis + 1);
-        text += std::to_string(one.node + 1) + "," + axis + "," + axis + "\n";
+        const std::string axis = "," + std::to_string(one.axis + 1);
+        text += std::to_string(one.node + 1);
+        text += axis;
+        text += axis;
+        text += '\n';
     }
 }
 

@@ -50,16 +50,24 @@ void append_sheet(std::string& text, double thickness_mm, const char* material) 
     text += std::string(",,") + material + "\n";
 }
 
+// An element as a set of its own, and the first line of its section.
+void open_section(std::string& text, std::size_t f, const char* more) {
+    const std::string number = std::to_string(f + 1);
+    const std::string set = "ELSET=E" + number;
+    for (const char* const part : {"*ELSET, ", set.c_str(), "\n", number.c_str(),
+                                   "\n*SHELL SECTION, ", set.c_str(), ", COMPOSITE", more, "\n"}) {
+        text += part;
+    }
+}
+
 void append_calculix_section(std::string& text, const ShellModel& model, std::size_t f,
                              std::size_t rows) {
     const ShellTriangle& triangle = model.mesh->triangle[f];
-    const std::string number = std::to_string(f + 1);
     for (std::size_t k = 0; k < triangle.plies.size(); ++k) {
         text += "*ORIENTATION, NAME=" + ply_name(f + 1, k + 1) + "\n";
         append_axes(text, triangle, triangle.plies[k].angle_rad);
     }
-    text += "*ELSET, ELSET=E" + number + "\n" + number + "\n*SHELL SECTION, ELSET=E" + number +
-            ", COMPOSITE\n";
+    open_section(text, f, "");
     std::size_t written = triangle.plies.size();
     if (const ShellSheet sheet = sheet_under(model, triangle); sheet.thickness_mm > 0.0) {
         append_sheet(text, sheet.thickness_mm, sheet.liner ? "LINER" : "MATRIX");
@@ -109,10 +117,8 @@ std::string abaqus_deck(const ShellModel& model) {
     text += "*ORIENTATION, NAME=WALL, DEFINITION=COORDINATES\nAXES\n3, 0.\n";
     for (std::size_t f = 0; f < model.element.size(); ++f) {
         const ShellTriangle& triangle = model.mesh->triangle[f];
-        const std::string number = std::to_string(f + 1);
         // The wall lies on the mandrel: its lower side is where the nodes are.
-        text += "*ELSET, ELSET=E" + number + "\n" + number + "\n*SHELL SECTION, ELSET=E" + number +
-                ", COMPOSITE, ORIENTATION=WALL, OFFSET=SNEG\n";
+        open_section(text, f, ", ORIENTATION=WALL, OFFSET=SNEG");
         if (const ShellSheet sheet = sheet_under(model, triangle); sheet.thickness_mm > 0.0) {
             append_value(text, sheet.thickness_mm);
             text += std::string(", 3, ") + (sheet.liner ? "LINER" : "MATRIX") + ", 0\n";

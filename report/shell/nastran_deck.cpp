@@ -29,7 +29,7 @@ std::string real(double value) {
     for (int digits = kColumns; digits > 0; --digits) {
         const int length = std::snprintf(text.data(), text.size(), "%.*G", digits, value);
         std::string told(text.data(), static_cast<std::size_t>(length));
-        if (told.find_first_of(".") == std::string::npos) {
+        if (told.find('.') == std::string::npos) {
             told.insert(std::min(told.find('E'), told.size()), ".");
         }
         if (told.size() <= kColumns) {
