@@ -50,7 +50,8 @@ void append_sheet(std::string& text, double thickness_mm, const char* material) 
     text += std::string(",,") + material + "\n";
 }
 
-// An element as a set of its own, and the first line of its section.
+// An element as a set of its own, and the first line of its section. The wall lies on the mandrel:
+// its lower side is where the nodes are.
 void open_section(std::string& text, std::size_t f, const char* more) {
     const std::string number = std::to_string(f + 1);
     const std::string set = "ELSET=E" + number;
@@ -67,7 +68,7 @@ void append_calculix_section(std::string& text, const ShellModel& model, std::si
         text += "*ORIENTATION, NAME=" + ply_name(f + 1, k + 1) + "\n";
         append_axes(text, triangle, triangle.plies[k].angle_rad);
     }
-    open_section(text, f, "");
+    open_section(text, f, ", OFFSET=-0.5");
     std::size_t written = triangle.plies.size();
     if (const ShellSheet sheet = sheet_under(model, triangle); sheet.thickness_mm > 0.0) {
         append_sheet(text, sheet.thickness_mm, sheet.liner ? "LINER" : "MATRIX");
@@ -117,7 +118,6 @@ std::string abaqus_deck(const ShellModel& model) {
     text += "*ORIENTATION, NAME=WALL, DEFINITION=COORDINATES\nAXES\n3, 0.\n";
     for (std::size_t f = 0; f < model.element.size(); ++f) {
         const ShellTriangle& triangle = model.mesh->triangle[f];
-        // The wall lies on the mandrel: its lower side is where the nodes are.
         open_section(text, f, ", ORIENTATION=WALL, OFFSET=SNEG");
         if (const ShellSheet sheet = sheet_under(model, triangle); sheet.thickness_mm > 0.0) {
             append_value(text, sheet.thickness_mm);

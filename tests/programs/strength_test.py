@@ -14,6 +14,11 @@ import program
 LAMINATE_SHARE = 0.03
 RADIUS_MM = 50.0
 PLY_MM = 0.25
+# What laminate theory has on the cylinder of chen_2023_gas_cylinders, and what that paper prints (Table 3, "Max. Index
+# Value"): radius 40, a steel liner of 1 mm, two plies of 0.5 mm, 12 MPa.
+PAPER = {"radius_mm": 40.0, "ply_mm": 0.5, "pressure_mpa": 12.0, "index": {10: 0.8548, 15: 0.8264, 20: 0.7934}}
+# 1.3 % of laminate theory, and what that leaves out: a wall of a twentieth of the radius, whose outer half strains 4 % less.
+PAPER_SHARE = 0.08
 MATERIAL = {
     "name": "test ply",
     "ply": {"modulus_1_MPa": 132000, "modulus_2_MPa": 10300, "poisson_12": 0.25, "poisson_23": 0.38, "shear_12_MPa": 6500,
@@ -24,12 +29,12 @@ MATERIAL = {
 }
 
 
-def tube(angles_deg, edge_mm, length_mm, bare=()):
+def tube(angles_deg, edge_mm, length_mm, bare=(), radius_mm=RADIUS_MM, ply_mm=PLY_MM):
     """layup.json of a tube about Z, with plies of the given angles to it."""
-    around = round(2 * math.pi * RADIUS_MM / edge_mm)
+    around = round(2 * math.pi * radius_mm / edge_mm)
     along = round(length_mm / edge_mm)
-    points = [[RADIUS_MM * math.cos(2 * math.pi * (i + 0.5 * (k % 2)) / around),
-               RADIUS_MM * math.sin(2 * math.pi * (i + 0.5 * (k % 2)) / around), length_mm * (k / along - 0.5)]
+    points = [[radius_mm * math.cos(2 * math.pi * (i + 0.5 * (k % 2)) / around),
+               radius_mm * math.sin(2 * math.pi * (i + 0.5 * (k % 2)) / around), length_mm * (k / along - 0.5)]
               for k in range(along + 1) for i in range(around)]
     triangles = []
     for k in range(along):
@@ -46,12 +51,12 @@ def tube(angles_deg, edge_mm, length_mm, bare=()):
                 axis_1 /= numpy.linalg.norm(axis_1)
                 axis_2 = numpy.cross(normal, axis_1)
                 axis_2 /= numpy.linalg.norm(axis_2)
-                plies = [] if len(triangles) in bare else [[1, 1, 0, angle, PLY_MM] for angle in angles_deg]
+                plies = [] if len(triangles) in bare else [[1, 1, 0, angle, ply_mm] for angle in angles_deg]
                 triangles.append({"points": list(corners), "region": 0, "area_mm2": area, "layers": len(plies),
-                                  "thickness_mm": PLY_MM * len(plies), "axis_1": axis_1.tolist(),
+                                  "thickness_mm": ply_mm * len(plies), "axis_1": axis_1.tolist(),
                                   "axis_2": axis_2.tolist(), "plies": plies})
     return {"schema": "meshwind-layup-1", "meshwind": "0", "frame": "mandrel",
-            "tow": {"width_mm": 5, "thickness_mm": PLY_MM}, "layers": [{"layer": 1, "planner": "pattern"}],
+            "tow": {"width_mm": 5, "thickness_mm": ply_mm}, "layers": [{"layer": 1, "planner": "pattern"}],
             "ply_columns": ["layer", "fibre", "course", "angle_deg", "thickness_mm"], "points_mm": points,
             "triangles": triangles}
 
@@ -72,6 +77,16 @@ def laminate_stress(angles_deg, pressure_mpa):
     stiffness = sum(PLY_MM * turn.T @ q @ turn for turn in turns)
     strain = numpy.linalg.solve(stiffness, [0.5 * pressure_mpa * RADIUS_MM, pressure_mpa * RADIUS_MM, 0])
     return [q @ turn @ strain for turn in turns]
+
+
+def reserve(stress):
+    """How many times the stress the criterion of Tsai and Wu allows, from its roots."""
+    x, xc, y, yc, s = (MATERIAL["ply"]["strength"][key] for key in (
+        "tension_1_MPa", "compression_1_MPa", "tension_2_MPa", "compression_2_MPa", "shear_12_MPa"))
+    one, two, shear = stress
+    square = one ** 2 / (x * xc) + two ** 2 / (y * yc) + (shear / s) ** 2 - one * two / math.sqrt(x * xc * y * yc)
+    linear = one * (1 / x - 1 / xc) + two * (1 / y - 1 / yc)
+    return max(numpy.roots([square, linear, -1.0]))
 
 
 def keyword_blocks(text):
@@ -227,21 +242,36 @@ class Strength(program.ProgramTest):
                 result = json.loads(self.done("strength", "layup.json", "--material", "ply.json", "--merge", "0",
                                               "-o", "out", "--json").stdout)
                 expected = laminate_stress(angles, 1.0)
-                sums = numpy.zeros((len(angles), 3))
-                count = numpy.zeros(len(angles))
-                middle = {number for number, triangle in enumerate(layup["triangles"], 1)
-                          if all(abs(layup["points_mm"][p][2]) < 0.5 * RADIUS_MM for p in triangle["points"])}
-                for line in (self.folder / "out/strength.dat").read_text().splitlines():
-                    cells = line.split()
-                    ply = re.match(r"O(\d+)_(\d+)", cells[8]) if len(cells) > 8 else None
-                    if ply and int(cells[0]) in middle:
-                        sums[int(ply[2]) - 1] += [float(cells[k]) for k in (2, 3, 5)]
-                        count[int(ply[2]) - 1] += 1
                 largest = numpy.abs(expected).max()
-                for mean, wanted in zip(sums / count[:, None], expected):
+                for mean, wanted in zip(self.stresses_amid(layup, len(angles), RADIUS_MM), expected):
                     self.assertLess(numpy.abs(mean - wanted).max(), LAMINATE_SHARE * largest, (mean, wanted))
                 self.assertEqual(result["plies"]["most"], 4)
                 self.assertGreater(result["first_failure"]["reserve"], 0)
+
+    def stresses_amid(self, layup, plies, radius_mm):
+        """Mean stresses of each ply in the middle of a tube, away from its rims."""
+        sums = numpy.zeros((plies, 3))
+        count = numpy.zeros(plies)
+        middle = {number for number, triangle in enumerate(layup["triangles"], 1)
+                  if all(abs(layup["points_mm"][p][2]) < 0.5 * radius_mm for p in triangle["points"])}
+        for line in (self.folder / "out/strength.dat").read_text().splitlines():
+            cells = line.split()
+            ply = re.match(r"O(\d+)_(\d+)", cells[8]) if len(cells) > 8 else None
+            if ply and int(cells[0]) in middle:
+                sums[int(ply[2]) - 1] += [float(cells[k]) for k in (2, 3, 5)]
+                count[int(ply[2]) - 1] += 1
+        return sums / count[:, None]
+
+    def test_cylinder_of_a_paper(self):
+        lined = {**MATERIAL, "liner": {"modulus_MPa": 200000, "poisson": 0.3, "thickness_mm": 1.0}}
+        self.write("lined.json", json.dumps(lined))
+        for angle, index in PAPER["index"].items():
+            with self.subTest(angle=angle):
+                layup = self.write_tube((angle, -angle), 5.0, 160.0, radius_mm=PAPER["radius_mm"], ply_mm=PAPER["ply_mm"])
+                self.done("strength", "layup.json", "--material", "lined.json", "--merge", "0", "-o", "out",
+                          "--pressure", PAPER["pressure_mpa"])
+                for stress in self.stresses_amid(layup, 2, PAPER["radius_mm"]):
+                    self.assertAlmostEqual(1.0 / reserve(stress) / index, 1.0, delta=PAPER_SHARE)
 
     def test_what_cannot_be(self):
         layup = self.write_tube((30,), 30.0, 60.0)
