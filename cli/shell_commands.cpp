@@ -66,12 +66,17 @@ int run_strength(ShellArguments& arguments, const Common& common) {
         shell_model(wall.mesh, wall.material, wall.request.loads, ElementOrder::Quadratic), folder);
     const std::string json = strength_json(wall, strength);
     write_file(folder / "strength.vtu", strength_vtu(wall, strength));
+    const std::string page = strength_page(wall, strength);
+    if (!page.empty()) {
+        write_file(folder / "strength.html", page);
+    }
     write_file(folder / "strength.json", json);
     if (common.json) {
         std::cout << json;
     } else if (!common.quiet) {
         print_strength(std::cout, wall, strength);
-        std::cout << "files     " << (folder / "strength.json").string() << ", strength.vtu\n";
+        std::cout << "files     " << (folder / "strength.json").string()
+                  << (page.empty() ? "" : ", strength.html") << ", strength.vtu\n";
     }
     return kDone;
 }

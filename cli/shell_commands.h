@@ -22,7 +22,7 @@ struct ShellArguments {
 /// `export fe`: writes a deck.
 int run_export_fe(ShellArguments& arguments, const Common& common);
 
-/// `strength`: writes strength.json, strength.vtu and CalculiX's own files.
+/// `strength`: writes strength.json, strength.html, strength.vtu and CalculiX's own files.
 int run_strength(ShellArguments& arguments, const Common& common);
 
 }  // namespace meshwind

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <sstream>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +15,8 @@
 #include "core/version.h"
 #include "mesh/triangle_soup.h"
 #include "report/layup_vtu.h"
+#include "report/page/packed_page.h"
+#include "report/page/page_arrays.h"
 #include "report/report_checks.h"
 
 namespace meshwind {
@@ -100,6 +105,36 @@ double reserve_of_most(const ShellMesh& mesh, const Strength& strength) {
     return parts.back().first;
 }
 
+Json json_of(const ShellWall& wall, const Strength& strength) {
+    Json json = json_of(wall);
+    json["first_failure"] = json_of(wall, strength.first);
+    json["reserve_of_99_percent"] = report_number(reserve_of_most(wall.mesh, strength));
+    json["layers"] = Json::array();
+    for (const PlyState& layer : strength.layers) {
+        json["layers"].push_back(json_of(wall, layer));
+    }
+    return json;
+}
+
+// What both the page and the file for ParaView show of each triangle.
+struct WallCells {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    std::vector<double> thickness_mm, utilisation;
+    std::vector<std::int32_t> plies;
+
+    WallCells(const ShellWall& wall, const Strength& strength) {
+        for (std::size_t f = 0; f < wall.mesh.triangle.size(); ++f) {
+            const ShellTriangle& triangle = wall.mesh.triangle[f];
+            triangles.push_back(triangle.point);
+            plies.push_back(static_cast<std::int32_t>(triangle.plies.size()));
+            thickness_mm.push_back(std::accumulate(
+                triangle.plies.begin(), triangle.plies.end(), 0.0,
+                [](double sum, const ShellPly& ply) { return sum + ply.thickness_mm; }));
+            utilisation.push_back(1.0 / strength.reserve[f]);
+        }
+    }
+};
+
 std::string place(const Vector3d& v) {
     return fixed(v.x(), 1) + ", " + fixed(v.y(), 1) + ", " + fixed(v.z(), 1);
 }
@@ -153,14 +188,7 @@ void print_shell_wall(std::ostream& out, const ShellWall& wall) {
 }
 
 std::string strength_json(const ShellWall& wall, const Strength& strength) {
-    Json json = json_of(wall);
-    json["first_failure"] = json_of(wall, strength.first);
-    json["reserve_of_99_percent"] = report_number(reserve_of_most(wall.mesh, strength));
-    json["layers"] = Json::array();
-    for (const PlyState& layer : strength.layers) {
-        json["layers"].push_back(json_of(wall, layer));
-    }
-    return json.dump(1) + "\n";
+    return json_of(wall, strength).dump(1) + "\n";
 }
 
 void print_strength(std::ostream& out, const ShellWall& wall, const Strength& strength) {
@@ -186,24 +214,34 @@ void print_strength(std::ostream& out, const ShellWall& wall, const Strength& st
     }
 }
 
-std::string strength_vtu(const ShellWall& wall, const Strength& strength) {
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    std::vector<double> thickness_mm;
-    std::vector<std::int32_t> plies;
-    std::vector<double> utilisation;
-    for (std::size_t f = 0; f < wall.mesh.triangle.size(); ++f) {
-        const ShellTriangle& triangle = wall.mesh.triangle[f];
-        triangles.push_back(triangle.point);
-        plies.push_back(static_cast<std::int32_t>(triangle.plies.size()));
-        thickness_mm.push_back(std::accumulate(
-            triangle.plies.begin(), triangle.plies.end(), 0.0,
-            [](double sum, const ShellPly& ply) { return sum + ply.thickness_mm; }));
-        utilisation.push_back(1.0 / strength.reserve[f]);
+std::string strength_page(const ShellWall& wall, const Strength& strength) {
+    const std::string_view page = strength_page_template();
+    if (page.empty()) {
+        return {};
     }
-    return layup_vtu(wall.mesh.point_mm, triangles,
-                     std::vector<CellArray>{{"utilisation", std::span<const double>(utilisation)},
-                                            {"thickness_mm", std::span<const double>(thickness_mm)},
-                                            {"plies", std::span<const std::int32_t>(plies)}});
+    const WallCells cells(wall, strength);
+    PageArrays arrays;
+    arrays.add_points("wall/points", wall.mesh.point_mm);
+    arrays.add_faces("wall/faces", cells.triangles);
+    arrays.add_floats("wall/utilisation", cells.utilisation);
+    arrays.add_floats("wall/thickness", cells.thickness_mm);
+    arrays.add<std::int32_t>("wall/plies", 1, cells.plies);
+    std::ostringstream text;
+    print_strength(text, wall, strength);
+    const std::filesystem::path run = std::filesystem::absolute(wall.request.run);
+    return packed_page(page, arrays.behind({{"format", "meshwind-strength-1"},
+                                            {"strength", json_of(wall, strength)},
+                                            {"text", text.str()},
+                                            {"name", run.filename().string()}}));
+}
+
+std::string strength_vtu(const ShellWall& wall, const Strength& strength) {
+    const WallCells cells(wall, strength);
+    return layup_vtu(
+        wall.mesh.point_mm, cells.triangles,
+        std::vector<CellArray>{{"utilisation", std::span<const double>(cells.utilisation)},
+                               {"thickness_mm", std::span<const double>(cells.thickness_mm)},
+                               {"plies", std::span<const std::int32_t>(cells.plies)}});
 }
 
 }  // namespace meshwind

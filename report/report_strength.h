@@ -38,6 +38,15 @@ void print_shell_wall(std::ostream& out, const ShellWall& wall);
 [[nodiscard]] std::string strength_json(const ShellWall& wall, const Strength& strength);
 void print_strength(std::ostream& out, const ShellWall& wall, const Strength& strength);
 
+/// A page for the browser: the wall by utilisation and thickness, its weakest places, all that is
+/// printed. Empty where the program was built without pages. The header of its data
+/// (page_arrays.h) has "strength" (strength_json), "text" (print_strength) and "name"; arrays,
+/// positions in the mandrel's frame, mm:
+///
+///     wall/points, wall/faces
+///     wall/utilisation, wall/thickness (mm), wall/plies   per triangle, as in strength_vtu()
+[[nodiscard]] std::string strength_page(const ShellWall& wall, const Strength& strength);
+
 /// Per triangle thickness, plies and utilisation: the share of the load at which its first ply
 /// fails, 0 without plies.
 [[nodiscard]] std::string strength_vtu(const ShellWall& wall, const Strength& strength);

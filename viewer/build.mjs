@@ -1,5 +1,5 @@
-// Bundles a page into one HTML file: node build.mjs OUT.html [part]
-// The page of report.html, or that of a part.
+// Bundles a page into one HTML file: node build.mjs OUT.html [part|strength]
+// The page of report.html, that of a part, or that of a wall's strength, which looks like a part's.
 // The program puts its data in the place of <!--MESHWIND-DATA-->.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -8,8 +8,8 @@ import { build, transform } from 'esbuild';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [output, which] = process.argv.slice(2);
-if (!output || process.argv.length > 4 || (which && which !== 'part')) {
-    console.error('usage: node build.mjs OUT.html [part]');
+if (!output || process.argv.length > 4 || (which && which !== 'part' && which !== 'strength')) {
+    console.error('usage: node build.mjs OUT.html [part|strength]');
     process.exit(2);
 }
 const source = join(here, 'src', which ?? '');
@@ -25,7 +25,7 @@ const bundle = await build({
     charset: 'ascii',
     legalComments: 'none',
 });
-const sheets = [join(here, 'src', 'style.css'), ...(which ? [join(source, 'style.css')] : [])];
+const sheets = [join(here, 'src', 'style.css'), ...(which ? [join(here, 'src', 'part', 'style.css')] : [])];
 const style = await transform(sheets.map((sheet) => readFileSync(sheet, 'utf8')).join('\n'), {
     loader: 'css',
     minify: true,

@@ -6,10 +6,11 @@
 
 namespace meshwind {
 
-/// The pages without data, as viewer/ built them: of report.html, and of `inspect --page`. Empty in
-/// a program that was built without them.
+/// The pages without data, as viewer/ built them: of report.html, of `inspect --page`, and of
+/// `strength`. Empty in a program that was built without them.
 [[nodiscard]] std::string_view report_page_template();
 [[nodiscard]] std::string_view part_page_template();
+[[nodiscard]] std::string_view strength_page_template();
 
 /// The page with `data` (page_arrays.h) in it, packed by gzip as base64: one file that needs no
 /// network. \pre the page is not empty
