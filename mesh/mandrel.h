@@ -34,7 +34,7 @@ struct MandrelOptions {
     };
     std::optional<Axis> axis{};                ///< in the file's frame and units; none: found
     std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
-    std::vector<std::int32_t> keep_faces{};    ///< of a CAD file, numbers from 1; empty: by regions
+    std::vector<std::string> keep_faces{};     ///< of a CAD file, as is_named(); empty: by regions
     /// Of every end with a leg, mm; none: what is no part of the leg (mesh/even/square_ends.h)
     std::optional<double> cut_ends_mm{};
     /// Lettering and the like is taken off up to this height, mm (mesh/even/details.h); none: 1 mm

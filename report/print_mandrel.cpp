@@ -86,7 +86,7 @@ void print_cad_faces(std::ostream& out, const Mandrel& m) {
         return;
     }
     out << "faces         of the CAD part\n    number  kind         radius mm      area mm2  "
-           "region\n";
+           "region  colour\n";
     std::vector<std::size_t> by_area(m.cad_faces.size());
     std::iota(by_area.begin(), by_area.end(), std::size_t{0});
     std::stable_sort(by_area.begin(), by_area.end(), [&](std::size_t a, std::size_t b) {
@@ -100,7 +100,8 @@ void print_cad_faces(std::ostream& out, const Mandrel& m) {
         out << padded(std::to_string(by_area[i] + 1), 10) << "  " << kind
             << padded(face.radius_mm > 0.0 ? fixed(face.radius_mm, 3) : "", 12)
             << padded(fixed(face.area_mm2, 2), 14)
-            << padded(face.region >= 0 ? std::to_string(face.region) : "gone", 8) << "\n";
+            << padded(face.region >= 0 ? std::to_string(face.region) : "gone", 8)
+            << (face.colour.empty() ? "" : "  " + face.colour) << "\n";
     }
     if (shown < by_area.size()) {
         out << "            and " << by_area.size() - shown << " smaller ones\n";

@@ -40,6 +40,9 @@ json cad_faces_of(const std::vector<CadFace>& faces) {
         json& row = rows.emplace_back(
             json{{"number", i + 1}, {"kind", face.kind}, {"area_mm2", face.area_mm2}});
         row["region"] = face.region >= 0 ? json(face.region) : json(nullptr);
+        if (!face.colour.empty()) {
+            row["colour"] = face.colour;
+        }
         if (face.radius_mm > 0.0) {
             row["radius_mm"] = face.radius_mm;
         }

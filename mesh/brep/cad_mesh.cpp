@@ -9,7 +9,7 @@
 namespace meshwind {
 namespace {
 
-constexpr std::string_view kMagic = "meshwind CAD mesh 1\n";
+constexpr std::string_view kMagic = "meshwind CAD mesh 2\n";
 
 template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -22,6 +22,7 @@ void visit(Face& face, Visitor& visitor) {
     visitor.add(face.radius_mm);
     visitor.add(face.area_mm2);
     visitor.add(face.solid);
+    visitor.add(face.colour);
     visitor.add(face.axis_point_mm);
     visitor.add(face.axis_direction);
 }

@@ -149,31 +149,50 @@ void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& s
 }
 
 // What is kept of a CAD part's faces becomes a region of its own.
-void keep_named_faces(const CadMesh* cad, const TriangleSoup& whole,
-                      const std::vector<std::int32_t>& numbers, const std::string& name,
-                      Segmentation& segmentation) {
-    if (numbers.empty()) {
-        return;
+[[noreturn]] void fail_face(const CadMesh* cad, const std::string& word, const std::string& name) {
+    std::string words = "has no face " + word;
+    if (cad == nullptr) {
+        words += ", only CAD files have faces; keep_regions is for others";
+    } else {
+        words += ", its faces are 1 to " + std::to_string(cad->faces.size()) +
+                 ", with the kinds and colours that meshwind inspect lists";
     }
-    const std::size_t count = cad != nullptr ? cad->faces.size() : 0;
-    for (const std::int32_t number : numbers) {
-        if (number < 1 || static_cast<std::size_t>(number) > count) {
-            throw InputError(
-                "mesh.no_such_face", name,
-                "has no face " + std::to_string(number) +
-                    (cad != nullptr ? ", its faces are 1 to " + std::to_string(count) +
-                                          " (see meshwind inspect)"
-                                    : ", only CAD files have faces; keep_regions is for others"));
+    throw InputError("mesh.no_such_face", name, words);
+}
+
+// Per face of the part whether one of the words means it. Each has to mean one.
+std::vector<char> named_faces(const CadMesh* cad, const std::vector<std::string>& words,
+                              const std::string& name) {
+    std::vector<char> named(cad != nullptr ? cad->faces.size() : 0, 0);
+    for (const std::string& word : words) {
+        bool any = false;
+        for (std::size_t i = 0; i < named.size(); ++i) {
+            if (is_named(cad->faces[i], i + 1, word)) {
+                named[i] = 1;
+                any = true;
+            }
+        }
+        if (!any) {
+            fail_face(cad, word, name);
         }
     }
-    const std::set<std::int32_t> wanted(numbers.begin(), numbers.end());
+    return named;
+}
+
+void keep_named_faces(const CadMesh* cad, const TriangleSoup& whole,
+                      const std::vector<std::string>& words, const std::string& name,
+                      Segmentation& segmentation) {
+    if (words.empty()) {
+        return;
+    }
+    const std::vector<char> wanted = named_faces(cad, words, name);
     const ExactCorners known = exact_corners(*cad, whole);
     Region kept;
     kept.id = static_cast<std::int32_t>(segmentation.regions.size());
     kept.kind = RegionKind::OuterWall;
     kept.visible_fraction = 1.0;
     for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-        if (wanted.count(known.face[f] + 1) != 0) {
+        if (known.face[f] >= 0 && wanted[static_cast<std::size_t>(known.face[f])] != 0) {
             segmentation.region[f] = kept.id;
         }
     }

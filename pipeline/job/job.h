@@ -54,7 +54,7 @@ struct WallPart {
         Eigen::Vector3d most;
     };
     std::optional<std::int32_t> region{};
-    std::optional<std::int32_t> cad_face{};  ///< number from 1
+    std::optional<std::string> cad_face{};   ///< as is_named()
     std::optional<Box> box{};                ///< in the file's frame and units
     std::optional<Eigen::Vector3d> point{};  ///< in the file's frame and units
     std::optional<std::int32_t> rim{};
@@ -94,11 +94,11 @@ struct Job {
         Eigen::Vector3d direction;  ///< not zero, any length
     };
     struct MandrelJob {
-        LengthUnit units = LengthUnit::Auto;      ///< as `meshwind inspect` reads the part
-        std::optional<MandrelAxis> axis;          ///< none: found
-        std::vector<std::int32_t> keep_regions;   ///< region ids; empty: the outer wall
-        std::vector<std::int32_t> keep_faces;     ///< of a CAD file, from 1; empty: by regions
-        std::optional<double> cut_ends_mm;        ///< >= 0; none: what is no part of an end's leg
+        LengthUnit units = LengthUnit::Auto;     ///< as `meshwind inspect` reads the part
+        std::optional<MandrelAxis> axis;         ///< none: found
+        std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
+        std::vector<std::string> keep_faces;  ///< of a CAD file, as is_named(); empty: by regions
+        std::optional<double> cut_ends_mm;    ///< >= 0; none: what is no part of an end's leg
         std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
         std::optional<double> blend_mm = 0.0;  ///< 0: crotches and steps stay sharp; none: by trial
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;

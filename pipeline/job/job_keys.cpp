@@ -1,5 +1,6 @@
 #include "pipeline/job/job_keys.h"
 
+#include "pipeline/job/face_word.h"
 #include "pipeline/job/job_ranges.h"
 #include "pipeline/job/wall_keys.h"
 
@@ -39,43 +40,47 @@ Key<Job::MandrelJob> axis_key() {
             text};
 }
 
-// A list of numbers, "auto" or left out where there are none.
-Key<Job::MandrelJob> numbers_key(std::string_view name,
-                                 std::vector<std::int32_t> Job::MandrelJob::*field, int first,
-                                 bool written_as_auto, std::string_view meaning) {
-    const SchemaJson list = {
-        {"type", "array"}, {"minItems", 1}, {"items", count_schema(first, kMostId)}};
+// A list, or "auto" where there is none. \param none as JSON, empty: left out
+template <typename Entry, typename Read, typename Text>
+Key<Job::MandrelJob> list_key(std::string_view name, std::vector<Entry> Job::MandrelJob::*field,
+                              const SchemaJson& entry, const std::string& none,
+                              std::string_view meaning, const Read& read_one, const Text& text_of) {
+    const SchemaJson list = {{"type", "array"}, {"minItems", 1}, {"items", entry}};
     const auto read = [=](const JsonValue& value, Job::MandrelJob& mandrel) {
         if (is_auto(value)) {
             return;
         }
-        for (const JsonValue& id : value.array()) {
-            (mandrel.*field).push_back(static_cast<std::int32_t>(id.integer(first, kMostId)));
+        for (const JsonValue& one : value.array()) {
+            (mandrel.*field).push_back(read_one(one));
         }
         if ((mandrel.*field).empty()) {
-            value.fail("json.out_of_range", "is empty; list numbers or write \"auto\"");
+            value.fail("json.out_of_range", "is empty; list some or write \"auto\"");
         }
     };
     const auto text = [=](const Job::MandrelJob& mandrel) {
-        std::string ids;
-        for (const std::int32_t id : mandrel.*field) {
-            ids += (ids.empty() ? "" : ",") + std::to_string(id);
+        std::string all;
+        for (const Entry& one : mandrel.*field) {
+            all += (all.empty() ? "" : ",") + text_of(one);
         }
-        return !ids.empty() ? "[" + ids + "]" : written_as_auto ? string_text(kAutoWord) : ids;
+        return all.empty() ? none : "[" + all + "]";
     };
     return {name, meaning, or_word(kAutoWord, list), read, text};
 }
 
 Key<Job::MandrelJob> regions_key() {
-    return numbers_key("keep_regions", &Job::MandrelJob::keep_regions, 0, true,
-                       "ids of the regions that are wound, as meshwind inspect lists them; auto: "
-                       "the outer wall");
+    return list_key(
+        "keep_regions", &Job::MandrelJob::keep_regions, count_schema(0, kMostId),
+        string_text(kAutoWord),
+        "ids of the regions that are wound, as meshwind inspect lists them; auto: the outer wall",
+        [](const JsonValue& id) { return static_cast<std::int32_t>(id.integer(0, kMostId)); },
+        [](std::int32_t id) { return std::to_string(id); });
 }
 
 Key<Job::MandrelJob> faces_key() {
-    return numbers_key("keep_faces", &Job::MandrelJob::keep_faces, 1, false,
-                       "instead of regions: numbers of the faces of a CAD file that are wound, as "
-                       "meshwind inspect lists them");
+    return list_key("keep_faces", &Job::MandrelJob::keep_faces, face_word_schema(), "",
+                    "instead of regions: the faces of a CAD file that are wound, by number, kind "
+                    "or colour (\"#ff0000\"), as meshwind inspect lists them",
+                    read_face_word, face_word_text);
 }
 
 const KeyTable<PinWish>& pin_keys() {

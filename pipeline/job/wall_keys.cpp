@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "pipeline/job/face_word.h"
 #include "pipeline/job/job_ranges.h"
 
 namespace meshwind {
@@ -62,15 +63,26 @@ Key<WallPart> point_key() {
         [](const WallPart& part) { return part.point ? vector_text(*part.point) : std::string(); }};
 }
 
-// A number of a region, rim or face.
+// A number of a region or rim.
 Key<WallPart> id_key(std::string_view name, std::optional<std::int32_t> WallPart::*field,
-                     std::string_view meaning, std::int64_t first = 0) {
-    return {name, meaning, count_schema(first, kMostId),
+                     std::string_view meaning) {
+    return {name, meaning, count_schema(0, kMostId),
             [=](const JsonValue& value, WallPart& part) {
-                part.*field = static_cast<std::int32_t>(value.integer(first, kMostId));
+                part.*field = static_cast<std::int32_t>(value.integer(0, kMostId));
             },
             [=](const WallPart& part) {
                 return part.*field ? std::to_string(*(part.*field)) : std::string();
+            }};
+}
+
+Key<WallPart> face_key() {
+    return {"face",
+            "faces of a CAD file, by number, kind or colour (\"#ff0000\"), as meshwind inspect "
+            "lists them",
+            face_word_schema(),
+            [](const JsonValue& value, WallPart& part) { part.cad_face = read_face_word(value); },
+            [](const WallPart& part) {
+                return part.cad_face ? face_word_text(*part.cad_face) : std::string();
             }};
 }
 
@@ -94,8 +106,7 @@ const KeyTable<WallPart>& part_keys() {
     static const KeyTable<WallPart> kTable = {
         {
             id_key("region", &WallPart::region, "a region, as meshwind inspect lists them"),
-            id_key("face", &WallPart::cad_face,
-                   "a face of a CAD file, as meshwind inspect lists them", 1),
+            face_key(),
             box_key(),
             point_key(),
             id_key("rim", &WallPart::rim, "what lies \"within\" so many mm of this rim"),

@@ -98,10 +98,11 @@ private:
                                  " is no part of the wall; meshwind inspect lists its regions");
         }
         const auto& faces = bare_.cad_face;
-        if (part.cad_face &&
-            std::find(faces.begin(), faces.end(), *part.cad_face - 1) == faces.end()) {
+        if (part.cad_face && std::none_of(faces.begin(), faces.end(), [&](std::int32_t face) {
+                return is_face(face, *part.cad_face);
+            })) {
             throw InputError("job.no_face", here + "/face",
-                             "face " + std::to_string(*part.cad_face) +
+                             "face " + *part.cad_face +
                                  " is no part of the wall; meshwind inspect lists the faces of a "
                                  "CAD file");
         }
@@ -118,12 +119,16 @@ private:
         throw InputError("job.wall_place", here, "no triangle of the wall has its middle there");
     }
 
+    [[nodiscard]] bool is_face(std::int32_t face, const std::string& word) const {
+        return face >= 0 && is_named(bare_.cad_faces[at(face)], at(face) + 1, word);
+    }
+
     [[nodiscard]] bool holds(const WallPart& part, const SurfacePoint& place) const {
         if (part.region) {
             return bare_.surface.region[at(place.face)] == *part.region;
         }
         if (part.cad_face) {
-            return bare_.cad_face[at(place.face)] == *part.cad_face - 1;
+            return is_face(bare_.cad_face[at(place.face)], *part.cad_face);
         }
         const Eigen::Vector3d position = position_mm(bare_.surface, place);
         if (part.box) {

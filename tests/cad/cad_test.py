@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -120,6 +121,40 @@ class CadTest(program.ProgramTest):
             job = self.write("job.json", json.dumps({"mandrel": {"edge": edge}}))
             count.append(self.inspected(file, "--job", job)["triangles"])
         self.assertAlmostEqual(count[1] / count[0], 4.0, delta=0.6)
+
+    def painted(self, file, radius, red_green_blue):
+        """The same STEP file with a colour on its cylindrical face of that radius."""
+        text = file.read_text()
+        surface = re.search(rf"(#\d+) = CYLINDRICAL_SURFACE\('',#\d+,{radius}\.\)", text)[1]
+        face = re.search(rf"(#\d+) = ADVANCED_FACE\('',\([^)]*\),{surface},", text)[1]
+        context = re.search(r"(#\d+) = \( GEOMETRIC_REPRESENTATION_CONTEXT\(3\)", text)[1]
+        first = max(map(int, re.findall(r"^#(\d+) =", text, re.M))) + 1
+        a, b, c, d, e, f, g, h, i = (f"#{first + k}" for k in range(9))
+        more = [f"{a} = COLOUR_RGB('',{','.join(map(str, red_green_blue))});", f"{b} = FILL_AREA_STYLE_COLOUR('',{a});",
+                f"{c} = FILL_AREA_STYLE('',({b}));", f"{d} = SURFACE_STYLE_FILL_AREA({c});",
+                f"{e} = SURFACE_SIDE_STYLE('',({d}));", f"{f} = SURFACE_STYLE_USAGE(.BOTH.,{e});",
+                f"{g} = PRESENTATION_STYLE_ASSIGNMENT(({f}));", f"{h} = STYLED_ITEM('colour',({g}),{face});",
+                f"{i} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',({h}),{context});"]
+        end = text.rindex("ENDSEC;")
+        return self.write("painted.step", text[:end] + "\n".join(more) + "\n" + text[end:])
+
+    def test_faces_by_kind_and_colour(self):
+        file = self.painted(self.cad("tee"), 40, (1.0, 0.0, 0.2))
+        faces = self.inspected(file)["cad_faces"]
+        self.assertEqual([face["radius_mm"] for face in faces if face.get("colour") == "#ff0033"], [40.0])
+        self.assertEqual(sum("colour" in face for face in faces), 1)
+        for words, of in ((["#FF0033"], lambda face: face.get("colour")), (["cylinder"], lambda face: face["kind"] == "cylinder"),
+                          (["cylinder", "spline"], lambda face: face["kind"] != "plane")):
+            with self.subTest(words):
+                job = self.write("job.json", json.dumps({"mandrel": {"keep_faces": words}}))
+                regions = self.inspected(file, "--job", job)["regions"]
+                kept = sum(region["area_mm2"] for region in regions if region["kept"])
+                self.assertAlmostEqual(kept / sum(face["area_mm2"] for face in faces if of(face)), 1.0, delta=1e-6)
+        for word, words in (("#00ff00", "has no face #00ff00"), ("cilinder", "names no face"), (9, "has no face 9")):
+            job = self.write("job.json", json.dumps({"mandrel": {"keep_faces": [word]}}))
+            result = self.run_program("inspect", file, "--job", job)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(words, result.stderr)
 
     def test_broken_files(self):
         whole = self.cad("tee").read_bytes()

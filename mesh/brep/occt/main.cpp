@@ -50,7 +50,7 @@ CadMesh mesh_of(const std::string& file, const std::string& solid, double edge_m
                              " mm; let the CAD program repair the part, or export it as .stl");
     }
     CadMesh mesh = even_part(first.soup, first.face, faces, edge_mm);
-    mesh.faces = faces.describe();
+    mesh.faces = faces.describe(part.colours);
     for (std::size_t f = 0; f < mesh.soup.faces.size(); ++f) {
         mesh.faces[static_cast<std::size_t>(mesh.face[f])].area_mm2 +=
             area_mm2(mesh.soup.points_mm, mesh.soup.faces[f]);

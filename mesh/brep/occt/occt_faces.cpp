@@ -358,7 +358,7 @@ OcctMesh OcctFaces::first_mesh() {
     return mesh;
 }
 
-std::vector<CadFace> OcctFaces::describe() const {
+std::vector<CadFace> OcctFaces::describe(const FaceColours& colours) const {
     TopTools_IndexedDataMapOfShapeListOfShape solids_of;
     TopTools_IndexedMapOfShape solids;
     TopExp::MapShapes(shape_, TopAbs_SOLID, solids);
@@ -393,6 +393,8 @@ std::vector<CadFace> OcctFaces::describe() const {
         if (solids_of.Contains(of.face) && !solids_of.FindFromKey(of.face).IsEmpty()) {
             face.solid = solids.FindIndex(solids_of.FindFromKey(of.face).First()) - 1;
         }
+        const auto colour = colours.find(of.face.TShape().get());
+        face.colour = colour == colours.end() ? std::string() : colour->second;
     }
     return faces;
 }

@@ -11,6 +11,7 @@
 #include <TopoDS_Shape.hxx>
 
 #include "mesh/brep/even_part.h"
+#include "mesh/brep/occt/occt_read.h"
 
 namespace meshwind {
 
@@ -33,7 +34,7 @@ public:
 
     /// Also gives each face the places from which its points are looked for. \pre before the below
     [[nodiscard]] OcctMesh first_mesh();
-    [[nodiscard]] std::vector<CadFace> describe() const;
+    [[nodiscard]] std::vector<CadFace> describe(const FaceColours& colours) const;
 
     [[nodiscard]] std::optional<Eigen::Vector3d> on_face(std::int32_t face,
                                                          const Eigen::Vector3d& p) override;

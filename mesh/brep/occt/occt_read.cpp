@@ -15,9 +15,14 @@
 #include <IGESControl_Reader.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPConstruct_Styles.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepRepr_RepresentationItem.hxx>
+#include <StepVisual_Colour.hxx>
+#include <StepVisual_StyledItem.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_AsciiString.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
@@ -48,6 +53,7 @@ struct Read {
     TopoDS_Shape shape;
     double unit_mm = 1.0;
     std::vector<Solid> solids;
+    FaceColours colours;
 };
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& kind) {
@@ -88,6 +94,37 @@ std::string name_of(const Handle(Transfer_TransientProcess) & process, const Top
     return {};
 }
 
+// A face's own colour comes before that of what it belongs to.
+FaceColours colours_of(const Handle(XSControl_WorkSession) & session) {
+    FaceColours colours;
+    STEPConstruct_Styles styles(session);
+    if (!styles.LoadStyles()) {
+        return colours;
+    }
+    const auto process = session->TransferReader()->TransientProcess();
+    for (const bool own : {false, true}) {
+        for (int i = 1; i <= styles.NbStyles(); ++i) {
+            const Handle(StepVisual_StyledItem) style = styles.Style(i);
+            const TopoDS_Shape styled = TransferBRep::ShapeResult(process, style->Item());
+            Handle(StepVisual_Colour) surface, border, curve, rendered;
+            double clear = 0.0;
+            bool component = false;
+            Quantity_Color colour;
+            if (styled.IsNull() || (styled.ShapeType() == TopAbs_FACE) != own ||
+                !styles.GetColors(style, surface, border, curve, rendered, clear, component) ||
+                surface.IsNull() || !STEPConstruct_Styles::DecodeColor(surface, colour)) {
+                continue;
+            }
+            TCollection_AsciiString hex = Quantity_Color::ColorToHex(colour);
+            hex.LowerCase();
+            for (TopExp_Explorer at(styled, TopAbs_FACE); at.More(); at.Next()) {
+                colours[at.Current().TShape().get()] = hex.ToCString();
+            }
+        }
+    }
+    return colours;
+}
+
 Read read_step(const std::filesystem::path& file) {
     STEPControl_Reader reader;
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
@@ -108,6 +145,7 @@ Read read_step(const std::filesystem::path& file) {
         for (Solid& solid : read.solids) {
             solid.name = name_of(process, solid.shape);
         }
+        read.colours = colours_of(reader.WS());
     }
     return read;
 }
@@ -216,7 +254,7 @@ OcctPart read_occt(const std::filesystem::path& file, const std::string& solid) 
                          "holds no face; export the part as a solid, not as a sketch or an "
                          "assembly of links");
     }
-    OcctPart part{choose(read, file, solid), read.unit_mm, 0};
+    OcctPart part{choose(read, file, solid), read.unit_mm, 0, read.colours};
     const int open = open_edges(part.shape);
     if (open > 0) {
         BRepBuilderAPI_Sewing sewing(kSewing_mm);

@@ -2,17 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <TopoDS_Shape.hxx>
+#include <TopoDS_TShape.hxx>
 
 namespace meshwind {
+
+/// "#rrggbb" of faces that have one, wherever they stand.
+using FaceColours = std::map<const TopoDS_TShape*, std::string>;
 
 struct OcctPart {
     TopoDS_Shape shape;  ///< in mm
     double unit_mm = 1.0;
     int sewn_edges = 0;
+    FaceColours colours{};  ///< of STEP files
 };
 
 /// Reads a STEP, IGES or BREP file. Faces that hang together with no other are sewn.
