@@ -105,6 +105,9 @@ FaceColours colours_of(const Handle(XSControl_WorkSession) & session) {
     for (const bool own : {false, true}) {
         for (int i = 1; i <= styles.NbStyles(); ++i) {
             const Handle(StepVisual_StyledItem) style = styles.Style(i);
+            if (style.IsNull() || style->Item().IsNull()) {
+                continue;
+            }
             const TopoDS_Shape styled = TransferBRep::ShapeResult(process, style->Item());
             Handle(StepVisual_Colour) surface, border, curve, rendered;
             double clear = 0.0;
