@@ -184,7 +184,7 @@ TEST(ExactCorners, TrianglesThatAreNotThePartsAreNotKnown) {
 
 TEST(CadMesh, BytesGiveTheSameMesh) {
     CadMesh mesh = capsule(0.0);
-    mesh.faces = {{"cylinder", 30.0, 1.5, 0, -1, {1, 2, 3}, {0, 0, 1}}, {"other"}};
+    mesh.faces = {{"cylinder", 30.0, 1.5, 0, "#ff0033", -1, {1, 2, 3}, {0, 0, 1}}, {"other"}};
     mesh.unit_mm = 25.4;
     mesh.sewn_edges = 3;
     const std::string bytes = bytes_of(mesh);
