@@ -47,7 +47,7 @@ std::string read_face_word(const JsonValue& value) {
 }
 
 SchemaJson face_word_schema() {
-    return {{"anyOf",
+    return {{"oneOf",
              SchemaJson::array({count_schema(1, kMostId),
                                 {{"type", "string"},
                                  {"pattern", "^(" + all_kinds("|") + "|#[0-9A-Fa-f]{6})$"}}})}};
