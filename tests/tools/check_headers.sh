@@ -6,7 +6,8 @@ set -euo pipefail
 cd "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 
 folders=(core mesh geodesic winding machines postproc study pipeline report cli)
-flags=(-std=c++20 -Wall -Wextra -Wshadow -Wconversion -Werror -I. -isystem /usr/include/eigen3)
+flags=(-std=c++20 -Wall -Wextra -Wshadow -Wconversion -Werror -I. -isystem /usr/include/eigen3
+    -isystem /usr/include/opencascade)
 mapfile -t headers < <(find "${folders[@]}" -name '*.h' | LC_ALL=C sort)
 broken=0
 printf '#include "%s"\n' "${headers[@]}" | c++ "${flags[@]}" -fsyntax-only -x c++ - || broken=1
