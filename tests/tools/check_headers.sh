@@ -10,7 +10,9 @@ flags=(-std=c++20 -Wall -Wextra -Wshadow -Wconversion -Werror -I. -isystem /usr/
     -isystem /usr/include/opencascade)
 mapfile -t headers < <(find "${folders[@]}" -name '*.h' | LC_ALL=C sort)
 broken=0
-printf '#include "%s"\n' "${headers[@]}" | c++ "${flags[@]}" -fsyntax-only -x c++ - || broken=1
+# The reader of CAD files is a program of its own: Open CASCADE has names that OpenMesh takes for others.
+mapfile -t ours < <(printf '%s\n' "${headers[@]}" | grep -v '^mesh/brep/occt/')
+printf '#include "%s"\n' "${ours[@]}" | c++ "${flags[@]}" -fsyntax-only -x c++ - || broken=1
 if [[ ${1:-} == together ]]; then
     echo "${#headers[@]} headers together"
     exit "$broken"
