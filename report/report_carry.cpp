@@ -16,10 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-json vector_json(const Eigen::Vector3d& v) {
-    return {report_number(v.x()), report_number(v.y()), report_number(v.z())};
-}
-
 const char* name_of(Singularity kind) {
     switch (kind) {
         case Singularity::Shoulder:
@@ -131,9 +127,9 @@ json axis_json(const CarryOutcome& outcome) {
                  {"length_mm", report_number(outcome.length_mm)}};
     if (outcome.axis.frame_in_file) {
         const Eigen::Isometry3d& frame = *outcome.axis.frame_in_file;
-        axis["frame_in_file"] = {{"origin_mm", vector_json(frame.translation())},
-                                 {"x", vector_json(frame.linear().col(0))},
-                                 {"z", vector_json(frame.linear().col(2))}};
+        axis["frame_in_file"] = {{"origin_mm", report_vector(frame.translation())},
+                                 {"x", report_vector(frame.linear().col(0))},
+                                 {"z", report_vector(frame.linear().col(2))}};
         axis["residual_mm"] = report_number(outcome.axis.residual_mm);
     }
     return axis;
@@ -183,9 +179,9 @@ std::string carry_json(const CarryOutcome& outcome) {
         {"axis", axis_json(outcome)},
         {"machine", outcome.machine.name},
         {"head",
-         {{"centre_mm", vector_json(outcome.head.centre_mm)},
-          {"direction", vector_json(outcome.head.direction)},
-          {"reference", vector_json(outcome.head.reference)},
+         {{"centre_mm", report_vector(outcome.head.centre_mm)},
+          {"direction", report_vector(outcome.head.direction)},
+          {"reference", report_vector(outcome.head.reference)},
           {"ring_distance_mm", outcome.head.ring_distance_mm},
           {"ring_radius_mm", outcome.head.ring_radius_mm}}},
         {"tool", outcome.request.tool},

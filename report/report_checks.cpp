@@ -16,6 +16,10 @@ double report_number(double value) {
     return result == 0.0 ? 0.0 : result;
 }
 
+json report_vector(const Eigen::Vector3d& vector) {
+    return {report_number(vector.x()), report_number(vector.y()), report_number(vector.z())};
+}
+
 namespace {
 
 json place_report(const CheckPlace& place) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include "postproc/motion/block.h"
@@ -33,5 +34,8 @@ void print_checks(std::ostream& out, const std::vector<Check>& checks);
 
 /// Numbers of a report: finer than any tolerance, free of rounding noise in the last digits.
 [[nodiscard]] double report_number(double value);
+
+/// Three of them.
+[[nodiscard]] nlohmann::json report_vector(const Eigen::Vector3d& vector);
 
 }  // namespace meshwind

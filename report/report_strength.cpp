@@ -25,10 +25,6 @@ namespace {
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const Vector3d& v) {
-    return {report_number(v.x()), report_number(v.y()), report_number(v.z())};
-}
-
 double radius_mm(const ShellRim& rim) {
     return std::sqrt(rim.area_mm2.norm() / kPi);
 }
@@ -45,7 +41,7 @@ Json json_of(const ShellWall& wall) {
     Json rims = Json::array();
     for (const ShellRim& rim : wall.mesh.rim) {
         rims.push_back({{"rim", rims.size() + 1},
-                        {"centre_mm", vector_json(rim.centre_mm)},
+                        {"centre_mm", report_vector(rim.centre_mm)},
                         {"radius_mm", report_number(radius_mm(rim))}});
     }
     const ShellLoads& loads = wall.request.loads;
@@ -54,7 +50,7 @@ Json json_of(const ShellWall& wall) {
             {"loads",
              {{"pressure_MPa", report_number(loads.pressure_mpa)},
               {"axial_N", report_number(loads.axial_n)},
-              {"moment_Nmm", vector_json(loads.moment_nmm)}}},
+              {"moment_Nmm", report_vector(loads.moment_nmm)}}},
             {"shells", wall.mesh.triangle.size()},
             {"bare", wall.mesh.bare()},
             {"plies",
@@ -74,7 +70,7 @@ Json json_of(const ShellWall& wall, const PlyState& state) {
             {"layer", ply.layer + 1},
             {"shell", state.triangle + 1},
             {"ply", state.ply + 1},
-            {"position_mm", vector_json(middle_of(wall.mesh, state.triangle))},
+            {"position_mm", report_vector(middle_of(wall.mesh, state.triangle))},
             {"angle_deg", report_number(deg_from_rad(ply.angle_rad))},
             {"stress_MPa",
              {{"along", report_number(state.stress.along)},

@@ -13,6 +13,8 @@ if (!output || process.argv.length > 4 || (which && which !== 'part' && which !=
     process.exit(2);
 }
 const source = join(here, 'src', which ?? '');
+// Frame and styles: those of a part serve for all that is no run.
+const frame = join(here, 'src', which ? 'part' : '');
 
 const marker = '<!--MESHWIND-DATA-->';
 const bundle = await build({
@@ -25,7 +27,7 @@ const bundle = await build({
     charset: 'ascii',
     legalComments: 'none',
 });
-const sheets = [join(here, 'src', 'style.css'), ...(which ? [join(here, 'src', 'part', 'style.css')] : [])];
+const sheets = [join(here, 'src', 'style.css'), ...(which ? [join(frame, 'style.css')] : [])];
 const style = await transform(sheets.map((sheet) => readFileSync(sheet, 'utf8')).join('\n'), {
     loader: 'css',
     minify: true,
@@ -38,7 +40,7 @@ const script = bundle.outputFiles[0].text
     .replace(/<\/(script)/gi, '<\\/$1')
     .replace(/<!--/g, '\\x3C!--')
     .trim();
-const page = readFileSync(join(source, 'index.html'), 'utf8')
+const page = readFileSync(join(frame, 'index.html'), 'utf8')
     .replace('/*STYLE*/', () => style.code.trim())
     .replace('/*SCRIPT*/', () => script)
     .replace('<!--LICENCE-->', () => `<!--\nthree.js: ${licence}\n-->`);

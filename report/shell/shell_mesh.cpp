@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
 #include "core/error.h"
 #include "core/text/strict_json.h"
 #include "core/units.h"
+#include "mesh/edge_table.h"
 
 namespace meshwind {
 namespace {
@@ -59,18 +59,24 @@ ShellTriangle read_triangle(const JsonValue& value, std::size_t points) {
     return triangle;
 }
 
-// Edges that one triangle has, as lids over the holes run along them.
+// Edges that one triangle has, as lids over the holes run along them: from end to beginning.
 std::map<std::int32_t, std::int32_t> open_edges(const std::vector<ShellTriangle>& triangles) {
-    std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
-    for (const ShellTriangle& t : triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            ++uses[{t.point[k], t.point[(k + 1) % 3]}];
-        }
+    std::vector<std::array<std::int32_t, 3>> faces;
+    faces.reserve(triangles.size());
+    for (const ShellTriangle& triangle : triangles) {
+        faces.push_back(triangle.point);
     }
+    const std::vector<EdgeUse> uses = edge_uses(faces);
+    const auto same = [](const EdgeUse& a, const EdgeUse& b) {
+        return a.low == b.low && a.high == b.high;
+    };
     std::map<std::int32_t, std::int32_t> next;
-    for (const auto& [edge, count] : uses) {
-        if (!uses.contains({edge.second, edge.first})) {
-            next[edge.second] = edge.first;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        const bool shared = (i > 0 && same(uses[i - 1], uses[i])) ||
+                            (i + 1 < uses.size() && same(uses[i], uses[i + 1]));
+        if (!shared) {
+            const bool ascending = uses[i].ascending != 0;
+            next[ascending ? uses[i].high : uses[i].low] = ascending ? uses[i].low : uses[i].high;
         }
     }
     return next;

@@ -17,8 +17,10 @@ PLY_MM = 0.25
 # What laminate theory has on the cylinder of chen_2023_gas_cylinders, and what that paper prints (Table 3, "Max. Index
 # Value"): radius 40, a steel liner of 1 mm, two plies of 0.5 mm, 12 MPa.
 PAPER = {"radius_mm": 40.0, "ply_mm": 0.5, "pressure_mpa": 12.0, "index": {10: 0.8548, 15: 0.8264, 20: 0.7934}}
-# 1.3 % of laminate theory, and what that leaves out: a wall of a twentieth of the radius, whose outer half strains 4 % less.
-PAPER_SHARE = 0.08
+LAMINATE_OF_PAPER_SHARE = 0.015  # what laminate theory is off the print
+# What laminate theory leaves out: the plies lie 1 to 2 mm outside of the pressed radius of 40, so strain 2.5 to 5 % less;
+# some of what is across the fibre is paid by the radial stress.
+THICK_WALL_SHARE = 0.06
 MATERIAL = {
     "name": "test ply",
     "ply": {"modulus_1_MPa": 132000, "modulus_2_MPa": 10300, "poisson_12": 0.25, "poisson_23": 0.38, "shear_12_MPa": 6500,
@@ -61,7 +63,7 @@ def tube(angles_deg, edge_mm, length_mm, bare=(), radius_mm=RADIUS_MM, ply_mm=PL
             "triangles": triangles}
 
 
-def laminate_stress(angles_deg, pressure_mpa):
+def laminate_stress(angles_deg, pressure_mpa, radius_mm=RADIUS_MM, ply_mm=PLY_MM, liner=None):
     """Along, across and shear of each ply of a closed tube by classical laminate theory."""
     ply = MATERIAL["ply"]
     nu_21 = ply["poisson_12"] * ply["modulus_2_MPa"] / ply["modulus_1_MPa"]
@@ -74,8 +76,12 @@ def laminate_stress(angles_deg, pressure_mpa):
         return numpy.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]])
 
     turns = [strain_turn(angle) for angle in angles_deg]
-    stiffness = sum(PLY_MM * turn.T @ q @ turn for turn in turns)
-    strain = numpy.linalg.solve(stiffness, [0.5 * pressure_mpa * RADIUS_MM, pressure_mpa * RADIUS_MM, 0])
+    stiffness = sum(ply_mm * turn.T @ q @ turn for turn in turns)
+    if liner:
+        nu = liner["poisson"]
+        stiffness = stiffness + liner["thickness_mm"] * liner["modulus_MPa"] / (1 - nu * nu) * numpy.array(
+            [[1, nu, 0], [nu, 1, 0], [0, 0, 0.5 * (1 - nu)]])
+    strain = numpy.linalg.solve(stiffness, [0.5 * pressure_mpa * radius_mm, pressure_mpa * radius_mm, 0])
     return [q @ turn @ strain for turn in turns]
 
 
@@ -270,8 +276,11 @@ class Strength(program.ProgramTest):
                 layup = self.write_tube((angle, -angle), 5.0, 160.0, radius_mm=PAPER["radius_mm"], ply_mm=PAPER["ply_mm"])
                 self.done("strength", "layup.json", "--material", "lined.json", "--merge", "0", "-o", "out",
                           "--pressure", PAPER["pressure_mpa"])
-                for stress in self.stresses_amid(layup, 2, PAPER["radius_mm"]):
-                    self.assertAlmostEqual(1.0 / reserve(stress) / index, 1.0, delta=PAPER_SHARE)
+                thin = laminate_stress((angle, -angle), PAPER["pressure_mpa"], PAPER["radius_mm"], PAPER["ply_mm"],
+                                       lined["liner"])
+                for stress, laminate in zip(self.stresses_amid(layup, 2, PAPER["radius_mm"]), thin, strict=True):
+                    self.assertAlmostEqual(1.0 / reserve(laminate) / index, 1.0, delta=LAMINATE_OF_PAPER_SHARE)
+                    self.assertAlmostEqual(reserve(laminate) / reserve(stress), 1.0, delta=THICK_WALL_SHARE)
 
     def test_what_cannot_be(self):
         layup = self.write_tube((30,), 30.0, 60.0)

@@ -1,4 +1,4 @@
-/** What both pages do with their elements. */
+/** What the pages do with their elements. */
 import { Vector2 } from 'three';
 
 export function element<T extends HTMLElement = HTMLElement>(id: string): T {
@@ -17,6 +17,17 @@ export function option(value: string, label: string): HTMLOptionElement {
     result.value = value;
     result.textContent = label;
     return result;
+}
+
+/** A box to tick, by a key as well. */
+export function box(id: string, key: string, onChange: (on: boolean) => void): void {
+    const input = element<HTMLInputElement>(id);
+    input.addEventListener('change', () => onChange(input.checked));
+    window.addEventListener('keydown', (event) => {
+        if (event.ctrlKey || event.metaKey || event.altKey || event.key.toLowerCase() !== key) return;
+        input.checked = !input.checked;
+        onChange(input.checked);
+    });
 }
 
 /** Whether there is WebGL 2; else the page goes on without its picture. */

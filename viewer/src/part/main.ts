@@ -1,5 +1,5 @@
 /** Opens the page of a part: what `meshwind inspect` understood of a file. */
-import { canDraw, element, followPointer, notice, option } from '../dom';
+import { box, canDraw, element, followPointer, notice, option } from '../dom';
 import { escapeHtml } from '../format';
 import { Tabs } from '../tabs';
 import { ThemeSwitch } from '../theme';
@@ -32,16 +32,6 @@ function fillHead(part: Part): void {
     verdict.className = `verdict ${refused ? 'bad' : 'ok'}`;
     const count = remarks.length === 1 ? '1 remark' : `${remarks.length} remarks`;
     verdict.textContent = refused ? 'The main job refuses it' : `Can be planned, ${count}`;
-}
-
-function box(id: string, key: string, onChange: (on: boolean) => void): void {
-    const input = element<HTMLInputElement>(id);
-    input.addEventListener('change', () => onChange(input.checked));
-    window.addEventListener('keydown', (event) => {
-        if (event.ctrlKey || event.metaKey || event.altKey || event.key.toLowerCase() !== key) return;
-        input.checked = !input.checked;
-        onChange(input.checked);
-    });
 }
 
 /** Rows of the lists lead to places of the part, and its labels to the rows. */

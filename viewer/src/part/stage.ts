@@ -11,10 +11,18 @@ import type { Label } from './labels';
 import { Marks } from './marks';
 
 /** The spindle lies, and what stands off it farthest stands up. */
-const kUp = new Vector3(1, 0, 0);
-const kFirstView = new Vector3(0.5, 0.8, -0.38);
+export const kUp = new Vector3(1, 0, 0);
+export const kFirstView = new Vector3(0.5, 0.8, -0.38);
+export const kCloseShare = 1.1; // of the part's diagonal: from where a place is looked at
 const kFitPoints = 2000;
-const kCloseShare = 1.1; // of the part's diagonal: from where a place is looked at
+
+/** As many points as it takes to fit a view to all of them. */
+export function someOf(points: Float32Array): Vector3[] {
+    const step = 3 * Math.max(1, Math.floor(points.length / 3 / kFitPoints));
+    const some: Vector3[] = [];
+    for (let i = 0; i + 2 < points.length; i += step) some.push(new Vector3().fromArray(points, i));
+    return some;
+}
 
 export interface Hit {
     region: number; // -1: taken off
@@ -90,11 +98,7 @@ export class PartStage {
 
     fit(): void {
         this.view.resize();
-        const { points } = this.part;
-        const step = 3 * Math.max(1, Math.floor(points.length / 3 / kFitPoints));
-        const cloud = [this.marks.spindleTip, ...this.marks.rimTips];
-        for (let i = 0; i + 2 < points.length; i += step) cloud.push(new Vector3().fromArray(points, i));
-        this.view.fit(cloud, kFirstView);
+        this.view.fit([this.marks.spindleTip, ...this.marks.rimTips, ...someOf(this.part.points)], kFirstView);
     }
 
     flyTo(label: Label): void {

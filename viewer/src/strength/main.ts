@@ -1,5 +1,5 @@
 /** Opens the page of a wall's strength: what `meshwind strength` found. */
-import { canDraw, element, followPointer, notice, option } from '../dom';
+import { box, canDraw, element, followPointer, notice, option } from '../dom';
 import { escapeHtml, number } from '../format';
 import { Tabs } from '../tabs';
 import { ThemeSwitch } from '../theme';
@@ -31,16 +31,6 @@ function fillHead(wall: Wall): void {
     verdict.className = `verdict ${reserve !== null && reserve < 1 ? 'bad' : 'ok'}`;
     verdict.textContent =
         reserve === null ? 'No ply' : reserve < 1 ? `A ply fails at ${number(reserve)} of the load` : 'No ply fails';
-}
-
-function box(id: string, key: string, onChange: (on: boolean) => void): void {
-    const input = element<HTMLInputElement>(id);
-    input.addEventListener('change', () => onChange(input.checked));
-    window.addEventListener('keydown', (event) => {
-        if (event.ctrlKey || event.metaKey || event.altKey || event.key.toLowerCase() !== key) return;
-        input.checked = !input.checked;
-        onChange(input.checked);
-    });
 }
 
 /** Rows lead to places of the wall, and its labels to the rows. */
@@ -90,7 +80,11 @@ async function open(): Promise<void> {
     box('cut', 'c', (on) => stage?.cutOpen(on));
     box('triangles', 't', (on) => stage?.showTriangles(on));
     box('marks', 'm', (on) => stage?.showMarks(on));
+    element('marks').title = 'Weakest places (M)';
     element('fit').addEventListener('click', () => stage?.fit());
+    window.addEventListener('keydown', (event) => {
+        if (event.key === 'f' && !event.ctrlKey && !event.metaKey) stage?.fit();
+    });
     const hover = element('hover');
     followPointer(element('scene'), (at) => {
         const face = at && stage ? stage.pick(at) : null;

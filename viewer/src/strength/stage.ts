@@ -4,18 +4,13 @@ import type { BufferGeometry } from 'three';
 import { Labels } from '../part/labels';
 import type { Label } from '../part/labels';
 import { kLineFragment, kLineVertex, kPartFragment, kPartVertex } from '../part/shaders';
+import { kCloseShare, kFirstView, kUp, someOf } from '../part/stage';
 import { View } from '../scene';
 import { nearestNormal, shapeOf } from '../shape';
 import { cssVariable } from '../theme';
 import { colourOfValue } from './colourings';
 import type { Colouring } from './colourings';
 import type { Wall } from './data';
-
-/** As on the page of a part. */
-const kUp = new Vector3(1, 0, 0);
-const kFirstView = new Vector3(0.5, 0.8, -0.38);
-const kFitPoints = 2000;
-const kCloseShare = 1.1; // of the wall's diagonal: from where a place is looked at
 
 export class WallStage {
     readonly view: View;
@@ -104,11 +99,7 @@ export class WallStage {
 
     fit(): void {
         this.view.resize();
-        const { points } = this.wall;
-        const step = 3 * Math.max(1, Math.floor(points.length / 3 / kFitPoints));
-        const cloud: Vector3[] = [];
-        for (let i = 0; i + 2 < points.length; i += step) cloud.push(new Vector3().fromArray(points, i));
-        this.view.fit(cloud, kFirstView);
+        this.view.fit(someOf(this.wall.points), kFirstView);
     }
 
     flyTo(label: Label): void {
