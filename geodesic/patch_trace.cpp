@@ -26,6 +26,9 @@ constexpr double kMinStationShare = 1e-5;
 // its length, and long facets get stations that show their curvature.
 constexpr double kMaxStepTurn_rad = 0.2;
 
+// The same on a known cylinder, where the steps are all that errs: 1e-4 mm per metre.
+constexpr double kMaxKnownTurn_rad = 0.05;
+
 // Barycentric coordinate below which a step has left the triangle, and tries to end on the edge.
 constexpr double kOutside = 1e-10;
 constexpr int kMaxLandings = 16;
@@ -156,8 +159,9 @@ private:
         state_.rate /= place.along(state_.rate).norm();
         motion_ = motion_of(place, state_.rate);
         // To a crease a patch is drawn over about its length, flat or not.
+        const double turn_rad = patch_.is_cylinder() ? kMaxKnownTurn_rad : kMaxStepTurn_rad;
         max_step_mm_ = std::min({options_.max_step_mm, patch_.shortest_crease_mm(),
-                                 kMaxStepTurn_rad / std::max(patch_.curvature_per_mm(), 1e-12)});
+                                 turn_rad / std::max(patch_.curvature_per_mm(), 1e-12)});
     }
 
     // Where the parabola that the path starts with leaves the triangle.

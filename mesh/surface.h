@@ -22,6 +22,13 @@ struct FitReport {
     int exact = 0;      ///< not fitted: a CAD file's faces
 };
 
+/// A cylinder that faces are known to lie on, as those of CAD files do.
+struct KnownCylinder {
+    Eigen::Vector3d point_mm;   ///< of its axis
+    Eigen::Vector3d direction;  ///< unit
+    double radius_mm = 0.0;
+};
+
 /// What a walk reads of a face, packed: all of it in one cache line.
 struct alignas(32) WalkFace {
     /// 4 * face across edge e + that face's number of the edge; negative at a rim
@@ -52,10 +59,12 @@ struct Surface {
     /// Per corner index: dn, symmetric, with `normal` in its kernel; t . S t = kn in 1/mm, > 0
     /// convex.
     std::vector<Eigen::Matrix3d> shape_operator_per_mm;
-    std::vector<HeightJet> jet;           ///< per corner index: the fitted surface about the corner
-    std::vector<std::uint8_t> exact;      ///< per corner index: 1 where it is not fitted but known
-    std::vector<WalkFace> walk_face;      ///< per face: the above once more
-    std::vector<WalkCorner> walk_corner;  ///< per corner index: the above once more
+    std::vector<HeightJet> jet;       ///< per corner index: the fitted surface about the corner
+    std::vector<std::uint8_t> exact;  ///< per corner index: 1 where it is not fitted but known
+    std::vector<KnownCylinder> cylinder;
+    std::vector<std::int32_t> cylinder_of;  ///< per face: index in `cylinder`, -1: none; or empty
+    std::vector<WalkFace> walk_face;        ///< per face: the above once more
+    std::vector<WalkCorner> walk_corner;    ///< per corner index: the above once more
     double mean_edge_mm = 0.0;
     FitReport fit;
 };

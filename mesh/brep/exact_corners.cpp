@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include "mesh/edge_table.h"
 #include "mesh/smooth/freeze.h"
@@ -144,6 +147,42 @@ std::vector<std::int32_t> regions_of_faces(const CadMesh& part, const TriangleSo
     return most;
 }
 
+namespace {
+
+// How far a vertex may be off a cylinder that its face is taken for: what such faces are apart at
+// their borders. Files have 1e-7 mm.
+constexpr double kOnCylinder_mm = 1e-6;
+
+void set_cylinders(const CadMesh& part, const ExactCorners& known, const Eigen::Isometry3d& motion,
+                   Surface& surface) {
+    std::vector<std::int32_t> number(part.faces.size(), -1);
+    for (std::size_t i = 0; i < part.faces.size(); ++i) {
+        const CadFace& face = part.faces[i];
+        if (face.kind == "cylinder") {
+            number[i] = static_cast<std::int32_t>(surface.cylinder.size());
+            surface.cylinder.push_back({motion * face.axis_point_mm,
+                                        motion.linear() * face.axis_direction, face.radius_mm});
+        }
+    }
+    surface.cylinder_of.assign(surface.face.size(), -1);
+    for (std::size_t f = 0; f < surface.face.size(); ++f) {
+        const std::int32_t found = known.face[f] < 0 ? -1 : number[at(known.face[f])];
+        if (found < 0) {
+            continue;
+        }
+        const KnownCylinder& cylinder = surface.cylinder[at(found)];
+        const bool on =
+            std::all_of(surface.face[f].begin(), surface.face[f].end(), [&](std::int32_t vertex) {
+                const Eigen::Vector3d arm =
+                    (surface.position_mm[at(vertex)] - cylinder.point_mm).cross(cylinder.direction);
+                return std::abs(arm.norm() - cylinder.radius_mm) < kOnCylinder_mm;
+            });
+        surface.cylinder_of[f] = on ? found : -1;
+    }
+}
+
+}  // namespace
+
 void set_exact(const CadMesh& part, const ExactCorners& known, const Eigen::Isometry3d& motion,
                Surface& surface) {
     std::vector<char> done(surface.normal.size(), 0);
@@ -157,6 +196,7 @@ void set_exact(const CadMesh& part, const ExactCorners& known, const Eigen::Isom
             }
         }
     }
+    set_cylinders(part, known, motion, surface);
 }
 
 }  // namespace meshwind

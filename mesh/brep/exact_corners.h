@@ -34,7 +34,8 @@ void mark_bend_borders(const CadMesh& part, const ExactCorners& known, LabelledM
                                                          const TriangleSoup& whole,
                                                          std::span<const std::int32_t> region);
 
-/// Puts the exact faces in place of fits. \param motion from the part's frame to the surface's
+/// Puts the exact faces in place of fits, and says which triangles lie on cylinders. \param motion
+/// from the part's frame to the surface's
 void set_exact(const CadMesh& part, const ExactCorners& known, const Eigen::Isometry3d& motion,
                Surface& surface);
 

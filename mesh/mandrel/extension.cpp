@@ -150,10 +150,16 @@ public:
 
 private:
     void keep_exact(Surface& surface) const {
+        surface.cylinder = wall_.cylinder;
+        surface.cylinder_of = wall_.cylinder_of;
+        if (!wall_.cylinder_of.empty()) {
+            surface.cylinder_of.resize(surface.face.size(), -1);
+        }
         for (std::size_t f = 0; f < wall_.face.size(); ++f) {
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::size_t known = at(wall_.corner[f][c]);
                 if (wall_.exact[known] != 0) {
+                    surface.exact[at(surface.corner[f][c])] = 1;
                     set_jet(surface, at(surface.corner[f][c]),
                             {wall_.jet[known], wall_.normal[known],
                              wall_.shape_operator_per_mm[known]});

@@ -163,9 +163,44 @@ Patch::Patch(const Surface& surface, std::int32_t face) {
             add_crease(surface, face, e);
         }
     }
+    if (creases_ == 0 && !surface.cylinder_of.empty()) {
+        const std::int32_t known = surface.cylinder_of[meshwind::at(face)];
+        cylinder_ = known < 0 ? nullptr : &surface.cylinder[meshwind::at(known)];
+    }
+}
+
+// X = C + t W + R n of the facet's point P, with t = (P - C) . W and n the unit vector from the
+// axis to P.
+PatchPlace Patch::on_cylinder(const Vector2d& uv) const {
+    const Vector3d& axis = cylinder_->direction;
+    const double radius = cylinder_->radius_mm;
+    const auto off_axis = [&](const Vector3d& v) { return Vector3d(v - v.dot(axis) * axis); };
+    const Vector3d by_u = position_mm_[1] - position_mm_[0];
+    const Vector3d by_v = position_mm_[2] - position_mm_[0];
+    const Vector3d off = position_mm_[0] + uv.x() * by_u + uv.y() * by_v - cylinder_->point_mm;
+    const Vector3d arm = off_axis(off);
+    const double reach = arm.norm();
+    const Vector3d n = arm / reach;
+    const Vector3d a = off_axis(by_u);
+    const Vector3d b = off_axis(by_v);
+    const Vector3d n_u = (a - n.dot(a) * n) / reach;
+    const Vector3d n_v = (b - n.dot(b) * n) / reach;
+    const auto second = [&](const Vector3d& p, const Vector3d& n_p, const Vector3d& q,
+                            const Vector3d& n_q) {
+        return Vector3d(-radius / reach * (n.dot(p) * n_q + n_q.dot(p) * n + n.dot(q) * n_p));
+    };
+    return {cylinder_->point_mm + off.dot(axis) * axis + radius * n,
+            by_u.dot(axis) * axis + radius * n_u,
+            by_v.dot(axis) * axis + radius * n_v,
+            second(a, n_u, a, n_u),
+            second(a, n_u, b, n_v),
+            second(b, n_v, b, n_v)};
 }
 
 PatchPlace Patch::at(const Vector2d& uv) const {
+    if (cylinder_ != nullptr) {
+        return on_cylinder(uv);
+    }
     const double u = uv.x();
     const double v = uv.y();
     const std::array<double, 3> bary = {1.0 - u - v, u, v};

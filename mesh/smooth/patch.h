@@ -40,8 +40,10 @@ struct PatchPlace {
 /// different polynomials, both follow the cubic between the crease's tangents at its two ends, of
 /// sixth order on a circle; where that would close a corner between two creases, the chord. Where
 /// both sides are exact and have the same normals, as at borders of CAD faces, they are left as
-/// they are. Accuracy against the smooth surface, for fits of degree four: position fifth order,
-/// normal fourth, curvature third in the edge length (tests/mesh/smooth/patch_test.cpp).
+/// they are. A face that lies on a known cylinder, and is bent to no feature edge, is that
+/// cylinder: the facet's point is moved square to the axis. Accuracy against the smooth surface,
+/// for fits of degree four: position fifth order, normal fourth, curvature third in the edge length
+/// (tests/mesh/smooth/patch_test.cpp).
 class Patch {
 public:
     /// \pre face is a face of `surface`, which outlives the patch
@@ -53,6 +55,9 @@ public:
     /// Whether a normal is one of a surface over this triangle: within 60 deg of the facet's. Fits
     /// on far too coarse a mesh may turn a patch over. False for what is not a number.
     [[nodiscard]] bool holds(const Eigen::Vector3d& normal) const;
+
+    /// Whether it is a known cylinder, without any error of its own.
+    [[nodiscard]] bool is_cylinder() const { return cylinder_ != nullptr; }
 
     /// Largest curvature of the fits at the corners, 1/mm.
     [[nodiscard]] double curvature_per_mm() const;
@@ -73,6 +78,7 @@ private:
     };
     struct EdgeCurve;
 
+    [[nodiscard]] PatchPlace on_cylinder(const Eigen::Vector2d& uv) const;
     void add_crease(const Surface& surface, std::int32_t face, std::size_t edge);
     [[nodiscard]] EdgeCurve gap_at(const Crease& crease, double share) const;
     void bend_to_crease(const Crease& crease, const Eigen::Vector2d& uv, PatchPlace& place) const;
@@ -81,6 +87,7 @@ private:
     std::array<Corner, 3> corner_;
     std::array<Crease, 3> crease_;
     std::size_t creases_ = 0;
+    const KnownCylinder* cylinder_ = nullptr;  ///< none: the corners' polynomials
 };
 
 /// The point of the patch over a facet's point.
