@@ -26,7 +26,8 @@ constexpr double kMinStationShare = 1e-5;
 // its length, and long facets get stations that show their curvature.
 constexpr double kMaxStepTurn_rad = 0.2;
 
-// The same on a known cylinder, where the steps are all that errs: 1e-4 mm per metre.
+// The same where the surface is known, as on CAD faces, and the steps would err most: 1e-4 mm per
+// metre on a cylinder.
 constexpr double kMaxKnownTurn_rad = 0.05;
 
 // Barycentric coordinate below which a step has left the triangle, and tries to end on the edge.
@@ -159,7 +160,7 @@ private:
         state_.rate /= place.along(state_.rate).norm();
         motion_ = motion_of(place, state_.rate);
         // To a crease a patch is drawn over about its length, flat or not.
-        const double turn_rad = patch_.is_cylinder() ? kMaxKnownTurn_rad : kMaxStepTurn_rad;
+        const double turn_rad = patch_.is_exact() ? kMaxKnownTurn_rad : kMaxStepTurn_rad;
         max_step_mm_ = std::min({options_.max_step_mm, patch_.shortest_crease_mm(),
                                  turn_rad / std::max(patch_.curvature_per_mm(), 1e-12)});
     }

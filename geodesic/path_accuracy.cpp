@@ -89,8 +89,9 @@ PathPoint end_of(const Surface& surface, const Start& start, const TraceOptions&
     return trace(surface, start.at, start.direction, {}, options).path.back();
 }
 
-// The surface with wider fits where the paths come.
-Surface with_wider_fits(const Surface& surface, const std::vector<TraceResult>& paths) {
+// Corners of the faces where the paths come, in order.
+std::vector<std::int32_t> corners_near(const Surface& surface,
+                                       const std::vector<TraceResult>& paths) {
     std::vector<char> marked(surface.face.size(), 0);
     std::vector<std::int32_t> near;
     const auto mark = [&](std::int32_t face) {
@@ -121,6 +122,10 @@ Surface with_wider_fits(const Surface& surface, const std::vector<TraceResult>& 
     }
     std::sort(corners.begin(), corners.end());
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    return corners;
+}
+
+Surface with_wider_fits(const Surface& surface, const std::vector<std::int32_t>& corners) {
     const std::vector<Jet> jets = fit_corners(surface, corners, kWideRings);
     Surface wide = surface;
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -128,6 +133,16 @@ Surface with_wider_fits(const Surface& surface, const std::vector<TraceResult>& 
         wide.normal[static_cast<std::size_t>(corners[i])] = jets[i].normal;
     }
     return wide;
+}
+
+// The surface without the terms from `first` on of these corners' polynomials.
+Surface without_terms(Surface surface, const std::vector<std::int32_t>& corners,
+                      std::size_t first) {
+    for (const std::int32_t corner : corners) {
+        auto& terms = surface.jet[static_cast<std::size_t>(corner)].coefficient;
+        std::fill(terms.begin() + static_cast<std::ptrdiff_t>(first), terms.end(), 0.0);
+    }
+    return surface;
 }
 
 // Squares of drifts and lengths of paths.
@@ -189,13 +204,25 @@ PathAccuracy estimate_path_accuracy(const Surface& surface, int count) {
         return std::accumulate(sums.begin(), sums.end(), Sum{});
     };
     const Sum walk = drifts(surface, {.max_faces = kMostSteps, .method = TraceMethod::Walk});
-    const Sum wide = drifts(with_wider_fits(surface, best), patches);
+    std::vector<std::int32_t> fitted = corners_near(surface, best);
+    const auto known = std::stable_partition(
+        fitted.begin(), fitted.end(),
+        [&](std::int32_t corner) { return surface.exact[static_cast<std::size_t>(corner)] == 0; });
+    const std::vector<std::int32_t> exact(known, fitted.end());
+    fitted.erase(known, fitted.end());
+    const Sum wide = drifts(with_wider_fits(surface, fitted), patches);
     TraceOptions short_steps = patches;
     short_steps.max_step_mm = kShortStep * surface.mean_edge_mm;
     const Sum steps = drifts(surface, short_steps);
     accuracy.paths = walk.paths;
     accuracy.walk_mm_per_m = walk.mm_per_m();
     accuracy.patches_mm_per_m = std::hypot(wide.mm_per_m() / kWideExcess, steps.mm_per_m());
+    if (!exact.empty()) {
+        const double cubic = drifts(without_terms(surface, exact, kJetX4), patches).mm_per_m();
+        const double square = drifts(without_terms(surface, exact, kJetX3), patches).mm_per_m();
+        const double quartic = square > 0.0 ? cubic * std::min(1.0, cubic / square) : 0.0;
+        accuracy.patches_mm_per_m = std::hypot(accuracy.patches_mm_per_m, quartic);
+    }
     return accuracy;
 }
 

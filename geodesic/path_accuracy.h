@@ -17,11 +17,12 @@ struct PathAccuracy {
 /// Geodesics from `starts` evenly spread places, as long as the part's bounding box is wide (at
 /// most 500 edges), are traced by both methods. Walk is compared with Patches. Patches is compared
 /// with itself: on fits to three rings of neighbours instead of two, which err about three times as
-/// much more, and with steps so short that they do not err; the two parts add as squares. Nothing
-/// is drawn at random. What no vertex shows is not seen: creases that the mesh has rounded off, or
-/// vertices beside the surface.
-/// Accuracy: within a factor of 3 on tori and cylinders with edges of a fifth to a twentieth of
-/// the tube's radius (tests/geodesic/path_accuracy_test.cpp).
+/// much more; where the surface is known, by polynomials of one and of two degrees less, whose
+/// errors fall as they go on to; and with steps so short that they do not err. The parts add as
+/// squares. Nothing is drawn at random. What no vertex shows is not seen: creases that the mesh has
+/// rounded off, or vertices beside the surface. Accuracy: within a factor of 3 on tori and
+/// cylinders with edges of a fifth to a twentieth of the tube's radius
+/// (tests/geodesic/path_accuracy_test.cpp).
 [[nodiscard]] PathAccuracy estimate_path_accuracy(const Surface& surface, int starts = 32);
 
 }  // namespace meshwind

@@ -11,6 +11,7 @@ namespace meshwind {
 inline constexpr std::size_t kJetTerms = 14;  ///< x, y, x2, xy, y2, x3, x2y, xy2, y3, x4, ... y4
 
 inline constexpr std::size_t kJetX2 = 2;
+inline constexpr std::size_t kJetX3 = 5;
 inline constexpr std::size_t kJetX4 = 9;
 
 /// Height over a plane through a vertex as a polynomial of the place in that plane.

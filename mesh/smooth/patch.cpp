@@ -150,7 +150,9 @@ Patch::Patch(const Surface& surface, std::int32_t face) {
     const Vector3d along_v = position_mm_[2] - position_mm_[0];
     for (std::size_t i = 0; i < 3; ++i) {
         Corner& corner = corner_[i];
-        corner.jet = &surface.jet[meshwind::at(surface.corner[meshwind::at(face)][i])];
+        const std::size_t known = meshwind::at(surface.corner[meshwind::at(face)][i]);
+        corner.jet = &surface.jet[known];
+        exact_ = exact_ && surface.exact[known] != 0;
         const auto to_frame = corner.jet->frame.transpose();
         corner.along_u = to_frame * along_u;
         corner.along_v = to_frame * along_v;

@@ -56,8 +56,8 @@ public:
     /// on far too coarse a mesh may turn a patch over. False for what is not a number.
     [[nodiscard]] bool holds(const Eigen::Vector3d& normal) const;
 
-    /// Whether it is a known cylinder, without any error of its own.
-    [[nodiscard]] bool is_cylinder() const { return cylinder_ != nullptr; }
+    /// Whether the surface is known at its corners, not fitted.
+    [[nodiscard]] bool is_exact() const { return exact_; }
 
     /// Largest curvature of the fits at the corners, 1/mm.
     [[nodiscard]] double curvature_per_mm() const;
@@ -87,6 +87,7 @@ private:
     std::array<Corner, 3> corner_;
     std::array<Crease, 3> crease_;
     std::size_t creases_ = 0;
+    bool exact_ = true;
     const KnownCylinder* cylinder_ = nullptr;  ///< none: the corners' polynomials
 };
 

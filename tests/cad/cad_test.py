@@ -82,6 +82,25 @@ class CadTest(program.ProgramTest):
         self.assertGreater(length_mm, 150.0)
         self.assertLess(off_mm, 0.02)
 
+    def test_stated_accuracy_is_that_on_the_faces(self):
+        """Within a factor of 5 of the rms of a few other paths; 1.7 and 2.8 with these."""
+        dice = random.Random(3)
+        for kind, middle, radius_mm in (("torus", (200, 0, 0), 50), ("elbow", (0, 0, -40), 40)):
+            file = self.cad(kind)
+            stated = self.inspected(file)["accuracy"]
+            off_mm2 = length_mm2 = 0.0
+            for _ in range(8):
+                angle = dice.uniform(0, 2 * math.pi)
+                around = (0, math.sin(angle)) if kind == "torus" else (math.sin(angle), 0)
+                start = [middle[0] + radius_mm * math.cos(angle), middle[1] + radius_mm * around[0], middle[2] + radius_mm * around[1]]
+                direction = [dice.uniform(-1, 1) for _ in range(3)]
+                if kind == "torus":  # into the quarter that the file has
+                    start = [math.sqrt(0.5) * start[0], math.sqrt(0.5) * start[0], start[2]]
+                off_mm, path_mm = self.off_faces_mm(file, start, direction, stated["length_mm"], 0.1)
+                off_mm2, length_mm2 = off_mm2 + off_mm ** 2, length_mm2 + path_mm ** 2
+            ratio = stated["patches_mm_per_m"] / (1000.0 * math.sqrt(off_mm2 / length_mm2))
+            self.assertTrue(1 / 5 < ratio < 5, f"{kind}: {ratio}")
+
     def test_a_study_compares_with_the_exact_faces(self):
         study = json.loads(self.done("study", "mesh-size", "--mandrel", self.cad("pipe"), "--edges", "8", "--paths", "4",
                                      "--length", "100", "--json", "-o", "study").stdout)
