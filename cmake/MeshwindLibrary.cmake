@@ -130,7 +130,9 @@ endfunction()
 
 # meshwind_precompile(TARGET HEADER ...): headers of other projects that nearly every source file reads, compiled once.
 function(meshwind_precompile target)
-    file(TOUCH ${PROJECT_BINARY_DIR}/pch.cpp)
+    if(NOT EXISTS ${PROJECT_BINARY_DIR}/pch.cpp)  # else it would be compiled anew
+        file(TOUCH ${PROJECT_BINARY_DIR}/pch.cpp)
+    endif()
     add_library(${target} OBJECT ${PROJECT_BINARY_DIR}/pch.cpp)
     target_link_libraries(${target} PRIVATE Eigen3::Eigen)
     target_precompile_headers(

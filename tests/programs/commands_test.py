@@ -204,7 +204,7 @@ class Commands(program.ProgramTest):
         self.assertFalse((out / "timing.csv").exists(), "of another run")
 
     def test_study_is_the_same_for_any_number_of_threads(self):
-        part = self.make("tee", "--edge", "5")
+        part = self.make("tee", "--edge", "12")
         for threads in ("1", "2"):
             self.done(*self.STUDY, "--mandrel", "cylinder", "ellipsoid", part, "-o",
                       self.folder / threads, "--threads", threads)

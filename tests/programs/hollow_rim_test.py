@@ -14,7 +14,7 @@ from pathlib import Path
 
 PROGRAM = sys.argv[1]
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-COUNT = int(sys.argv[4]) if len(sys.argv) > 4 else 4
+COUNT = int(sys.argv[4]) if len(sys.argv) > 4 else 2
 
 # Reported: laydown 0.43 deg just before the narrow rim, of 0.3.
 REPORTED = {"radii": (98.0, 54.0), "length": 120.0, "angle": 30.0, "tow": 6.0, "friction": 0.4, "extension": 300.0,

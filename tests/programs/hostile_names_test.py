@@ -10,7 +10,7 @@ import xml.etree.ElementTree
 
 import program
 
-HOOPS = '{"tow": {"width": 12}, "layers": [{"kind": "hoop"}]}'
+HOOPS = '{"tow": {"width": 12}, "mandrel": {"extension": 0}, "layers": [{"kind": "hoop"}]}'
 NAMES = ("</script><img src=x onerror=alert(1)>", "a) M3 (b", "a\nM30\nG0 X9", "*/ --> ]]> \\",
          "\"'`;%{mandrel}", "tie on at X1 Y2 Z3 on the mandrel", "Wickelgerät 巻 \u202e", "\x1b[2J\x07",
          "course 5", "x" * 300)
@@ -20,7 +20,7 @@ FILES = tuple(name.replace("/", "|")[:120] for name in NAMES)
 class HostileNames(program.ProgramTest):
     def setUp(self):
         super().setUp()
-        self.mandrel = self.make("cylinder", "--radius", "40", "--length", "160", "--edge", "10")
+        self.mandrel = self.make("cylinder", "--radius", "40", "--length", "60", "--edge", "15")
         self.job = self.write("hoops.json", HOOPS)
         self.out = self.folder / "out"
 

@@ -39,7 +39,7 @@ class Interrupt(program.ProgramTest):
         return err.splitlines()
 
     def test_ends_soon_and_leaves_nothing(self):
-        for number, delay_s in ((signal.SIGINT, 1), (signal.SIGTERM, 4)):
+        for number, delay_s in ((signal.SIGINT, 1), (signal.SIGTERM, 2)):
             with self.subTest(number=number, delay_s=delay_s):
                 process = self.started("-o", "a/out", "--png", "view.png")
                 time.sleep(delay_s)
@@ -69,7 +69,7 @@ class Interrupt(program.ProgramTest):
         for name, text in kept.items():
             (out / name).write_text(text)
         process = self.started("-o", "out")
-        time.sleep(2)
+        time.sleep(1)
         self.ended(process, signal.SIGINT)
         self.assertEqual({p.name: p.read_text() for p in out.iterdir()}, kept)
 
@@ -83,7 +83,7 @@ class Interrupt(program.ProgramTest):
     def test_calls_without_a_point_to_end_at(self):
         """A mesh that takes seconds to make, and a job that never comes."""
         os.mkfifo(self.folder / "never.json")
-        for arguments, delay_s in ((["make", "tee", "--edge", "0.4", "-o", "a.stl"], 2),
+        for arguments, delay_s in ((["make", "tee", "--edge", "0.4", "-o", "a.stl"], 1),
                                    (["tee.stl", "--job", "never.json", "-o", "out"], 1)):
             with self.subTest(arguments[0]):
                 process = subprocess.Popen([program.PROGRAM, *arguments, "--quiet"],
@@ -147,8 +147,9 @@ class Bar(program.ProgramTest):
         self.assertFalse({"\r", "\033", "#"} & set(out))
 
     def test_quiet_says_nothing(self):
-        mandrel = self.make("cylinder", "--radius", "40", "--length", "160", "--edge", "10")
-        job = self.write("hoops.json", '{"tow": {"width": 12}, "layers": [{"kind": "hoop"}]}')
+        mandrel = self.make("cylinder", "--radius", "40", "--length", "60", "--edge", "15")
+        job = self.write("hoops.json",
+                         '{"tow": {"width": 12}, "mandrel": {"extension": 0}, "layers": [{"kind": "hoop"}]}')
         result = self.run_program(mandrel, "--job", job, "--quiet")
         self.assertEqual(result.stdout, "")
         self.assertFalse([line for line in result.stderr.splitlines()

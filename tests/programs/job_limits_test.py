@@ -58,10 +58,10 @@ class JobLimits(program.ProgramTest):
 
     def test_without_friction_a_turn_is_refused_in_words(self):
         """The length of the turn is infinite and was printed."""
-        part = self.make("cylinder", "--radius", 25, "--length", 100, "--edge", 8)
-        for angle in (20, 45, 80):
+        part = self.make("cylinder", "--radius", 25, "--length", 60, "--edge", 10)
+        for angle in (45, 80):
             for turn in ("friction", "pins"):
-                job = {"mandrel": {"turn": turn}, "tow": {"friction": 0},
+                job = {"mandrel": {"turn": turn}, "tow": {"friction": 0, "width": 12},
                        "layers": [{"kind": "helical", "angle": angle}]}
                 result = self.ends_well(part, "four_axis.json", job)
                 if turn == "friction":

@@ -14,14 +14,14 @@ import program
 
 EXTENSIONS = {"linuxcnc": ".ngc", "fanuc": ".nc", "siemens": ".mpf", "grbl": ".gcode",
               "marlin": ".gcode", "pulses": ".pulses", "krl": ".src"}
-HOOPS = '{"tow": {"width": 12}, "layers": [{"kind": "hoop"}]}'
+HOOPS = '{"tow": {"width": 12}, "mandrel": {"extension": 0}, "layers": [{"kind": "hoop"}]}'
 # Slips off: the plan is made and a check fails.
-SLIPS = '{"tow": {"width": 12, "friction": 0.001}, "layers": [{"kind": "hoop"}]}'
+SLIPS = HOOPS.replace("12", '12, "friction": 0.001')
 
 class OutputTest(program.ProgramTest):
     def setUp(self):
         super().setUp()
-        self.mandrel = self.make("cylinder", "--radius", "40", "--length", "160", "--edge", "10")
+        self.mandrel = self.make("cylinder", "--radius", "40", "--length", "60", "--edge", "15")
         self.hoops = self.write("hoops.json", HOOPS)
         self.slips = self.write("slips.json", SLIPS)
         self.out = self.folder / "out"
@@ -47,6 +47,20 @@ class OutputTest(program.ProgramTest):
                                    env={**os.environ, **(environment or {})}, **options)
         self.addCleanup(process.kill)
         return process
+
+    def begin_a_long_run(self, *options, **kinds):
+        """A run that has the folder, and keeps it for seconds."""
+        run = self.popen(program.SOURCE / "data/tee.stl", "-o", self.out, *options, **kinds)
+        deadline = time.monotonic() + program.TIMEOUT_S
+        while not self.out.exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)
+        return run
+
+    def short_axis(self):
+        """The first 60 mm of the L frame: planned in no time, written by as many calls."""
+        table = (program.SOURCE / "data/l_frame_axis.csv").read_text().splitlines(keepends=True)
+        return self.write("axis.csv", "".join(table[:8]))
 
 
 class StalePrograms(OutputTest):
@@ -94,8 +108,7 @@ class StalePrograms(OutputTest):
                 self.check(stale, kept, [own])
 
     def test_carry_and_the_main_job_take_each_other_s_programs_away(self):
-        axis = program.SOURCE / "data/l_frame_axis.csv"
-        carry = ["carry", axis, "-o", self.out, "--quiet"]
+        carry = ["carry", self.short_axis(), "-o", self.out, "--quiet"]
         self.done(*carry, "--name", "frame")
         self.assertEqual(self.programs(), ["frame.src", "frame_back.src"])
         report = json.loads((self.out / "report.json").read_text())
@@ -152,15 +165,6 @@ class Locked(OutputTest):
                 self.assertIn("-o", result.stderr)
         self.assertEqual(self.names(), ["program.ngc"])
 
-    def begin_a_long_run(self):
-        """A run that has the folder, and keeps it for seconds."""
-        run = self.popen(program.SOURCE / "data/tee.stl", "-o", self.out)
-        deadline = time.monotonic() + program.TIMEOUT_S
-        while not self.out.exists() and time.monotonic() < deadline:
-            time.sleep(0.05)
-        time.sleep(0.5)
-        return run
-
     def test_two_runs_into_one_folder(self):
         first = self.begin_a_long_run()
         second = self.wind(self.hoops, "--json")
@@ -193,9 +197,7 @@ class Ended(OutputTest):
 
     def test_killed_or_refused_at_any_call_of_the_system(self):
         siemens = self.machine("siemens")
-        # Its first 150 mm: planned in no time, written by as many calls.
-        table = (program.SOURCE / "data/l_frame_axis.csv").read_text().splitlines(keepends=True)
-        carry = ["carry", self.write("axis.csv", "".join(table[:17])), "-o", self.out, "--quiet"]
+        carry = ["carry", self.short_axis(), "-o", self.out, "--quiet"]
         self.assertEqual(self.wind(self.hoops, "--machine", siemens).returncode, 0)
         first = {p.name: p.read_bytes() for p in self.out.iterdir()}
         for fault in ("kill", "once"):
@@ -237,23 +239,19 @@ class Ended(OutputTest):
         self.assertEqual(self.leftovers(), [".mine.tmp"])
 
     def test_signals_end_a_run_and_leave_nothing(self):
-        tee = program.SOURCE / "data/tee.stl"
         for number in (signal.SIGHUP, signal.SIGXCPU, signal.SIGXFSZ, signal.SIGPIPE):
             with self.subTest(number=number):
-                process = self.popen(tee, "-o", self.out, preexec_fn=listen)
-                time.sleep(2)
+                process = self.begin_a_long_run(preexec_fn=listen)
                 _, err = self.ended_by(process, number)
                 self.assertEqual(process.returncode, 128 + number, err)
                 self.assertEqual(sorted(self.folder.iterdir()),
                                  sorted([self.mandrel, self.hoops, self.slips]))
 
     def test_a_crash_is_one_line_and_leaves_nothing(self):
-        tee = program.SOURCE / "data/tee.stl"
         for number in (signal.SIGSEGV, signal.SIGBUS, signal.SIGFPE, signal.SIGILL,
                        signal.SIGABRT):
             with self.subTest(number=number):
-                process = self.popen(tee, "-o", self.out, "--quiet")
-                time.sleep(1)
+                process = self.begin_a_long_run("--quiet")
                 process.send_signal(number)
                 _, err = process.communicate(timeout=program.TIMEOUT_S)
                 self.assertEqual(process.returncode, 3, err)
@@ -290,7 +288,7 @@ class Ended(OutputTest):
     def test_a_full_disk(self):
         run = f"'{program.PROGRAM}' '{self.mandrel}' --job '{self.hoops}' -o out --quiet"
         small = run + "; echo code $?; ls -A out"
-        result = self.in_a_mount("size=200k", small)
+        result = self.in_a_mount("size=100k", small)
         self.assertEqual(result.stdout, "code 2\n", result.stderr)
         self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
         self.assertIn("No space left", result.stderr)

@@ -19,18 +19,13 @@ class Pattern(program.ProgramTest):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return json.loads((self.folder / "out" / "report.json").read_text())
 
-    # Hoops of 5.88 mm on this cylinder; on one of 80 mm those of 5.69 overlap by 5 %, and layers
-    # scatter by 0.023.
-    def vessel(self):
-        return self.make("vessel", "--radius", "50", "--cylinder-length", "100", "--dome-height",
-                         "35", "--opening-radius", "12", "--edge", "5")
-
     def test_every_kind_on_a_vessel(self):
-        vessel = self.vessel()
+        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "60", "--dome-height",
+                           "35", "--opening-radius", "15", "--edge", "6")
         for kind in ("helical", "polar", "hoop"):
             with self.subTest(kind):
                 report = self.wind(vessel, {"kind": kind, "angle": 50.0} if kind == "helical"
-                                   else {"kind": kind}, redundancy="optimal")
+                                   else {"kind": kind}, redundancy="optimal", tow={"width": 10})
                 plan = report["plan"]
                 self.assertEqual(plan["planner"], "pattern")
                 self.assertEqual(plan["fibres"], 1)
@@ -48,14 +43,13 @@ class Pattern(program.ProgramTest):
                 self.assertEqual(plan["courses"], 2 * plan["pattern"]["circuits"])
 
     def test_a_pipe_gets_a_pattern_by_itself(self):
-        pipe = self.make("cylinder", "--radius", "40", "--length", "200", "--edge", "6")
-        report = self.wind(pipe, {"kind": "auto"})
+        report = self.wind(self.pipe(), {"kind": "auto"})
         self.assertEqual(report["plan"]["planner"], "pattern")
         self.assertGreater(report["plan"]["coverage"]["fraction"], 0.999)
         self.assertGreater(report["plan"]["pattern"]["dwell_deg"], 0.0)
 
     def pipe(self):
-        return self.make("cylinder", "--radius", "40", "--length", "200", "--edge", "6")
+        return self.make("cylinder", "--radius", "40", "--length", "100", "--edge", "8")
 
     def test_wishes_are_kept(self):
         report = self.wind(self.pipe(), {"kind": "helical", "angle": 50.0, "pattern": {
@@ -141,7 +135,7 @@ class Pattern(program.ProgramTest):
 
     # A geodesic would turn on the cone: it is steered to the narrow rim.
     def test_a_cone(self):
-        report = self.wind(self.make("cone"), {"kind": "auto"})
+        report = self.wind(self.make("cone"), {"kind": "auto"}, tow={"width": 10})
         self.expect_even(report)
         self.assertGreater(report["plan"]["coverage"]["fraction"], 0.999)
         self.assertGreater(abs(report["plan"]["pattern"]["slip_ratio"]), 0.0)
@@ -152,15 +146,15 @@ class Pattern(program.ProgramTest):
                  "--length2", "60", "--dome-height", "25", "--opening-radius", "12")
         for shape in ((), other):
             with self.subTest(shape):
-                report = self.wind(self.make("combination", *shape), {"kind": "auto"})
+                report = self.wind(self.make("combination", *shape), {"kind": "auto"}, tow={"width": 10})
                 self.expect_even(report)
                 self.assertGreater(report["plan"]["coverage"]["fraction"], 0.98)
                 self.assertEqual(report["plan"]["turns"][1]["turns"], 0)
 
     # The band touches both openings, by a constant slip from one to the other.
     def test_a_vessel_with_unequal_openings(self):
-        vessel = self.make("vessel", "--opening-radius", "15", "--upper-opening-radius", "25")
-        report = self.wind(vessel, {"kind": "polar"})
+        vessel = self.make("vessel", "--opening-radius", "15", "--upper-opening-radius", "25", "--edge", "6")
+        report = self.wind(vessel, {"kind": "polar"}, tow={"width": 10})
         self.expect_even(report)
         self.assertGreater(report["plan"]["coverage"]["fraction"], 0.99)
         slip = abs(report["plan"]["pattern"]["slip_ratio"])
@@ -171,12 +165,12 @@ class Pattern(program.ProgramTest):
         report = self.wind(self.make("cone"), {"kind": "helical", "angle": 55.0}, code=1,
                            tow={"friction": 0.1})
         self.no_plan(report, "0.136")
-        vessel = self.make("vessel", "--opening-radius", "15", "--upper-opening-radius", "60")
+        vessel = self.make("vessel", "--opening-radius", "15", "--upper-opening-radius", "60", "--edge", "8")
         report = self.wind(vessel, {"kind": "polar"}, code=1)
         self.no_plan(report)
 
     def test_says_why_not(self):
-        pipe = self.make("cylinder", "--radius", "40", "--length", "200", "--edge", "6")
+        pipe = self.pipe()
         report = self.wind(pipe, {"kind": "helical", "angle": 20.0}, code=1)
         self.no_plan(report, "100.0")
         report = self.wind(pipe, {"kind": "polar"}, code=1)
@@ -184,7 +178,7 @@ class Pattern(program.ProgramTest):
         tee = self.make("tee", "--edge", "12")
         report = self.wind(tee, {"kind": "helical"}, code=1)
         self.no_plan(report)
-        elbow = self.make("elbow", "--edge", "10")
+        elbow = self.make("elbow", "--leg1", "40", "--leg2", "40", "--edge", "10")
         report = self.wind(elbow, {"kind": "polar"}, code=1)
         self.no_plan(report)
         report = self.wind(elbow, {"kind": "helical", "angle": 55}, code=1)
@@ -193,9 +187,9 @@ class Pattern(program.ProgramTest):
         self.no_plan(report)
 
     def test_an_elbow_is_wound_by_both_hands_without_a_gap(self):
-        elbow = self.make("elbow", "--pipe-radius", "40", "--bend-radius", "120", "--leg1", "150",
-                          "--leg2", "150", "--edge", "6", "--irregular")
-        report = self.wind(elbow, {"kind": "auto"})
+        elbow = self.make("elbow", "--pipe-radius", "40", "--bend-radius", "120", "--leg1", "80",
+                          "--leg2", "80", "--edge", "7", "--irregular")
+        report = self.wind(elbow, {"kind": "auto"}, tow={"width": 12})
         plan = report["plan"]
         self.assertEqual(plan["planner"], "elbow")
         self.assertEqual(plan["fibres"], 1)

@@ -13,7 +13,7 @@ from pathlib import Path
 PROGRAM, PROJECT = sys.argv[1], Path(sys.argv[2])
 
 # The cone's upper rim is a hollow with its extension.
-PARTS = {"cylinder": {"radius": 50.0, "length": 200.0}, "cone": {"radius1": 60.0, "radius2": 40.0, "length": 150.0}}
+PARTS = {"cylinder": {"radius": 50.0, "length": 100.0}, "cone": {"radius1": 60.0, "radius2": 40.0, "length": 80.0}}
 # The first is what the others are held against. A tenth is between the ends: for one of the parts.
 SCALES = {"cylinder": (1.0, 0.05, 10.0), "cone": (1.0, 0.1)}
 
@@ -42,7 +42,7 @@ def machine_at(by):
 
 def job_at(by):
     return {"layers": [{"kind": "helical", "angle": 45}],
-            "tow": {"width": 6.0 * by, "thickness": 0.25 * by, "friction": 0.4, "bridging_tolerance": 0.5 * by},
+            "tow": {"width": 10.0 * by, "thickness": 0.25 * by, "friction": 0.4, "bridging_tolerance": 0.5 * by},
             "mandrel": {"extension": 150.0 * by, "units": "mm"}, "tolerance": {"laydown": 0.2 * by, "clearance": 5.0 * by},
             "eye": {"free_length": 200.0 * by}, "speed": {"fibre": 30.0 * by}, "redundancy": "central-angle"}
 
@@ -62,7 +62,7 @@ def wind(folder, kind, sizes, edge, job, machine):
 def wound_at(by, kind, folder):
     machine = folder / "machine.json"
     machine.write_text(json.dumps(machine_at(by)))
-    plan = wind(folder, kind, {name: by * value for name, value in PARTS[kind].items()}, 5.0 * by, job_at(by), machine)
+    plan = wind(folder, kind, {name: by * value for name, value in PARTS[kind].items()}, 8.0 * by, job_at(by), machine)
     return plan["pattern"], plan["coverage"]
 
 
@@ -79,7 +79,8 @@ def main():
                 off = coverage[share] / first[1][share] - 1.0
                 assert abs(off) < SAME_SHARE, (kind, by, share, coverage[share], first[1][share])
     with tempfile.TemporaryDirectory() as folder:
-        plan = wind(Path(folder), "cylinder", {"radius": 2.5, "length": 30.0}, 0.3, {"tow": {"width": 0.5}}, "six_axis.json")
+        plan = wind(Path(folder), "cylinder", {"radius": 2.5, "length": 15.0}, 0.3, {"tow": {"width": 0.5}},
+                    "six_axis.json")
     assert plan["coverage"]["fraction"] > 0.99, plan["coverage"]
     print("ok")
 

@@ -5,8 +5,10 @@ import jsonschema
 
 import program
 
-PIPE = ("cylinder", "--radius", 30, "--length", 120, "--edge", 8)
+PIPE = ("cylinder", "--radius", 30, "--length", 60, "--edge", 10)
 TEE = ("tee", "--edge", 10, "--run-length", 240, "--branch-length", 140)
+SMALL_TEE = ("tee", "--edge", 10, "--run-radius", 40, "--branch-radius", 30, "--blend-radius", 12, "--run-length", 140,
+             "--branch-length", 90)
 TOW = ("--set", "tow.width=12")
 
 
@@ -39,31 +41,28 @@ class Schemas(program.ProgramTest):
         self.assert_held("layup", json.loads(layup.read_text()))
         return report
 
-    def test_patterns_layers_and_walls(self):
+    def test_patterns_layers_walls_and_landing_points(self):
         pipe = self.make(*PIPE)
         self.assertIn("pattern", self.wound(pipe, *TOW, *layers("helical", angle=50))["plan"])
+        result = self.done("post", "out/path.csv", "--frame", "mandrel", "--mandrel", pipe, "--machine",
+                           "six_axis.json", *TOW, "--json", "-o", "post")
+        self.assertIn("import", json.loads(result.stdout))
+        self.assert_held("report", json.loads(result.stdout))
         self.assertEqual(len(self.wound(pipe, *TOW, *layers("helical", "hoop"))["layers"]), 2)
         self.assertEqual(len(self.wound(pipe, *TOW, *layers("wall", layers=6))["walls"]), 1)
         lattice = self.wound(pipe, *layers("lattice", circuits=6, angle=50))
         self.assertIn("lattice", lattice["plan"]["pattern"])
-        pins = self.wound(pipe, *layers("helical", angle=20), "--set", "mandrel.turn=pins", "--set", "mandrel.extension=40")
+        pins = self.wound(pipe, *TOW, *layers("helical", angle=20), "--set", "mandrel.turn=pins", "--set",
+                          "mandrel.extension=40", "--set", "redundancy=central-angle")
         self.assertIn("pins", pins["plan"])
 
-    def test_landing_points(self):
-        pipe = self.make(*PIPE)
-        self.wound(pipe, *TOW, *layers("helical", angle=50))
-        result = self.done("post", "out/path.csv", "--frame", "mandrel", "--mandrel", pipe, "--machine", "six_axis.json",
-                           *TOW, "--json", "-o", "post")
-        self.assertIn("import", json.loads(result.stdout))
-        self.assert_held("report", json.loads(result.stdout))
-
     def test_covers_and_what_fails(self):
-        tee = self.make(*TEE)
-        job = [word for setting in ("mandrel.extension=120", "tow.width=12", "tow.friction=0.25", "tolerance.clearance=2",
-                                    "redundancy=central-angle", "layers.0.angle=45")
+        job = [word for setting in ("mandrel.extension=60", "tow.width=24", "tow.friction=0.25",
+                                    "tolerance.clearance=2", "redundancy=central-angle", "layers.0.angle=45")
                for word in ("--set", setting)]
-        self.assertIn("wish_deg", self.run_cover(tee, *job)["plan"]["angles"])
-        failed = self.wound(tee, "--effort", "0.1", "--set", "tow.friction=0.01", code=1)
+        self.assertIn("wish_deg", self.run_cover(self.make(*SMALL_TEE), *job)["plan"]["angles"])
+        failed = self.wound(self.make(*TEE), "--effort", "0.1", *TOW, "--set", "tow.friction=0.01", "--set",
+                            "redundancy=central-angle", code=1)
         self.assertFalse(failed["ok"])
 
     def run_cover(self, tee, *job):

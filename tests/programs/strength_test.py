@@ -244,7 +244,7 @@ class Strength(program.ProgramTest):
         for angle in (54.74, 30.0):
             with self.subTest(angle=angle):
                 angles = (angle, -angle, -angle, angle)
-                layup = self.write_tube(angles, RADIUS_MM / 10, 4 * RADIUS_MM)
+                layup = self.write_tube(angles, RADIUS_MM / 8, 3 * RADIUS_MM)
                 result = json.loads(self.done("strength", "layup.json", "--material", "ply.json", "--merge", "0",
                                               "-o", "out", "--json").stdout)
                 expected = laminate_stress(angles, 1.0)
@@ -273,7 +273,8 @@ class Strength(program.ProgramTest):
         self.write("lined.json", json.dumps(lined))
         for angle, index in PAPER["index"].items():
             with self.subTest(angle=angle):
-                layup = self.write_tube((angle, -angle), 5.0, 160.0, radius_mm=PAPER["radius_mm"], ply_mm=PAPER["ply_mm"])
+                layup = self.write_tube((angle, -angle), 7.0, 120.0, radius_mm=PAPER["radius_mm"],
+                                        ply_mm=PAPER["ply_mm"])
                 self.done("strength", "layup.json", "--material", "lined.json", "--merge", "0", "-o", "out",
                           "--pressure", PAPER["pressure_mpa"])
                 thin = laminate_stress((angle, -angle), PAPER["pressure_mpa"], PAPER["radius_mm"], PAPER["ply_mm"],

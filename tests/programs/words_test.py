@@ -62,11 +62,11 @@ class Words(program.ProgramTest):
         self.refused(self.write("part.3mf", "PK"), code="mesh.unknown_format", words=[".step"])
 
     def test_machines_whose_eye_keeps_its_distance_run_as_they_are(self):
-        pipe = self.make("cylinder", "--radius", 40, "--length", 200, "--edge", 6)
+        pipe = self.make("cylinder", "--radius", 40, "--length", 80, "--edge", 8)
         for name, distance in (("hobby_grbl.json", "60.000"), ("two_axis.json", "58.310")):
             self.assertIn(distance, self.done("validate", name).stdout)
             out = self.folder / f"out-{distance}"
-            result = self.done(pipe, "--machine", name, "-o", out)
+            result = self.done(pipe, "--machine", name, "--set", "tow.width=12", "-o", out)
             self.assertIn(distance, result.stdout)
             report = json.loads((out / "report.json").read_text())
             self.assertEqual(report["eye"]["rule"], "cylinder")
@@ -88,7 +88,7 @@ class Words(program.ProgramTest):
     def test_the_summary_has_unit_size_and_the_angle_that_was_asked_for(self):
         vessel = self.make("vessel", "--radius", 60, "--cylinder-length", 80, "--edge", 6)
         job = self.write("j.json", '{"layers": [{"kind": "helical", "angle": 30}]}')
-        result = self.done(vessel, "--job", job, "-o", self.folder / "out")
+        result = self.done(vessel, "--job", job, "--set", "tow.width=10", "-o", self.folder / "out")
         self.assertIn("120.0 x 120.0 x 176.8 mm (unit mm, assumed)", result.stdout)
         report = json.loads((self.folder / "out/report.json").read_text())
         self.assertEqual(report["plan"]["asked_angle_deg"], 30)
