@@ -28,7 +28,7 @@ struct Scene {
           samples(sample_surface(mandrel.surface, 1.5, 1)),
           footprints(mandrel.surface, samples, 6.0),
           rules{mandrel, obstacles, footprints, {}, {}, {}} {
-        rules.turn.extension_mm = kExtension_mm;
+        rules.turns.rule.extension_mm = kExtension_mm;
         rules.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
     }
 

@@ -224,7 +224,6 @@ int run_verify_command(const VerifyArguments& arguments, const Common& common) {
     Setup setup = make_setup(
         load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units))),
         machine, job, files);
-    require_turns_without_plan(job, files.job);
     inputs.program = {arguments.program, read_text_file(arguments.program)};
     if (!arguments.plan.empty()) {
         inputs.path = plan_table(arguments.plan, arguments.program, "path");

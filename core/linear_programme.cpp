@@ -5,6 +5,8 @@
 
 #include <glpk.h>
 
+#include "core/random.h"
+
 namespace meshwind {
 
 struct LinearProgramme::Model {
@@ -19,6 +21,13 @@ struct LinearProgramme::Model {
 };
 
 namespace {
+
+// The simplex method goes round in a circle now and then, where many bases are one corner. Columns
+// by the hundred beside eight hundred rows take two thousand steps.
+constexpr int kMostSteps = 20'000;
+
+// Then rows may lack so much, of their bound.
+constexpr double kMostLack = 1e-4;
 
 // GLPK counts rows and columns from 1.
 int kind_of(double least, double most) {
@@ -35,6 +44,20 @@ int kind_of(double least, double most) {
 }
 
 }  // namespace
+
+// Lets each row lack a little, each by another share: what were many bases at one corner are
+// corners of their own then.
+void LinearProgramme::tell_apart(Model& model) {
+    for (std::size_t i = 0; i < model.rows.size(); ++i) {
+        const Row& row = model.rows[i];
+        const double share = 0.5 * (1.0 + random_unit(0, i));
+        if (row.least < row.most && std::isfinite(row.least)) {
+            const double least = row.least - kMostLack * share * std::max(1.0, std::abs(row.least));
+            glp_set_row_bnds(model.glp, static_cast<int>(i) + 1, kind_of(least, row.most), least,
+                             row.most);
+        }
+    }
+}
 
 LinearProgramme::LinearProgramme(std::span<const Row> rows) : model_(std::make_unique<Model>()) {
     model_->rows.assign(rows.begin(), rows.end());
@@ -78,9 +101,15 @@ LinearProgramme::Solution LinearProgramme::solve() {
     glp_init_smcp(&options);
     options.msg_lev = GLP_MSG_OFF;
     options.meth = GLP_PRIMAL;
+    options.it_lim = kMostSteps;
+    if (glp_simplex(model.glp, &options) == GLP_EITLIM) {
+        tell_apart(model);
+        glp_simplex(model.glp, &options);
+    }
     Solution solution;
-    solution.optimal =
-        glp_simplex(model.glp, &options) == 0 && glp_get_status(model.glp) == GLP_OPT;
+    const int status = glp_get_status(model.glp);
+    solution.optimal = status == GLP_OPT;
+    solution.feasible = solution.optimal || status == GLP_FEAS;
     std::vector<double> sum(model.rows.size(), 0.0);
     for (std::size_t i = 0; i < model.cost.size(); ++i) {
         const double x = glp_get_col_prim(model.glp, static_cast<int>(i) + 1);

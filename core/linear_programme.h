@@ -36,17 +36,21 @@ public:
 
     struct Solution {
         bool optimal = false;
+        /// x keeps all bounds; where it is not optimal, the method was given up.
+        bool feasible = false;
         double cost = 0.0;
         std::vector<double> x;      ///< per column
         std::vector<double> price;  ///< per row: what one more of its bound costs
         /// Largest breach of a row or column by x, computed from the columns as they were given.
         double worst_breach = 0.0;
     };
-    /// The first call from nothing, each further one from where the last ended.
+    /// The first call from nothing, each further one from where the last ended. Where the method
+    /// goes round in a circle it goes on with rows that may lack up to 1e-4 of their bounds.
     [[nodiscard]] Solution solve();
 
 private:
     struct Model;
+    static void tell_apart(Model& model);
     std::unique_ptr<Model> model_;
 };
 

@@ -93,6 +93,7 @@ std::string LayerMachine::text_of(const PieceProgram& made, bool goes_on,
         header.goes_on_from = options_.before->file;
     }
     header.fibre_length_mm = made.eyes.path.back().s_mm;
+    header.pins = setup_.pins;
     header.tie_on_mm = made.eyes.path.front().landing_mm;
     header.notes.insert(header.notes.end(), notes.begin(), notes.end());
     return write_with_digest(*setup_.dialect, setup_.machine, made.blocks, made.layout, header);

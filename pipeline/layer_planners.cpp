@@ -146,6 +146,9 @@ bool makes_elbows(LayerKind kind) {
 }
 
 std::string why_no_tube(const LayerTask& task) {
+    if (traits_of(task.setup.job.mandrel.turn).reads_pins) {
+        return "the lines of an elbow turn by friction; use \"cover\" to turn on pins";
+    }
     return task.tube().tube ? std::string() : task.tube().why_not;
 }
 
@@ -189,7 +192,11 @@ TriedPlan plan_cover_layer(const LayerTask& task) {
     const Setup& setup = task.setup;
     CoverOptions cover;
     cover.tow = task.tow();
-    cover.turn.extension_mm = setup.job.mandrel.extension_mm;
+    cover.turns.rule.extension_mm = setup.job.mandrel.extension_mm;
+    if (!setup.pins.empty()) {
+        std::string failure;
+        cover.turns.pins = pins_for_courses(setup, failure);
+    }
     cover.free_fibre = setup.rule.free_fibre;
     cover.select.target_layers = static_cast<int>(std::ceil(task.layer.target_layers));
     if (task.layer.angle_deg) {

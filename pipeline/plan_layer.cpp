@@ -53,6 +53,9 @@ PlannedLayer cover_instead(const LayerTask& task, const LayerPlanner& cover,
                           " m2 is too large to be covered by single courses of a tow of " +
                           fixed(tow_mm, 1) + " mm instead, unless \"kind\": \"cover\" asks for it");
     }
+    if (traits_of(task.setup.job.mandrel.turn).reads_pins) {
+        return failed(Planner::Pattern, "no pattern is laid: " + why);
+    }
     task.options.context.report_remark("no pattern is laid: " + why +
                                        "; courses are planned instead");
     PlannedLayer courses = planned(cover.plan(task));
@@ -76,6 +79,9 @@ PlannedLayer plan_best(const LayerTask& task) {
             why = why.empty() ? tried.plan.failure : why;
             continue;
         }
+        if (!tried.plan.pins.empty()) {  // that are yet to be put on the mandrel
+            return planned(std::move(tried));
+        }
         tried.trial = task.machine.wind_all(tried.plan);
         const std::size_t refused = tried.trial->refused.size();
         if (refused == 0) {
@@ -86,6 +92,16 @@ PlannedLayer plan_best(const LayerTask& task) {
         break;
     }
     return why.empty() ? planned(rows.back().plan(task)) : cover_instead(task, rows.back(), why);
+}
+
+// Of a stage of a wall what a pattern may lay of it, or else courses.
+LayerJob asked_of(const LayerJob& layer, const LayerPlanOptions& options) {
+    LayerJob asked = layer;
+    if (options.stage != nullptr) {
+        asked.kind = options.stage->everywhere < 1.0 ? LayerKind::Cover : LayerKind::Auto;
+        asked.target_layers = std::max(1.0, options.stage->everywhere);
+    }
+    return asked;
 }
 
 // Where patterns of bodies of revolution are all that the kind of turn is for.
@@ -103,18 +119,20 @@ PlannedLayer plan_in_patterns(const LayerTask& task, std::string_view why) {
 PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer, const Windability& machine,
                         const LayerPlanOptions& options) {
     options.context.report_progress("plan", 0.0);
-    LayerJob asked = layer;
-    const bool fills = options.stage != nullptr && options.stage->everywhere < 1.0;
-    if (options.stage != nullptr) {  // what a pattern may lay of it, or else courses
-        asked.kind = fills ? LayerKind::Cover : LayerKind::Auto;
-        asked.target_layers = std::max(1.0, options.stage->everywhere);
-    }
+    const LayerJob asked = asked_of(layer, options);
     const LayerTask task{setup, asked, machine, options};
     const std::string_view why_patterns = traits_of(setup.job.mandrel.turn).why_patterns;
     if (!why_patterns.empty()) {
         return plan_in_patterns(task, why_patterns);
     }
     return asked.kind == LayerKind::Auto ? plan_best(task) : plan_asked_for(task);
+}
+
+bool is_covered_on_pins(const Setup& setup, const LayerJob& layer,
+                        const LayerPlanOptions& options) {
+    const LayerKind kind = asked_of(layer, options).kind;
+    return kind == LayerKind::Cover ||
+           (kind == LayerKind::Auto && !find_revolution(setup.mandrel).body);
 }
 
 }  // namespace meshwind

@@ -46,4 +46,9 @@ struct PlannedLayer {
                                       const Windability& machine,
                                       const LayerPlanOptions& options = {});
 
+/// Whether courses cover the part for a layer whose courses turn on pins: else it is a pattern that
+/// says where they stand.
+[[nodiscard]] bool is_covered_on_pins(const Setup& setup, const LayerJob& layer,
+                                      const LayerPlanOptions& options = {});
+
 }  // namespace meshwind

@@ -238,6 +238,13 @@ Setup setup_for(const Setup& setup, Mandrel mandrel, std::size_t layer) {
     return next;
 }
 
+std::vector<PinStand> pins_for_courses(const Setup& setup, std::string& failure) {
+    const Job& job = setup.job;
+    const Tow tow{job.tow.width_mm, job.tow.thickness_mm, setup.friction.planned(),
+                  job.tow.bridging_tolerance_mm};
+    return stand_pins(setup.mandrel.rims, job.mandrel.pins, tow, job.mandrel.extension_mm, failure);
+}
+
 void put_pins(Setup& setup, std::span<const PinRing> rings) {
     std::vector<Pin> pins;
     for (const PinRing& ring : rings) {
@@ -247,6 +254,7 @@ void put_pins(Setup& setup, std::span<const PinRing> rings) {
     }
     setup.obstacles =
         obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm, pins);
+    setup.pins.assign(rings.begin(), rings.end());
     setup.wall = std::make_unique<LaydownWall>(setup.wall->surface(), setup.wall->bridge_reach_mm(),
                                                std::move(pins));
 }

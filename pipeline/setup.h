@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "machines/machine.h"
 #include "mesh/mandrel.h"
@@ -15,6 +17,7 @@
 #include "postproc/nc/dialect.h"
 #include "postproc/verify/verify.h"
 #include "winding/plan/friction.h"
+#include "winding/turn/course_turns.h"
 #include "winding/turn/pin.h"
 
 namespace meshwind {
@@ -36,6 +39,7 @@ struct Setup {
     CollisionRule rule;
     std::unique_ptr<RayQuery> obstacles;  ///< mandrel, extensions and bodies that turn with them
     std::unique_ptr<LaydownWall> wall;    ///< the surface with its extensions
+    std::vector<PinRing> pins{};          ///< that stand on the extensions
 };
 
 /// How a job asks for its mandrel to be read.
@@ -58,6 +62,10 @@ struct Setup {
 /// The same machine and job for another mandrel: what the layers before have made of the first.
 /// \param layer that is wound on it, counted from 0
 [[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel, std::size_t layer);
+
+/// Rings on which courses turn, as the job wants them, one for each rim.
+/// \return none, with the reason in `failure`, where fibre cannot turn on pins
+[[nodiscard]] std::vector<PinStand> pins_for_courses(const Setup& setup, std::string& failure);
 
 /// Puts the pins that a plan needs on the mandrel: what can be hit, and what holds the fibre.
 void put_pins(Setup& setup, std::span<const PinRing> rings);

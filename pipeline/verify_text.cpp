@@ -25,6 +25,27 @@ VerifyPlan plan_of(const VerifyInputs& inputs, const Machine& machine) {
     return plan;
 }
 
+// Puts the pins that a program's head names on the mandrel.
+void put_pins_of(const BlockList& program, const std::string& file, Setup& setup) {
+    for (const PinRing& ring : program.pins) {
+        if (static_cast<std::size_t>(ring.rim) >= setup.mandrel.rims.size()) {
+            throw InputError("nc.pins", file,
+                             "its head has pins at rim " + std::to_string(ring.rim) +
+                                 ", and the mandrel has rims 0 to " +
+                                 std::to_string(setup.mandrel.rims.size() - 1) +
+                                 "; give the mandrel that it was made for");
+        }
+    }
+    if (program.pins.empty() && traits_of(setup.job.mandrel.turn).reads_pins) {
+        throw InputError("nc.pins", file,
+                         "the job turns the fibre on pins, and the program's head does not say "
+                         "where they stand; wind the job again");
+    }
+    if (!program.pins.empty()) {
+        put_pins(setup, program.pins);
+    }
+}
+
 // The plan's motion, block by block.
 Check program_check(const Machine& machine, const BlockList& program,
                     const std::vector<PlannedMotion>& motion, std::optional<std::size_t>& wrong) {
@@ -59,14 +80,6 @@ bool VerifyOutcome::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
 }
 
-void require_turns_without_plan(const Job& job, const std::filesystem::path& job_file) {
-    const std::string_view why_not = traits_of(job.mandrel.turn).why_not_again;
-    if (!why_not.empty()) {
-        throw InputError("job.not_offered", job_file.string() + ": /mandrel/turn",
-                         std::string(why_not));
-    }
-}
-
 VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs, const RunContext& context) {
     VerifyOutcome outcome;
     outcome.setup = std::move(setup);
@@ -78,6 +91,7 @@ VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs, const RunCont
     if (inputs.tie_on_mm) {
         outcome.blocks.tie_on_mm = inputs.tie_on_mm;
     }
+    put_pins_of(outcome.blocks, name, outcome.setup);
     const VerifyPlan plan = plan_of(inputs, outcome.setup.machine);
     const TextChecks texts = check_text(outcome.setup, text, name, outcome.blocks, plan);
     outcome.checks = texts.checks;

@@ -70,8 +70,4 @@ struct TextChecks {
 [[nodiscard]] VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs,
                                         const RunContext& context = {});
 
-/// Refuses turns for which something is on the mandrel that is chosen with the plan, such as pins:
-/// without it they cannot be wound again. \throws InputError job.not_offered
-void require_turns_without_plan(const Job& job, const std::filesystem::path& job_file);
-
 }  // namespace meshwind

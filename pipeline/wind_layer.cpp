@@ -56,11 +56,18 @@ private:
             plan.least_covered = options_.least_covered;
             plan.stage = options_.stage;
             plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;
-            planned = plan_layer(setup_, layer_.job, machine, plan);
+            if (traits_of(setup_.job.mandrel.turn).reads_pins &&
+                is_covered_on_pins(setup_, layer_.job, plan)) {
+                planned.plan.planner = Planner::Cover;
+                put_pins(layer_.setup, rings_of(pins_for_courses(setup_, planned.plan.failure)));
+            }
+            if (planned.plan.failure.empty()) {
+                planned = plan_layer(setup_, layer_.job, machine, plan);
+            }
         }
         layer_.plan = std::move(planned.plan);
         layer_.no_pattern = std::move(planned.no_pattern);
-        if (!layer_.plan.pins.empty()) {
+        if (!layer_.plan.pins.empty() && layer_.setup.pins.empty()) {
             put_pins(layer_.setup, layer_.plan.pins);
         }
         if (options_.before != nullptr && !layer_.plan.goes_on && layer_.plan.cut_because.empty()) {

@@ -86,7 +86,8 @@ Key<Job::MandrelJob> faces_key() {
 const KeyTable<PinWish>& pin_keys() {
     static const KeyTable<PinWish> kTable = {{
         count_or_auto("count", &PinWish::count, kMostPins,
-                      "pins of a ring, a multiple of the pattern's circuits; auto: as many"),
+                      "pins of a ring; of a pattern a multiple of its circuits, auto: as many; "
+                      "of courses auto: 1.25 tow widths apart"),
         number("diameter", &PinWish::diameter_mm, kLengthRange, "mm, of a pin"),
         number_or_auto("height", &PinWish::height_mm, kLengthRange,
                        "mm over the extension; auto: that which leaves the free fibre most room"),

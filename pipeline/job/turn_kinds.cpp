@@ -1,7 +1,9 @@
 #include "pipeline/job/turn_kinds.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 
 #include "pipeline/job/job.h"
 #include "winding/revolution/pin_pattern.h"
@@ -31,11 +33,17 @@ std::string why_not_on_pins(const Job& job, bool points_given) {
         return "turning on pins with landing points that are given is not offered yet; use "
                "\"friction\"";
     }
-    if (job.layers.size() > 1) {
+    const auto is_any_of = [&](const LayerJob& layer, std::initializer_list<LayerKind> kinds) {
+        return std::find(kinds.begin(), kinds.end(), layer.kind) != kinds.end();
+    };
+    const bool courses = std::all_of(job.layers.begin(), job.layers.end(), [&](const LayerJob& l) {
+        return is_any_of(l, {LayerKind::Cover, LayerKind::Wall});
+    });
+    if (job.layers.size() > 1 && !courses) {
         return "turning on pins with several layers" + mend;
     }
-    const LayerKind kind = job.layers.front().kind;
-    if (kind != LayerKind::Helical && kind != LayerKind::Lattice) {
+    if (!courses &&
+        !is_any_of(job.layers.front(), {LayerKind::Auto, LayerKind::Helical, LayerKind::Lattice})) {
         return "turning on pins with layers of other kinds" + mend;
     }
     return {};
@@ -52,9 +60,6 @@ constexpr std::array kTurnKinds{
         .kind = TurnKind::Pins,
         .word = "pins",
         .reads_pins = true,
-        .why_not_again =
-            "the pins are chosen with the plan, so a program that turns on them is not wound again "
-            "without it; `meshwind` has done so when it made the program, see its report.json",
         .why_not = why_not_on_pins,
         .turns = turns_on_pins,
     },

@@ -24,7 +24,6 @@ struct TurnKindTraits {
     bool takes_run = false;           ///< along the extension, by friction (least_run_mm)
     bool reads_pins = false;          ///< the job's `pins` are for it
     std::string_view why_patterns{};  ///< why nothing but patterns of bodies of revolution is wound
-    std::string_view why_not_again{};  ///< why no program is wound again without its plan
     /// Why a job is not wound with it. Null: every job is. \param points_given landing points made
     /// elsewhere are wound, and the job's layers not read
     std::string (*why_not)(const Job& job, bool points_given) = nullptr;

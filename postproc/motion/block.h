@@ -15,6 +15,7 @@
 #include "postproc/motion/joint_path.h"
 #include "postproc/motion/program_head.h"
 #include "postproc/motion/time_law.h"
+#include "winding/plan/turns.h"
 
 namespace meshwind {
 
@@ -47,6 +48,8 @@ struct BlockList {
     /// Where the fibre is tied on, in the mandrel frame, as the program's head says; unset when it
     /// does not, and in a list that was planned.
     std::optional<Eigen::Vector3d> tie_on_mm{};
+    /// On which the fibre turns, as the head says; none in a list that was planned.
+    std::vector<PinRing> pins{};
     /// What else a program's text says; unset in a list that was planned.
     std::optional<ProgramHead> head{};
 

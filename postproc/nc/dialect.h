@@ -25,6 +25,7 @@ struct ProgramHeader {
     std::string code_digest{};  ///< of code_of() what is written
     double fibre_length_mm = 0.0;
     std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
+    std::vector<PinRing> pins{};                 ///< on which the fibre turns
     /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is
     /// where it lies already.
     std::string goes_on_from{};

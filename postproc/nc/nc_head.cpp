@@ -1,4 +1,5 @@
 #include "core/text/text_number.h"
+#include "core/units.h"
 #include "postproc/nc/float32_steps.h"
 #include "postproc/nc/nc_writer.h"
 
@@ -20,6 +21,14 @@ void make_plain(const NcFlavour& flavour, std::string& words) {
             c >= ' ' && c <= '~' && flavour.not_in_comments.find(c) == std::string_view::npos;
         c = brackets && c == '(' ? '[' : brackets && c == ')' ? ']' : plain ? c : flavour.stand_in;
     }
+}
+
+// As NcMarks reads it.
+std::string words_of(const PinRing& ring) {
+    return "pins at rim " + std::to_string(ring.rim) + ": N" + std::to_string(ring.count) + " D" +
+           fixed(ring.diameter_mm, 4) + " H" + fixed(ring.height_mm, 4) + " S" +
+           fixed(ring.strand_mm, 6) + " Z" + fixed(ring.offset_mm, 6) + " A" +
+           fixed(deg_from_rad(ring.azimuth_rad), 7);
 }
 
 // Steps that differ from the machine's, and what float sums lose all the same.
@@ -64,6 +73,9 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
         const Eigen::Vector3d& p = *header.tie_on_mm;
         lines.push_back("tie on at X" + fixed(p.x(), 3) + " Y" + fixed(p.y(), 3) + " Z" +
                         fixed(p.z(), 3) + " on the mandrel");
+    }
+    for (const PinRing& ring : header.pins) {
+        lines.push_back(words_of(ring));
     }
     append_if(lines, "the fibre goes on, do not cut it: run after ", header.goes_on_from);
     for (const std::string& note : header.notes) {

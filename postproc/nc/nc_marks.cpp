@@ -3,16 +3,28 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/units.h"
 #include "postproc/nc/nc_reader.h"
 
 namespace meshwind {
 namespace {
 
 constexpr std::string_view kTieOn = "tie on";
+constexpr std::string_view kPins = "pins at rim ";
+
+// More pins at a ring, or mm of one, than anything has.
+constexpr double kMostOfPins = 1e4;
 
 [[noreturn]] void bad_tie_on(const NcLine& line) {
     line.fail("nc.tie_on",
               "a comment \"tie on\" must read (tie on at X1.000 Y2.000 Z3.000 on the mandrel)");
+}
+
+[[noreturn]] void bad_pins(const NcLine& line) {
+    line.fail(
+        "nc.pins",
+        "a comment \"pins at rim\" must read (pins at rim 0: N36 D2.0 H2.5 S0.69 Z8.0 A0.0): "
+        "pins, diameter, height, radius of the strand, mm from the rim, degrees to the first");
 }
 
 }  // namespace
@@ -20,6 +32,7 @@ constexpr std::string_view kTieOn = "tie on";
 void NcMarks::read(const NcLine& line, BlockList& list) {
     for (std::string_view comment : line.comments) {
         tie_on(line, comment, list);
+        pins(line, comment, list);
         head(line, comment, list);
         constexpr std::string_view kCourse = "course ";
         if (comment.substr(0, kCourse.size()) == kCourse) {
@@ -75,6 +88,39 @@ void NcMarks::tie_on(const NcLine& line, std::string_view comment, BlockList& li
     list.tie_on_mm = place;
 }
 
+void NcMarks::pins(const NcLine& line, std::string_view comment, BlockList& list) {
+    static constexpr std::array<std::string_view, 7> kBefore = {kPins, ": N", " D", " H",
+                                                                " S",  " Z",  " A"};
+    if (comment.substr(0, kPins.size()) != kPins) {
+        return;
+    }
+    std::array<double, kBefore.size()> value{};
+    for (std::size_t i = 0; i < kBefore.size(); ++i) {
+        const bool key = comment.substr(0, kBefore[i].size()) == kBefore[i];
+        comment.remove_prefix(key ? kBefore[i].size() : comment.size());
+        const auto [end, error] = std::from_chars(comment.data(), comment.data() + comment.size(),
+                                                  value[i], std::chars_format::fixed);
+        if (error != std::errc{} || !std::isfinite(value[i]) ||
+            (i + 1 < kBefore.size() && value[i] < 0.0) || value[i] > kMostOfPins) {
+            bad_pins(line);
+        }
+        comment.remove_prefix(static_cast<std::size_t>(end - comment.data()));
+    }
+    PinRing ring;
+    ring.rim = static_cast<std::int32_t>(value[0]);
+    ring.count = static_cast<int>(value[1]);
+    ring.diameter_mm = value[2];
+    ring.height_mm = value[3];
+    ring.strand_mm = value[4];
+    ring.offset_mm = value[5];
+    ring.azimuth_rad = rad_from_deg(value[6]);
+    const bool whole = ring.rim == value[0] && ring.count == value[1] && ring.count > 0;
+    if (!comment.empty() || !whole || !(ring.diameter_mm > 0.0) || !(ring.height_mm > 0.0)) {
+        bad_pins(line);
+    }
+    list.pins.push_back(ring);
+}
+
 std::string code_of_nc(NcComments comments, std::string_view text, const std::string& file) {
     NcLine line;
     line.file = &file;
@@ -87,7 +133,8 @@ std::string code_of_nc(NcComments comments, std::string_view text, const std::st
             code.erase(0, std::min(code.find_first_not_of("0123456789", 1), code.size()));
         }
         for (const std::string_view comment : line.comments) {
-            if (comment.substr(0, kTieOn.size()) == kTieOn) {
+            if (comment.substr(0, kTieOn.size()) == kTieOn ||
+                comment.substr(0, kPins.size()) == kPins) {
                 code += comment.substr(0, comment.find_last_not_of(" \t") + 1);
             }
         }

@@ -38,12 +38,13 @@ void check_own_line(const NcFlavour& flavour, const Machine& machine, const std:
 /// "code digest: 0f.." and, in the first line, "meshwind 1.0".
 class NcMarks {
 public:
-    /// \throws InputError nc.tie_on
+    /// \throws InputError nc.tie_on, nc.pins
     void read(const NcLine& line, BlockList& list);
     [[nodiscard]] std::int32_t piece() const { return piece_; }
 
 private:
     static void tie_on(const NcLine& line, std::string_view comment, BlockList& list);
+    static void pins(const NcLine& line, std::string_view comment, BlockList& list);
     static void head(const NcLine& line, std::string_view comment, BlockList& list);
     std::int32_t piece_ = -1;
 };

@@ -68,7 +68,8 @@ PlannedFibre planned_fibre(std::span<const Piece> pieces) {
         for (std::size_t i = 0; i < path.size(); ++i) {
             fibre.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(i),
                              path[i].position_mm, path[i].normal, path[i].tangent,
-                             pieces[p].string.gap_mm[i] > 0.0});
+                             pieces[p].string.gap_mm[i] > 0.0,
+                             !pieces[p].free_start.empty() && pieces[p].free_start[i].held});
         }
     }
     return fibre;
@@ -118,8 +119,8 @@ Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
         const Vector3d across = match.normal.cross(match.tangent);
         sideways_mm[i] = std::abs((station.position_mm - match.position_mm).dot(across));
         // About a pin the fibre has the pin's direction, wherever it came from.
-        const bool on_the_spot = laid.at[i].held || beyond_end(i) ||
-                                 swings(j, next, station.position_mm) ||
+        const bool at_pin = laid.at[i].held || planned[j].held || planned[next].held;
+        const bool on_the_spot = at_pin || beyond_end(i) || swings(j, next, station.position_mm) ||
                                  swings(next, next_of(next), station.position_mm);
         angle_rad[i] = on_the_spot ? 0.0
                                    : std::abs(std::atan2(station.tangent.dot(across),

@@ -21,6 +21,7 @@ struct PlannedStation {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();
     bool lifted = false;  ///< under a bridge
+    bool held = false;    ///< by a pin, which says where the fibre is laid
 };
 
 using PlannedFibre = std::vector<PlannedStation>;

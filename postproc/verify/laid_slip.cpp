@@ -13,17 +13,18 @@ namespace {
 // Chords in tow widths.
 constexpr std::array kChords = {1.0, 2.0, 4.0};
 
-// Along the path, from the nearest station that is lifted or held by a pin.
-std::vector<double> distance_to_bridges(const LaidPath& laid) {
+// Along the path, from the nearest of some stations.
+template <class Is>
+std::vector<double> distance_to(const LaidPath& laid, const Is& is) {
     std::vector<double> distance(laid.path.size(), std::numeric_limits<double>::infinity());
     double last = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < laid.path.size(); ++i) {
-        last = laid.at[i].lifted || laid.at[i].held ? laid.path[i].s_mm : last;
+        last = is(laid.at[i]) ? laid.path[i].s_mm : last;
         distance[i] = laid.path[i].s_mm - last;
     }
     last = std::numeric_limits<double>::infinity();
     for (std::size_t i = laid.path.size(); i-- > 0;) {
-        last = laid.at[i].lifted || laid.at[i].held ? laid.path[i].s_mm : last;
+        last = is(laid.at[i]) ? laid.path[i].s_mm : last;
         distance[i] = std::min(distance[i], last - laid.path[i].s_mm);
     }
     return distance;
@@ -33,13 +34,14 @@ std::vector<double> distance_to_bridges(const LaidPath& laid) {
 
 std::vector<double> laid_slip(const Surface& wall, const LaidPath& laid,
                               const LaidSlipOptions& options) {
-    const std::vector<double> to_bridge = distance_to_bridges(laid);
+    const auto to_pin = distance_to(laid, [](const LaidAt& at) { return at.held; });
+    const auto to_bridge = distance_to(laid, [](const LaidAt& at) { return at.lifted; });
     const TautString string = taut_string(laid.path);
     const double length_mm = laid.path.empty() ? 0.0 : laid.path.back().s_mm;
     std::vector<double> slip(laid.path.size(), 0.0);
     std::vector<std::size_t> open;  // stations that are not told yet
     for (std::size_t i = 0; i < slip.size(); ++i) {
-        if (to_bridge[i] > options.tow_width_mm) {
+        if (std::min(to_bridge[i], to_pin[i]) > options.tow_width_mm) {
             open.push_back(i);
         }
     }
@@ -52,6 +54,10 @@ std::vector<double> laid_slip(const Surface& wall, const LaidPath& laid,
             wall, laid.path, string,
             {.window_mm = chord_mm, .friction = options.friction, .method = TraceMethod::Patches});
         std::erase_if(open, [&](std::size_t i) {
+            if (to_pin[i] < chord_mm) {  // it would bend about the pin
+                slip[i] = 0.0;
+                return true;
+            }
             slip[i] = measure.slip[i];
             const double over = slip[i] - options.friction;
             if (over <= 0.0) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -46,9 +48,10 @@ constexpr int kMaxBridges = 50;
 // Fibre about a pin is recorded so often.
 constexpr double kPinStation_mm = 0.25;
 
-// Where along its curve the eye is in line with a place about a pin: as many halvings reach the
-// last digit.
-constexpr int kPinHalvings = 50;
+// Where along its curve the eye is in line with a place about a pin: to the last digits, for which
+// ten steps are mostly enough.
+constexpr int kPinRootBits = 50;
+constexpr std::uintmax_t kPinRootSteps = 60;
 
 // A free fibre shorter than this has no direction.
 constexpr double kLeastFree_mm = 1e-3;
@@ -415,14 +418,16 @@ private:
         const auto over = [&](double share) {
             return normal.dot(pins_.pull(place, curve.position(share)));
         };
-        double low = 0.0;
-        double high = over(0.0) > 0.0 ? 1.0 : 0.0;
-        high = over(1.0) >= 0.0 ? 1.0 : high;
-        low = over(1.0) >= 0.0 ? 1.0 : low;
-        for (int i = 0; i < kPinHalvings && low < high; ++i) {
-            const double middle = 0.5 * (low + high);
-            (over(middle) > 0.0 ? low : high) = middle;
+        const double begin = over(0.0);
+        const double end = over(1.0);
+        if (end >= 0.0 || begin <= 0.0) {
+            return pins_.pull(place, curve.position(end >= 0.0 ? 1.0 : 0.0));
         }
+        std::uintmax_t most = kPinRootSteps;
+        const double high = boost::math::tools::toms748_solve(
+                                over, 0.0, 1.0, begin, end,
+                                boost::math::tools::eps_tolerance<double>(kPinRootBits), most)
+                                .second;
         return pins_.pull(place, curve.position(high));
     }
 

@@ -19,8 +19,10 @@ constexpr double kChain_rad = 0.1;
 // Share of the distance from the pin's axis: steps along an arc.
 constexpr double kStepShare = 0.1;
 
-// At the flank are places up to so many times as far from the axis as the fibre on the flank.
+// At the flank of the pin that holds it are places up to so many times as far from the axis as the
+// fibre on the flank; at those of others, places as near to it as fibre is laid to its plan.
 constexpr double kAtPin = 2.0;
+constexpr double kOnFlank_mm = 0.2;
 
 }  // namespace
 
@@ -38,12 +40,13 @@ Vector3d PinContact::pull(const Vector3d& place, const Vector3d& eye) const {
 }
 
 bool PinContact::at_pin(const Vector3d& place) const {
-    if (!held_) {
-        return false;
-    }
-    const Pin& pin = pins_[held_->pin];
-    const Vector3d off = place - pin.base_mm;
-    return (off - off.dot(pin.axis) * pin.axis).norm() < kAtPin * pin.held_mm();
+    const auto near = [&](const Pin& pin, double reach_mm) {
+        const Vector3d off = place - pin.base_mm;
+        return off.squaredNorm() < reach_mm * reach_mm;  // on the wall
+    };
+    return (held_ && near(pins_[held_->pin], kAtPin * pins_[held_->pin].held_mm())) ||
+           std::any_of(pins_.begin(), pins_.end(),
+                       [&](const Pin& pin) { return near(pin, pin.held_mm() + kOnFlank_mm); });
 }
 
 double PinContact::step_mm() const {

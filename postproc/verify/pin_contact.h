@@ -36,7 +36,7 @@ public:
     [[nodiscard]] std::string update(const Eigen::Vector3d& landing_mm,
                                      const Eigen::Vector3d& eye_mm);
 
-    /// Whether a place is at the flank of the pin that holds the fibre.
+    /// Whether a place of the wall is at the flank of a pin: where that says how the fibre runs.
     [[nodiscard]] bool at_pin(const Eigen::Vector3d& place_mm) const;
 
     /// A step along the fibre about the pin that holds it is no longer.

@@ -141,7 +141,6 @@ std::string verify_file(const fs::path& program, const fs::path& mandrel, const 
     Setup setup =
         make_setup(load_mandrel(find_input(mandrel.string()), mandrel_options(job, mm_of(units))),
                    load_machine(files.machine), job, files);
-    require_turns_without_plan(job, files.job);
     VerifyInputs inputs;
     inputs.program = {program.string(), read_text_file(program)};
     if (!plan.empty()) {

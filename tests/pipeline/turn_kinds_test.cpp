@@ -39,8 +39,7 @@ TEST(TurnKinds, JobsHaveTheirWords) {
     }
 }
 
-// What stands on the mandrel is known with the plan alone: it is refused wherever there is none.
-TEST(TurnKinds, PinsAreForOneLayerWithAPattern) {
+TEST(TurnKinds, PinsAreForOneLayerWithAPatternOrForAnyThatCoursesCover) {
     const TurnKindTraits& pins = traits_of(TurnKind::Pins);
     Job job;
     for (const LayerKind kind : {LayerKind::Helical, LayerKind::Lattice}) {
@@ -50,12 +49,16 @@ TEST(TurnKinds, PinsAreForOneLayerWithAPattern) {
         job.layers.push_back(layer_of(kind));
         EXPECT_NE(pins.why_not(job, false), "");
     }
-    for (const LayerKind kind : {LayerKind::Auto, LayerKind::Hoop, LayerKind::Polar,
-                                 LayerKind::Cover, LayerKind::Imported}) {
+    for (const LayerKind kind : {LayerKind::Hoop, LayerKind::Polar, LayerKind::Imported}) {
         job.layers = {layer_of(kind)};
         EXPECT_NE(pins.why_not(job, false), "") << name_of(kind);
     }
-    EXPECT_NE(pins.why_not_again, "");
+    job.layers = {layer_of(LayerKind::Auto)};
+    EXPECT_EQ(pins.why_not(job, false), "");
+    job.layers = {layer_of(LayerKind::Cover), layer_of(LayerKind::Wall)};
+    EXPECT_EQ(pins.why_not(job, false), "");
+    job.layers.push_back(layer_of(LayerKind::Hoop));
+    EXPECT_NE(pins.why_not(job, false), "");
 }
 
 }  // namespace

@@ -172,13 +172,23 @@ TEST(VerifyText, TextsThatCannotBeReadAreRefusedWithTheirLine) {
     EXPECT_EQ(test::refusal_of([&] { (void)verified(tables); }).code, "plan.column");
 }
 
-TEST(VerifyText, PinsAreRefusedForTheyAreChosenWithThePlan) {
-    Job job;
-    EXPECT_EQ(test::refusal_of([&] { require_turns_without_plan(job, "job.json"); }),
-              test::Refused{});
-    job.mandrel.turn = TurnKind::Pins;
-    EXPECT_EQ(test::refusal_of([&] { require_turns_without_plan(job, "job.json"); }),
-              (test::Refused{"job.not_offered", "job.json: /mandrel/turn"}));
+TEST(VerifyText, PinsStandWhereTheHeadSays) {
+    VerifyInputs inputs = written().inputs;
+    const auto setup_of = [](TurnKind turn) {
+        meshwind::Setup setup = setup_for(written().setup, written().setup.mandrel, 0);
+        setup.job.mandrel.turn = turn;
+        return setup;
+    };
+    const auto code_of = [&](TurnKind turn) {
+        return test::refusal_of([&] { (void)verify_text(setup_of(turn), inputs); }).code;
+    };
+    EXPECT_EQ(code_of(TurnKind::Pins), "nc.pins");  // none
+    std::string& text = inputs.program.text;
+    text.insert(text.find("(tie on"), "(pins at rim 7: N36 D2.0 H2.5 S0.69 Z8.0 A0.0)\n");
+    EXPECT_EQ(code_of(TurnKind::Friction), "nc.pins");  // no such rim
+    text.replace(text.find("rim 7"), 5, "rim 1");
+    const VerifyOutcome outcome = verify_text(setup_of(TurnKind::Friction), inputs);
+    EXPECT_EQ(outcome.setup.wall->pins().size(), 36U);
 }
 
 }  // namespace

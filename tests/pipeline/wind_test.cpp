@@ -477,7 +477,7 @@ TEST(Wind, WhatCannotBeWoundIsRefused) {
     };
     Job pins = quick_job();
     pins.mandrel.turn = TurnKind::Pins;
-    for (const LayerKind kind : {LayerKind::Hoop, LayerKind::Auto, LayerKind::Cover}) {
+    for (const LayerKind kind : {LayerKind::Hoop, LayerKind::Polar}) {
         pins.layers.front().kind = kind;
         EXPECT_EQ(refused(pins, six), not_offered("/mandrel/turn")) << name_of(kind);
     }

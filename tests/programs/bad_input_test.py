@@ -236,7 +236,7 @@ class BadInput(program.ProgramTest):
                            ('{"eye": {"radius": 200}}', "job.eye_unused", "/eye/radius"),
                            ('{"layers": [{"kind": "imported", "file": "x.csv"}]}', "io.cannot_read", "x.csv"),
                            ('{"layers": [{"kind": "hoops"}]}', "json.out_of_range", "/layers/0/kind"),
-                           ('{"mandrel": {"turn": "pins"}}', "job.not_offered", "/mandrel/turn")):
+                           ('{"mandrel": {"turn": "pins"}, "layers": [{"kind": "hoop"}]}', "job.not_offered", "/mandrel/turn")):
             with self.subTest(text):
                 self.refused_job(text, code, word)
 
@@ -395,9 +395,10 @@ class BadInput(program.ProgramTest):
         self.refused("study", "mesh-shape", code="cli.unknown_command", word="mesh-size")
 
     def test_verify(self):
-        self.make("cylinder", "--radius", "50", "--length", "200", "--edge", "8")
+        self.make("cylinder", "--radius", "50", "--length", "200", "--edge", "15")
         out = self.folder / "out"
-        world = ["--mandrel", "cylinder.stl", "--machine", "six_axis.json"]
+        job = self.write("job.json", '{"mandrel": {"extension": 0}}')
+        world = ["--mandrel", "cylinder.stl", "--machine", "six_axis.json", "--job", job]
         helix = (program.SOURCE / "data/programs/pipe_helix.ngc").read_text()
         for text, code, word in (("", "nc.no_end", ""), ("\0\1\2", "nc.not_understood", "broken.ngc:1"), ("G91 G93\nG1 C5 F20\nM2\n", "nc.unknown_start", "axis"),
                            (helix.replace("M2\n", ""), "nc.no_end", ":8"),

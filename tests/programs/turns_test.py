@@ -10,8 +10,8 @@ LAYER = {"kind": "helical", "angle": 20.0}
 
 
 class Turns(program.ProgramTest):
-    def wind(self, mandrel, layer, code, **mandrel_job):
-        job = {"mandrel": {"extension": 40.0, **mandrel_job}, "layers": [layer],
+    def wind(self, mandrel, layer, code, tow=6.0, **mandrel_job):
+        job = {"mandrel": {"extension": 40.0, **mandrel_job}, "layers": [layer], "tow": {"width": tow},
                "redundancy": "central-angle"}
         text = self.write("job.json", json.dumps(job))
         result = self.run_program(mandrel, "--machine", MACHINE, "--job", text, "-o", "out")
@@ -38,7 +38,11 @@ class Turns(program.ProgramTest):
         self.assertFalse((self.folder / "out" / "program.ngc").exists())
 
     def pipe(self):
-        return self.make("cylinder", "--radius", "40", "--length", "120", "--edge", "4")
+        return self.make("cylinder", "--radius", "40", "--length", "60", "--edge", "8")
+
+    def vessel(self):
+        return self.make("vessel", "--radius", "30", "--cylinder-length", "50", "--dome-height", "20",
+                         "--opening-radius", "8", "--edge", "4")
 
 
 class Pins(Turns):
@@ -62,11 +66,29 @@ class Pins(Turns):
             self.assertLess(ring["offset_mm"], 20.0)
         for turns in plan["turns"]:
             self.assertLess(turns["extension_mm"], 40.0)
+        self.verified(pipe)
+
+    def verified(self, mandrel):
+        """The program alone says where the pins stand."""
+        program = self.folder / "out/program.ngc"
+        self.done("verify", program, "--mandrel", mandrel, "--machine", MACHINE)
+        text = re.sub(r"\(pins at rim.*\)\n", "", program.read_text())
+        again = self.run_program("verify", self.write("bare.ngc", text), "--mandrel", mandrel, "--machine", MACHINE)
+        self.assertEqual(again.returncode, 1, again.stdout + again.stderr)
+
+    def test_courses_cover_a_pipe(self):
+        pipe = self.make("cylinder", "--radius", "30", "--length", "120", "--edge", "6")
+        self.wind(pipe, {"kind": "cover"}, 0, turn="pins", tow=12.0)
+        report = self.report()
+        for name, check in report["checks"].items():
+            self.assertTrue(check["ok"], name)
+        self.assertEqual(len(report["plan"]["pins"]), 2)
+        self.assertLess(report["plan"]["turn_share"], 0.3)
+        self.verified(pipe)
 
     def test_what_cannot_be_is_said(self):
         pipe = self.pipe()
-        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "100", "--dome-height",
-                           "35", "--opening-radius", "12", "--edge", "5")
+        vessel = self.vessel()
         for mandrel, layer, pins, figure in (
                 (vessel, {"kind": "helical", "angle": 50.0}, {}, ""),
                 (pipe, LAYER, {"count": 41}, "41"),
@@ -87,14 +109,13 @@ class Pins(Turns):
 
 class Poles(Turns):
     def test_only_domes_turn_the_fibre(self):
-        vessel = self.make("vessel", "--radius", "50", "--cylinder-length", "120", "--dome-height",
-                           "35", "--opening-radius", "12", "--edge", "5")
-        self.wind(vessel, {"kind": "polar"}, 0, turn="pole", extension=0.0)
+        self.wind(self.vessel(), {"kind": "polar"}, 0, turn="pole", extension=0.0)
         for rim in self.report()["plan"]["turns"]:
             self.assertEqual(rim["turns"], 0)
-        self.wind(self.pipe(), LAYER, 1, turn="pole")
+        pipe = self.pipe()
+        self.wind(pipe, LAYER, 1, turn="pole")
         self.no_plan()
-        self.wind(self.pipe(), {"kind": "cover"}, 1, turn="pole")
+        self.wind(pipe, {"kind": "cover"}, 1, turn="pole")
         self.no_plan()
 
 

@@ -26,7 +26,8 @@ struct CourseScene {
           rules{mandrel, obstacles, footprints, {}, {}, {}} {
         rules.tow.width_mm = kBand_mm;
         rules.tow.friction = friction;
-        rules.turn = {.friction = friction, .extension_mm = kExtension_mm, .band_mm = kBand_mm};
+        rules.turns.rule = {
+            .friction = friction, .extension_mm = kExtension_mm, .band_mm = kBand_mm};
         rules.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
         rules.max_half_length_mm = 2000.0;
     }

@@ -48,18 +48,18 @@ public:
         LinearProgramme::Solution solution;
         for (int round = 0; round < kMostRounds; ++round) {
             solution = programme.solve();
-            if (!solution.optimal) {
+            if (!solution.feasible) {
                 break;
             }
             const std::vector<double> price = feasible(solution.price);
             const std::vector<double> reduced = reduced_costs(price);
             bound.least_mm = std::max(bound.least_mm, bound_of(price, reduced));
-            if (bound.least_mm >= (1.0 - kGoodEnough) * solution.cost ||
+            if (!solution.optimal || bound.least_mm >= (1.0 - kGoodEnough) * solution.cost ||
                 !add_best(programme, reduced)) {
                 break;
             }
         }
-        if (solution.optimal) {
+        if (solution.feasible) {
             take(solution, bound);
         }
         return bound;

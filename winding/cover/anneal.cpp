@@ -82,7 +82,7 @@ public:
              std::span<const char> allowed, std::vector<PlacedCourse>& courses,
              const AnnealOptions& options)
         : rules_{rules.mandrel, rules.obstacles,  ground.footprints,        rules.tow,
-                 rules.turn,    rules.free_fibre, rules.max_half_length_mm, rules.angle_rad},
+                 rules.turns,   rules.free_fibre, rules.max_half_length_mm, rules.angle_rad},
           ground_(ground),
           samples_(ground.samples),
           library_(library),

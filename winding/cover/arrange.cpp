@@ -23,10 +23,10 @@ std::size_t at(std::int32_t i) {
 
 class Arranger {
 public:
-    Arranger(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+    Arranger(std::span<const Rim> rims, std::span<const Member> members, const CourseTurns& turns,
              std::span<const double> lateness, std::span<OrderedCourse> fibre,
              const ClosedTurns& closed)
-        : members_(members), costs_(rims, members, rule, closed), fibre_(fibre), late_sum_{0.0} {
+        : members_(members), costs_(rims, members, turns, closed), fibre_(fibre), late_sum_{0.0} {
         std::partial_sum(lateness.begin(), lateness.end(), std::back_inserter(late_sum_));
         late_.assign(lateness.begin(), lateness.end());
     }
@@ -115,7 +115,7 @@ private:
 
 }  // namespace
 
-void arrange(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+void arrange(std::span<const Rim> rims, std::span<const Member> members, const CourseTurns& turns,
              std::span<const double> lateness, std::vector<OrderedCourse>& order,
              const ClosedTurns& closed) {
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
@@ -124,7 +124,7 @@ void arrange(std::span<const Rim> rims, std::span<const Member> members, const T
             ++end;
         }
         const std::span<OrderedCourse> fibre = std::span(order).subspan(begin, end - begin);
-        Arranger(rims, members, rule, lateness.subspan(begin, end - begin), fibre, closed).run();
+        Arranger(rims, members, turns, lateness.subspan(begin, end - begin), fibre, closed).run();
         for (OrderedCourse& course : fibre) {
             course.cut_after = false;
         }

@@ -7,7 +7,7 @@
 #include "mesh/rim.h"
 #include "winding/cover/order.h"
 #include "winding/plan/course.h"
-#include "winding/turn/turn.h"
+#include "winding/turn/course_turns.h"
 
 namespace meshwind {
 
@@ -16,7 +16,7 @@ namespace meshwind {
 /// worth the fibre in turns: a course that comes later by the whole plan for being hoop instead of
 /// junction is worth six rounds of the rim. Fibres stay what they are. \param lateness per entry of
 /// the order \param closed turns that are not taken where the fibre has another way
-void arrange(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+void arrange(std::span<const Rim> rims, std::span<const Member> members, const CourseTurns& turns,
              std::span<const double> lateness, std::vector<OrderedCourse>& order,
              const ClosedTurns& closed = {});
 

@@ -88,11 +88,11 @@ public:
                  obstacles,
                  footprints_,
                  options.tow,
-                 options.turn,
+                 options.turns,
                  options.free_fibre,
                  max_half_length_mm(mandrel.surface)} {
-        rules_.turn.friction = options.tow.friction;
-        rules_.turn.band_mm = options.tow.width_mm;
+        rules_.turns.rule.friction = options.tow.friction;
+        rules_.turns.rule.band_mm = options.tow.width_mm;
         rules_.angle_rad = options.angle_rad;
         rules_.lifted = &lifted_;
         rules_.free_fibre.clearance_mm += margin::kCandidates_mm;

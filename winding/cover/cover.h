@@ -18,7 +18,7 @@ inline constexpr int kMostAttempts = 5;
 
 struct CoverOptions {
     Tow tow;
-    TurnRule turn;  ///< friction and band are taken from `tow`
+    CourseTurns turns;  ///< friction and band of the rule are taken from `tow`
     FreeFibreRule free_fibre;
     SelectOptions select;
     const StageAsk* stage = nullptr;    ///< a stage of a wall, which says what lacks where

@@ -13,8 +13,8 @@
 namespace meshwind {
 namespace {
 
-constexpr int kParts = 4;
-using Fields = Eigen::Matrix<double, Eigen::Dynamic, kParts>;
+constexpr int kParts = CourseFields::ColsAtCompileTime;
+using Fields = CourseFields;
 using Shares = Eigen::Matrix<double, kParts, 1>;  // of the modes, or parts of a move
 
 // Steps of the search: the first, in bands of root mean square displacement; by how much one grows
@@ -30,12 +30,13 @@ constexpr double kLeastEigenvalue = 1e-6;
 // The edge of a band is taken for a slope of this width, in bands: samples are as far apart.
 constexpr double kEdgeBands = 0.1;
 
-// Displacements of the stations, in mm, per mm to the left, per rad, and per unit of the steering
-// ahead and behind. From the seed both ways, as in jacobi_field_mm() but with a source: j = y e^G,
+}  // namespace
+
+// From the seed both ways, as in jacobi_field_mm() but with a source: j = y e^G,
 // y'' = -(1 + lambda^2) K y + kn e^-G as far as it is steered otherwise, G the integral of lambda
 // tau ds. Concave places are not steered.
-Fields displacements(const Surface& surface, const SurfacePath& path, const Candidate& candidate,
-                     std::size_t seed) {
+CourseFields displacements(const Surface& surface, const SurfacePath& path,
+                           const Candidate& candidate, std::size_t seed) {
     using Row = Eigen::Array<double, 1, kParts>;
     std::vector<CurvatureAlong> curvature(path.size());
     for (std::size_t i = 0; i < path.size(); ++i) {
@@ -69,6 +70,8 @@ Fields displacements(const Surface& surface, const SurfacePath& path, const Cand
     }
     return fields;
 }
+
+namespace {
 
 // Displacements at right angles to each other, of 1 mm root mean square, and the moves they are of.
 struct Modes {

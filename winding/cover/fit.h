@@ -1,7 +1,10 @@
 /// Fitting a course to what its neighbours leave: by how much it has to move, turn and be steered.
 #pragma once
 
+#include <cstddef>
 #include <span>
+
+#include <Eigen/Core>
 
 #include "winding/cover/placed_course.h"
 #include "winding/laminate/footprint.h"
@@ -14,6 +17,14 @@ inline constexpr double kFitBands = 0.4;
 
 /// Width of the strip that a fit needs, in bands.
 inline constexpr double kStripBands = 1.0 + 2.0 * kFitBands;
+
+/// Displacements to the left in mm, per station of a course: per mm to the left, per rad, and per
+/// unit of the steering ahead of the seed and behind.
+using CourseFields = Eigen::Matrix<double, Eigen::Dynamic, 4>;
+
+/// Of each part of a move from the seed's station, to first order.
+[[nodiscard]] CourseFields displacements(const Surface& surface, const SurfacePath& path,
+                                         const Candidate& candidate, std::size_t seed);
 
 /// A move, and what the course saves after it, to first order.
 struct Fit {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "winding/plan/assemble.h"
-#include "winding/turn/laid_turn.h"
 
 namespace meshwind {
 namespace {
@@ -35,16 +34,6 @@ double plan_station_mm(const CourseRules& rules) {
 double half_turn_station_mm(const CourseRules& rules, const Rim& rim) {
     const double sag_mm = kMostSag * rules.free_fibre.stand_off_mm;
     return std::min(kHalfTurnStation_mm, std::sqrt(8.0 * rim.radius_mm * sag_mm));
-}
-
-Piece turn_between(const CourseRules& rules, const RimCrossing& from, const RimCrossing& to,
-                   TurnsAtRim& turns) {
-    Turn turn =
-        make_turn(rules.mandrel.rims[at(from.rim)], from, to, rules.turn, plan_station_mm(rules));
-    ++turns.turns;
-    turns.dwell_rad += turn.dwell_rad;
-    turns.extension_mm = std::max(turns.extension_mm, turn.run_mm + 0.5 * rules.tow.width_mm);
-    return piece_of_turn(std::move(turn), from.rim);
 }
 
 }  // namespace
@@ -80,16 +69,13 @@ Piece piece_of(const CourseRules& rules, const Member& member, bool backward) {
 
 void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
                     std::vector<Piece>& pieces) {
-    const auto half = [&](const RimCrossing& end) {
-        const Rim& rim = rules.mandrel.rims[at(end.rim)];
-        return half_turn(rim, end, rules.turn, half_turn_station_mm(rules, rim));
-    };
     const RimCrossing& start = start_of(member, backward);
     const RimCrossing& end = end_of(member, backward);
-    Turn before = half(start);
-    before.path = reversed(before.path);
-    pieces.insert(pieces.begin(), piece_of_turn(std::move(before), start.rim));
-    pieces.push_back(piece_of_turn(half(end), end.rim));
+    const Rim& first = rules.mandrel.rims[at(start.rim)];
+    const Rim& last = rules.mandrel.rims[at(end.rim)];
+    pieces.insert(pieces.begin(),
+                  half_turn_to(first, start, rules.turns, half_turn_station_mm(rules, first)));
+    pieces.push_back(half_turn_from(last, end, rules.turns, half_turn_station_mm(rules, last)));
 }
 
 void lay_out(const CourseRules& rules, std::span<const Member> members,
@@ -101,6 +87,7 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
     plan.worst_bridge_mm = 0.0;
     plan.worst_joint_mm = 0.0;
     plan.turns.assign(rules.mandrel.rims.size(), {});
+    plan.pins = rings_of(rules.turns.pins);
     bool fresh = true;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const auto [member, backward] = order[i].course;
@@ -113,9 +100,10 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
         if (!fresh) {
             const RimCrossing& from = end_of(course, backward);
             const LaidCourse& next = order[i + 1].course;
-            add_piece(turn_between(rules, from, start_of(members[at(next.member)], next.backward),
-                                   plan.turns[at(from.rim)]),
-                      plan);
+            add_turn(turn_between(rules.mandrel.rims[at(from.rim)], from,
+                                  start_of(members[at(next.member)], next.backward), rules.turns,
+                                  plan_station_mm(rules)),
+                     plan);
         }
     }
     plan.courses = static_cast<int>(order.size());

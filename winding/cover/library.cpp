@@ -105,7 +105,7 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
         const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(half[e].rim)];
         const PathPoint& last = half[e].path.back();
         course.end[e] = crossing_at(rim, last.position_mm, last.tangent);
-        if (!can_turn(rim, course.end[e], rules.turn)) {
+        if (!can_turn(rim, course.end[e], rules.turns)) {
             return Refusal::NotTurnable;
         }
     }
@@ -122,7 +122,7 @@ void measure_length(const CourseRules& rules, const SurfacePath& path, Member& c
     course.turn_mm = 0.0;
     for (const RimCrossing& end : course.end) {
         const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(end.rim)];
-        course.turn_mm += half_turn_mm(rim, end, rules.turn);
+        course.turn_mm += half_turn_mm(rim, end, rules.turns);
     }
     course.off_angle_mm =
         rules.angle_rad ? angle_kept(rules.mandrel.surface, path, *rules.angle_rad).off_mm : 0.0;

@@ -17,7 +17,7 @@
 #include "winding/plan/free_fibre.h"
 #include "winding/plan/rejection.h"
 #include "winding/plan/tow.h"
-#include "winding/turn/turn.h"
+#include "winding/turn/course_turns.h"
 
 namespace meshwind {
 
@@ -27,7 +27,7 @@ struct CourseRules {
     const RayQuery& obstacles;
     const FootprintFinder& footprints;
     Tow tow;
-    TurnRule turn;
+    CourseTurns turns;
     FreeFibreRule free_fibre;
     double max_half_length_mm =
         1e4;  ///< a candidate that meets no rim within this circles for ever

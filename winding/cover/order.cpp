@@ -20,8 +20,10 @@ constexpr double kClosed_rad = 1e6;
 class Ordering {
 public:
     Ordering(std::span<const Rim> rims, std::span<const Member> members,
-             std::span<const LaidCourse> laid, const TurnRule& rule, const ClosedTurns& closed)
-        : members_(members), costs_(rims, members, rule, closed), laid_(laid.begin(), laid.end()) {}
+             std::span<const LaidCourse> laid, const CourseTurns& turns, const ClosedTurns& closed)
+        : members_(members),
+          costs_(rims, members, turns, closed),
+          laid_(laid.begin(), laid.end()) {}
 
     std::vector<OrderedCourse> run() {
         link();
@@ -258,14 +260,14 @@ double TurnCosts::work_out_rad(const LaidCourse& from, const LaidCourse& to) con
     const RimCrossing& end = end_of(members_[at(from.member)], from.backward);
     const RimCrossing& start = start_of(members_[at(to.member)], to.backward);
     const Rim& rim = rims_[at(end.rim)];
-    const double turn_rad = turn_mm(rim, end, start, rule_) / rim.radius_mm;
+    const double turn_rad = turn_mm(rim, end, start, turns_) / rim.radius_mm;
     return closed_.count({from, to}) != 0 ? turn_rad + kClosed_rad : turn_rad;
 }
 
 std::vector<OrderedCourse> order_courses(std::span<const Rim> rims, std::span<const Member> members,
-                                         std::span<const LaidCourse> laid, const TurnRule& rule,
+                                         std::span<const LaidCourse> laid, const CourseTurns& turns,
                                          const ClosedTurns& closed) {
-    return Ordering(rims, members, laid, rule, closed).run();
+    return Ordering(rims, members, laid, turns, closed).run();
 }
 
 }  // namespace meshwind

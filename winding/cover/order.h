@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "winding/plan/course.h"
-#include "winding/turn/turn.h"
+#include "winding/turn/course_turns.h"
 
 namespace meshwind {
 
@@ -20,9 +20,13 @@ using ClosedTurns = std::set<std::pair<LaidCourse, LaidCourse>>;
 class TurnCosts {
 public:
     /// All is referred to, and must stay as it is.
-    TurnCosts(std::span<const Rim> rims, std::span<const Member> members, const TurnRule& rule,
+    TurnCosts(std::span<const Rim> rims, std::span<const Member> members, const CourseTurns& turns,
               const ClosedTurns& closed)
-        : rims_(rims), members_(members), rule_(rule), closed_(closed), row_(2 * members.size()) {}
+        : rims_(rims),
+          members_(members),
+          turns_(turns),
+          closed_(closed),
+          row_(2 * members.size()) {}
 
     [[nodiscard]] double rad(const LaidCourse& from, const LaidCourse& to);
 
@@ -31,7 +35,7 @@ private:
 
     std::span<const Rim> rims_;
     std::span<const Member> members_;
-    const TurnRule& rule_;
+    const CourseTurns& turns_;
     const ClosedTurns& closed_;
     std::vector<std::size_t> row_;  // from 1, per member and way; 0 where nothing was asked for it
     std::vector<std::vector<double>> known_;  // by rows; not a number where it was not asked for
@@ -45,7 +49,7 @@ private:
 [[nodiscard]] std::vector<OrderedCourse> order_courses(std::span<const Rim> rims,
                                                        std::span<const Member> members,
                                                        std::span<const LaidCourse> laid,
-                                                       const TurnRule& rule,
+                                                       const CourseTurns& turns,
                                                        const ClosedTurns& closed = {});
 
 }  // namespace meshwind

@@ -52,13 +52,13 @@ public:
 private:
     [[nodiscard]] std::vector<OrderedCourse> put_in_order() const {
         std::vector<OrderedCourse> order =
-            order_courses(rules_.mandrel.rims, members_, laid_, rules_.turn, closed_);
+            order_courses(rules_.mandrel.rims, members_, laid_, rules_.turns, closed_);
         std::vector<double> lateness;
         lateness.reserve(order.size());
         for (const OrderedCourse& course : order) {
             lateness.push_back(lateness_.at(course.course.member));
         }
-        arrange(rules_.mandrel.rims, members_, rules_.turn, lateness, order, closed_);
+        arrange(rules_.mandrel.rims, members_, rules_.turns, lateness, order, closed_);
         return order;
     }
 

@@ -1,10 +1,16 @@
 #include "winding/cover/prove.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
+
+#include <Eigen/LU>
 
 #include "core/parallel.h"
 #include "winding/cover/balance.h"
+#include "winding/cover/fit.h"
 #include "winding/cover/lay_out.h"
 
 namespace meshwind {
@@ -26,6 +32,93 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
+// An end as near to where a pin takes hold of it is there.
+constexpr double kAtPin_mm = 0.004;
+
+// A course comes to pins by a few moves, each as far off as the square of the one before; by no
+// more than so many pitches.
+constexpr int kMovesToPins = 4;
+constexpr double kMostPitches = 2.0;
+
+// Directions at a course's ends are told by stations this far apart, at least.
+constexpr double kSlope_mm = 1.0;
+
+// What a course's end is off the nearest pins, and by how much it comes nearer per mm to the left
+// and per rad about the seed.
+struct OffPins {
+    double off_mm;
+    Eigen::RowVector2d nearer;
+};
+
+OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const SurfacePath& path,
+                 const CourseFields& fields, bool last) {
+    const Rim& rim = rules.mandrel.rims[at(end.rim)];
+    const std::size_t station = last ? path.size() - 1 : 0;
+    std::size_t beside = station;
+    while (std::abs(path[beside].s_mm - path[station].s_mm) < kSlope_mm &&
+           beside != (last ? 0 : path.size() - 1)) {
+        beside += last ? std::size_t(-1) : 1;
+    }
+    const auto row = [&](std::size_t i) -> Eigen::RowVector2d {
+        return fields.row(static_cast<Eigen::Index>(i)).head<2>();
+    };
+    const Eigen::RowVector2d left = row(station);
+    const Eigen::RowVector2d turned =
+        (left - row(beside)) / (path[station].s_mm - path[beside].s_mm);
+    const double side = last ? 1.0 : -1.0;
+    return {off_pins_mm(rim, end, rules.turns),
+            -end.sense * side / std::cos(end.angle_rad) * left +
+                end.sense * off_pins_mm_per_rad(rim, end, rules.turns) * turned};
+}
+
+// The least move by which both ends come to pins, by their displacements: nothing where they are
+// there, or would have to go too far.
+std::optional<CourseMove> move_to_pins(const CourseRules& rules, const Member& member,
+                                       const SurfacePath& path, bool& there) {
+    const CourseFields fields =
+        displacements(rules.mandrel.surface, path, member.candidate, seed_station({member, path}));
+    const OffPins first = off_pins(rules, member.end[0], path, fields, false);
+    const OffPins last = off_pins(rules, member.end[1], path, fields, true);
+    there = std::max(std::abs(first.off_mm), std::abs(last.off_mm)) <= kAtPin_mm;
+    Eigen::Matrix2d nearer;
+    nearer << first.nearer, last.nearer;
+    const Eigen::Vector2d move = nearer.inverse() * Eigen::Vector2d(first.off_mm, last.off_mm);
+    const double most_mm = kMostPitches * rules.turns.pins.front().shape.pitch_mm;
+    if (there || !move.allFinite() ||
+        (fields.leftCols<2>() * move).cwiseAbs().maxCoeff() > most_mm) {
+        return std::nullopt;
+    }
+    return CourseMove{move.x(), move.y()};
+}
+
+// Follows a course accurately. Where fibre turns on pins, one beside it that ends at pins.
+Rejection follow_to_pins(const CourseRules& rules, Candidate candidate, Member& member,
+                         FollowedCourse& followed) {
+    for (int moves = 0;; ++moves) {
+        switch (follow_course(rules, candidate, member, followed)) {
+            case Refusal::None:
+                break;
+            case Refusal::Slips:
+                return Rejection::Slip;
+            default:
+                return Rejection::Path;
+        }
+        if (rules.turns.pins.empty()) {
+            return Rejection::None;
+        }
+        bool there = false;
+        const auto move = move_to_pins(rules, member, followed.path, there);
+        if (there) {
+            return Rejection::None;
+        }
+        if (!move || moves == kMovesToPins) {
+            return Rejection::Path;
+        }
+        const PlacedCourse placed{member, followed.path};
+        candidate = moved(rules, placed, seed_station(placed), *move);
+    }
+}
+
 // Which way a windable member is wound from the first node to the second.
 bool leads_backward(const Member& member, const NodePair& nodes) {
     return !(member.windable_forward && nodes_of(member, false) == nodes);
@@ -37,13 +130,9 @@ Rejection prove_course(const CourseRules& rules, const Windability* machine, Pla
     const bool backward = course.backward;
     Member exact;
     FollowedCourse followed;
-    switch (follow_course(rules, course.member.candidate, exact, followed)) {
-        case Refusal::None:
-            break;
-        case Refusal::Slips:
-            return Rejection::Slip;
-        default:
-            return Rejection::Path;
+    if (const Rejection rejection = follow_to_pins(rules, course.member.candidate, exact, followed);
+        rejection != Rejection::None) {
+        return rejection;
     }
     if (nodes_of(exact, backward) != nodes_of(course.member, backward)) {
         return Rejection::Path;

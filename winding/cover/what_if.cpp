@@ -13,13 +13,13 @@ CourseRules loosened(CourseRules rules, WhatIf::Rule rule) {
     switch (rule) {
         case WhatIf::Rule::Friction:
             rules.tow.friction = rules.tow.friction.share(kLooser);
-            rules.turn.friction = rules.turn.friction.share(kLooser);
+            rules.turns.rule.friction = rules.turns.rule.friction.share(kLooser);
             break;
         case WhatIf::Rule::Bridging:
             rules.tow.bridging_tolerance_mm *= kLooser;
             break;
         case WhatIf::Rule::Extension:
-            rules.turn.extension_mm *= kLooser;
+            rules.turns.rule.extension_mm *= kLooser;
             break;
     }
     return rules;

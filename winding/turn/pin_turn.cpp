@@ -43,8 +43,14 @@ constexpr double kHoopStation_mm = 2.0;
 constexpr double kLoweredStation_mm = 0.5;
 constexpr double kArcStation_rad = 2.5 * kPi / 180.0;
 
+// What the fibre bends by about the last pin.
 double swing_end_rad(const PinTurnShape& shape) {
-    return 0.5 * kPi - shape.angle_rad;
+    return 0.5 * kPi - shape.out_rad();
+}
+
+// Fibre from the rim to where it touches a pin.
+double straight_mm(const PinTurnShape& shape, double angle_rad) {
+    return (shape.offset_mm + shape.held_mm * std::sin(angle_rad)) / std::cos(angle_rad);
 }
 
 // The fibre's direction below the hoop from which on it is past the pin after the last.
@@ -149,21 +155,22 @@ public:
           shape_(shape),
           x_(rim_reference(rim)),
           y_(rim.axis.cross(x_)),
-          end_rad_(swing_end_rad(shape)) {}
+          in_rad_(0.5 * kPi - shape.angle_rad),
+          out_rad_(swing_end_rad(shape)) {}
 
     // Of the first pin.
     [[nodiscard]] double azimuth_rad() const { return azimuth_rad(first_mm()); }
 
     void lay() {
-        const double straight = straight_mm();
+        const double straight = straight_mm(shape_, shape_.angle_rad);
         const double last = first_mm() + shape_.skip * shape_.pitch_mm;
         for (const double s :
              even_steps(straight, std::min(kPatternStation_mm, kStationShare * rim_.radius_mm))) {
             run_in(s);
         }
-        for (const double angle : even_steps(end_rad_, kArcStation_rad)) {
+        for (const double angle : even_steps(in_rad_, kArcStation_rad)) {
             s_mm_ = straight + shape_.held_mm * angle;
-            bend(first_mm(), angle - end_rad_);
+            bend(first_mm(), angle - in_rad_);
             starts.back().held = true;
         }
         const double begun = s_mm_;
@@ -183,14 +190,7 @@ private:
     };
 
     // From the fibre's start, developed: around.
-    [[nodiscard]] double first_mm() const {
-        return shape_.offset_mm * std::tan(shape_.angle_rad) +
-               shape_.held_mm / std::cos(shape_.angle_rad);
-    }
-    [[nodiscard]] double straight_mm() const {
-        return (shape_.offset_mm + shape_.held_mm * std::sin(shape_.angle_rad)) /
-               std::cos(shape_.angle_rad);
-    }
+    [[nodiscard]] double first_mm() const { return to_pin_mm(shape_, shape_.angle_rad); }
     [[nodiscard]] double azimuth_rad(double around_mm) const {
         return from_.azimuth_rad + from_.sense * around_mm / rim_.radius_mm;
     }
@@ -250,10 +250,10 @@ private:
     // On the way to the first pin.
     void run_in(double s) {
         if (path.empty()) {
-            add(0.0, 0.0, -end_rad_, 0.0);
+            add(0.0, 0.0, -in_rad_, 0.0);
         }
         s_mm_ = s;
-        add(s * std::sin(shape_.angle_rad), s * std::cos(shape_.angle_rad), -end_rad_, 0.0);
+        add(s * std::sin(shape_.angle_rad), s * std::cos(shape_.angle_rad), -in_rad_, 0.0);
     }
 
     // About a pin.
@@ -301,27 +301,27 @@ private:
         const double begun = s_mm_;
         double slope = 0.0;
         FreeStart lowest = starts.back();
-        for (const double angle : even_steps(end_rad_, kArcStation_rad)) {
+        for (const double angle : even_steps(out_rad_, kArcStation_rad)) {
             s_mm_ = begun + shape_.held_mm * angle;
             bend(last_mm, angle);
             const double turned = shape_.held_mm * std::sin(angle) / rim_.radius_mm;
             const double sinks = -std::cos(angle) * std::tan(turned);
             if (sinks < slope) {
                 slope = sinks;
-                hold(last_mm, end_rad_, angle, rim_.radius_mm * (std::cos(turned) - 1.0), slope);
+                hold(last_mm, out_rad_, angle, rim_.radius_mm * (std::cos(turned) - 1.0), slope);
                 lowest = starts.back();
             }
             starts.back() = lowest;
         }
         const double bent = s_mm_;
-        const double around = last_mm + shape_.held_mm * std::sin(end_rad_);
-        const double z = shape_.offset_mm + shape_.held_mm * std::cos(end_rad_);
-        for (const double s : even_steps(straight_mm(), kHoopStation_mm)) {
+        const double around = last_mm + shape_.held_mm * std::sin(out_rad_);
+        const double z = shape_.offset_mm + shape_.held_mm * std::cos(out_rad_);
+        for (const double s : even_steps(straight_mm(shape_, shape_.out_rad()), kHoopStation_mm)) {
             s_mm_ = bent + s;
-            add(around + s * std::cos(end_rad_), z - s * std::sin(end_rad_), end_rad_, 0.0);
+            add(around + s * std::cos(out_rad_), z - s * std::sin(out_rad_), out_rad_, 0.0);
             const double turned =
-                (shape_.held_mm * std::sin(end_rad_) + s * std::cos(end_rad_)) / rim_.radius_mm;
-            if (-std::cos(end_rad_) * std::tan(turned) > slope) {
+                (shape_.held_mm * std::sin(out_rad_) + s * std::cos(out_rad_)) / rim_.radius_mm;
+            if (-std::cos(out_rad_) * std::tan(turned) > slope) {
                 starts.back() = {lowest.from_mm + s * lowest.direction, lowest.direction, true};
             }
         }
@@ -332,22 +332,27 @@ private:
     PinTurnShape shape_;
     Vector3d x_;
     Vector3d y_;
-    double end_rad_;
+    double in_rad_;  // what the fibre bends by about the first pin
+    double out_rad_;
     double s_mm_ = 0.0;
 };
 
 }  // namespace
 
+double to_pin_mm(const PinTurnShape& shape, double angle_rad) {
+    return shape.offset_mm * std::tan(angle_rad) + shape.held_mm / std::cos(angle_rad);
+}
+
 double pin_turn_around_mm(const PinTurnShape& shape) {
-    return shape.skip * shape.pitch_mm + 2.0 * shape.offset_mm * std::tan(shape.angle_rad) +
-           2.0 * shape.held_mm / std::cos(shape.angle_rad);
+    return shape.skip * shape.pitch_mm + to_pin_mm(shape, shape.angle_rad) +
+           to_pin_mm(shape, shape.out_rad());
 }
 
 double pin_turn_length_mm(const PinTurnShape& shape) {
-    return shape.skip * shape.pitch_mm +
-           2.0 * (shape.offset_mm + shape.held_mm * std::sin(shape.angle_rad)) /
-               std::cos(shape.angle_rad) +
-           2.0 * swing_end_rad(shape) * shape.held_mm;
+    const auto to_hoop = [&](double angle_rad) {
+        return straight_mm(shape, angle_rad) + (0.5 * kPi - angle_rad) * shape.held_mm;
+    };
+    return shape.skip * shape.pitch_mm + to_hoop(shape.angle_rad) + to_hoop(shape.out_rad());
 }
 
 PinFit fit_pins(const PinTurnShape& shape, double strand_mm, std::optional<double> height_mm) {

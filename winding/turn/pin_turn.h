@@ -4,10 +4,13 @@
 ///
 /// On the unrolled cylinder that is straight lines and arcs that touch: with R the extension's
 /// radius, alpha the angle to the axis, z the pins' distance from the rim, rho that of the fibre
-/// from a pin's axis, p from pin to pin and k pins run behind, from the rim to the rim again
+/// from a pin's axis, from the rim to the pin that is bent about
 ///
-///     around = k p + 2 z tan(alpha) + 2 rho / cos(alpha)
-///     length = k p + 2 (z + rho sin(alpha)) / cos(alpha) + (pi - 2 alpha) rho
+///     around = z tan(alpha) + rho / cos(alpha)
+///     length = (z + rho sin(alpha)) / cos(alpha) + (pi / 2 - alpha) rho
+///
+/// and k p along the hoop, p from pin to pin and k pins run behind. In patterns alpha is the same
+/// on the way back; courses come back at their own.
 ///
 /// Pins that stand as closely as bands do are all touched by a free fibre that sinks towards the
 /// wall behind them. So the last one takes hold of it ahead of the landing point: with psi from
@@ -38,15 +41,21 @@ struct PinWish {
 
 /// A turn on the unrolled extension.
 struct PinTurnShape {
-    double radius_mm = 0.0;    ///< of the extension
-    double angle_rad = 0.0;    ///< between fibre and axis at the rim, 0 < .. < pi / 2
-    double held_mm = 0.0;      ///< rho
-    double offset_mm = 0.0;    ///< z
-    double pitch_mm = 0.0;     ///< p
-    int skip = 0;              ///< k
+    double radius_mm = 0.0;            ///< of the extension
+    double angle_rad = 0.0;            ///< between fibre and axis at the rim, 0 < .. < pi / 2
+    std::optional<double> back_rad{};  ///< the same on the way back, where it is another
+    double held_mm = 0.0;              ///< rho
+    double offset_mm = 0.0;            ///< z
+    double pitch_mm = 0.0;             ///< p
+    int skip = 0;                      ///< k
     double lead_mm = 0.0;      ///< of the landing point before the last pin as the eye swings
     double diameter_mm = 0.0;  ///< of the pins
+
+    [[nodiscard]] double out_rad() const { return back_rad.value_or(angle_rad); }
 };
+
+/// Distance around the extension from a crossing of the rim to the pin that the fibre bends about.
+[[nodiscard]] double to_pin_mm(const PinTurnShape& shape, double angle_rad);
 
 /// Distance around the extension between the two crossings of the rim.
 [[nodiscard]] double pin_turn_around_mm(const PinTurnShape& shape);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/units.h"
 #include "tests/support/block_lists.h"
 
 namespace meshwind {
@@ -273,6 +274,42 @@ TEST(LinuxCncRead, TieOnIsReadWholeOrRefused) {
     Machine machine = six_axis();
     machine.controller.header = {"(tie on at X1 Y2 Z3 on the mandrel)"};
     EXPECT_THROW((void)write(machine, random_list(machine, 1, 3)), InputError);
+}
+
+// The head of a program that turns on pins says where they stand.
+TEST(LinuxCncRead, PinsAreReadWholeOrRefused) {
+    const Machine machine = six_axis();
+    PinRing ring{.rim = 2,
+                 .count = 36,
+                 .diameter_mm = 2.0,
+                 .height_mm = 2.25,
+                 .strand_mm = 0.690988,
+                 .offset_mm = 8.0,
+                 .azimuth_rad = rad_from_deg(-12.5)};
+    ProgramHeader header;
+    header.pins = {ring};
+    const std::string text = LinuxCnc().write(machine, random_list(machine, 1, 3), header);
+    const std::string line = "pins at rim 2: N36 D2.0000 H2.2500 S0.690988 Z8.000000 A-12.5000000";
+    ASSERT_NE(text.find('(' + line + ")\n"), std::string::npos) << text;
+    const BlockList read = LinuxCnc().read(text, "p.ngc", machine);
+    ASSERT_EQ(read.pins.size(), 1U);
+    EXPECT_EQ(read.pins[0].rim, 2);
+    EXPECT_EQ(read.pins[0].count, 36);
+    EXPECT_EQ(read.pins[0].height_mm, 2.25);
+    EXPECT_EQ(read.pins[0].strand_mm, 0.690988);
+    EXPECT_EQ(read.pins[0].offset_mm, 8.0);
+    EXPECT_NEAR(read.pins[0].azimuth_rad, ring.azimuth_rad, 1e-15);
+    const std::string moves = kStart + "G1 X1 F60\nM2\n";
+    for (const char* bad :
+         {"pins at rim ", "pins at rim 0: N36", "pins at rim 0.5: N36 D2 H2 S1 Z8 A0",
+          "pins at rim 0: N0 D2 H2 S1 Z8 A0", "pins at rim 0: N3.5 D2 H2 S1 Z8 A0",
+          "pins at rim 0: N36 D0 H2 S1 Z8 A0", "pins at rim 0: N36 D2 H-2 S1 Z8 A0",
+          "pins at rim 0: N36 D2 H2 S1 Z8 Anan", "pins at rim -1: N36 D2 H2 S1 Z8 A0",
+          "pins at rim 0: N1e9 D2 H2 S1 Z8 A0", "pins at rim 0: N99999999999 D2 H2 S1 Z8 A0",
+          "pins at rim 0: N36 D2 H2 S1 Z8 A0 "}) {
+        EXPECT_EQ(refusal('(' + std::string(bad) + ")\n" + moves), "nc.pins p.ngc:1") << bad;
+    }
+    EXPECT_EQ(refusal("(pins at rim 0: N36 D2 H2 S1 Z8 A-90)\n" + moves), "accepted");
 }
 
 TEST(LinuxCncRead, SurvivesEveryTruncationAndByteChange) {

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr TurnRule kRule{.friction = 0.25, .extension_mm = 150.0, .band_mm = 6.0};
+const CourseTurns kTurns{{.friction = 0.25, .extension_mm = 150.0, .band_mm = 6.0}};
 constexpr double kThreeRounds_rad = 6.0 * kPi;  // per lateness of 1 over the whole plan
 
 struct Scene {
@@ -36,7 +36,7 @@ Scene random_scene(std::uint64_t seed) {
         scene.members.push_back(test::random_member(draw, rims, 20));
         laid.push_back({i, !scene.members.back().windable_forward});
     }
-    scene.order = order_courses(scene.rims, scene.members, laid, kRule);
+    scene.order = order_courses(scene.rims, scene.members, laid, kTurns);
     for (std::size_t i = 0; i < scene.order.size(); ++i) {
         scene.lateness.push_back(draw.between(-1.0, 1.0));
     }
@@ -68,7 +68,7 @@ double worth(const Scene& scene, const std::vector<OrderedCourse>& order) {
                 start_of(member_of(scene, order[i + 1]), order[i + 1].course.backward);
             EXPECT_EQ(arrival_node(from), departure_node(to));
             const Rim& rim = scene.rims[static_cast<std::size_t>(from.rim)];
-            worth -= turn_mm(rim, from, to, kRule) / rim.radius_mm;
+            worth -= turn_mm(rim, from, to, kTurns) / rim.radius_mm;
             continue;
         }
         const auto courses = static_cast<double>(i + 1 - begin);
@@ -121,7 +121,7 @@ TEST(Arrange, KeepsTheFibresAndLeavesNothingToGain) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Scene scene = random_scene(seed);
         std::vector<OrderedCourse> order = scene.order;
-        arrange(scene.rims, scene.members, kRule, scene.lateness, order);
+        arrange(scene.rims, scene.members, kTurns, scene.lateness, order);
         ASSERT_EQ(order.size(), scene.order.size());
         for (std::size_t i = 0, begin = 0; i < order.size(); ++i) {
             ASSERT_EQ(order[i].cut_after, scene.order[i].cut_after);
@@ -159,7 +159,7 @@ TEST(Arrange, SortsRoundsByLateness) {
         scene.order.push_back({{i, false}, i == 4});
     }
     std::vector<OrderedCourse> order = scene.order;
-    arrange(scene.rims, scene.members, kRule, scene.lateness, order);
+    arrange(scene.rims, scene.members, kTurns, scene.lateness, order);
     std::vector<std::int32_t> found;
     for (const OrderedCourse& course : order) {
         found.push_back(course.course.member);

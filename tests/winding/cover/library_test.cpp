@@ -50,7 +50,7 @@ void expect_ends_at_rims(const Scene& scene, const Member& member, const Surface
         EXPECT_NEAR(std::remainder(again.azimuth_rad - end.azimuth_rad, 2.0 * kPi), 0.0, 1e-9);
         EXPECT_NEAR(again.angle_rad, end.angle_rad, 1e-9);
         EXPECT_EQ(again.sense, end.sense);
-        EXPECT_TRUE(can_turn(rim, end, scene.rules.turn));
+        EXPECT_TRUE(can_turn(rim, end, scene.rules.turns));
     }
 }
 

@@ -10,7 +10,7 @@
 namespace meshwind {
 namespace {
 
-constexpr TurnRule kRule{.friction = 0.25, .extension_mm = 150.0, .band_mm = 6.0};
+const CourseTurns kTurns{{.friction = 0.25, .extension_mm = 150.0, .band_mm = 6.0}};
 
 const Member& member_of(const std::vector<Member>& members, const LaidCourse& c) {
     return members[static_cast<std::size_t>(c.member)];
@@ -111,7 +111,7 @@ TEST(OrderCourses, LaysEveryCourseOnceWithNoMoreCutsThanNeeded) {
             members.push_back(test::random_member(draw, rims, 20));
         }
         const std::vector<LaidCourse> laid = lay_all(draw, members);
-        const auto order = order_courses(test::plain_rims(rims), members, laid, kRule);
+        const auto order = order_courses(test::plain_rims(rims), members, laid, kTurns);
         expect_one_trail_through_all(members, laid, order);
         EXPECT_LE(fibres_of(order),
                   fewest_fibres(members, laid, 2 * static_cast<std::size_t>(rims)));
@@ -134,7 +134,7 @@ void expect_joined(std::int32_t touched_rim, double steep_rad = 1.1) {
     const std::vector<Member> members{member(0, -1, 1, 1), member(touched_rim, -1, touched_rim, 1)};
     // The round is listed first and is its own nearest successor.
     const std::vector<LaidCourse> laid{{1, false}, {0, false}};
-    const auto order = order_courses(test::plain_rims(2), members, laid, kRule);
+    const auto order = order_courses(test::plain_rims(2), members, laid, kTurns);
     expect_one_trail_through_all(members, laid, order);
     EXPECT_EQ(fibres_of(order), 1);
 }
@@ -173,7 +173,7 @@ TEST(OrderCourses, TurnsEndsThatAreAlike) {
             member.windable_forward = true;
             laid.push_back({i, false});
         }
-        const auto order = order_courses(test::plain_rims(1), members, laid, kRule);
+        const auto order = order_courses(test::plain_rims(1), members, laid, kTurns);
         ASSERT_EQ(order.size(), 4U);
         for (std::size_t i = 0; i + 1 < order.size(); ++i) {
             EXPECT_EQ(end_of(member_of(members, order[i].course), false).angle_rad,
@@ -196,7 +196,7 @@ TEST(OrderCourses, TakesNoClosedTurnWhereThereIsAnotherWay) {
     const ClosedTurns one_way{{laid[0], laid[1]}, {laid[1], laid[2]}, {laid[2], laid[0]}};
     const ClosedTurns other_way{{laid[1], laid[0]}, {laid[2], laid[1]}, {laid[0], laid[2]}};
     for (const ClosedTurns& closed : {one_way, other_way}) {
-        const auto order = order_courses(test::plain_rims(1), members, laid, kRule, closed);
+        const auto order = order_courses(test::plain_rims(1), members, laid, kTurns, closed);
         ASSERT_EQ(order.size(), 3U);
         EXPECT_EQ(fibres_of(order), 1);
         EXPECT_EQ(closed.count({order[0].course, order[1].course}), 0U);
@@ -208,10 +208,10 @@ TEST(OrderCourses, OfOneCourseIsThatCourse) {
     test::Draw draw(1);
     const std::vector<Member> members{test::random_member(draw, 2, 20)};
     const auto order =
-        order_courses(test::plain_rims(2), members, std::vector<LaidCourse>{{0, false}}, kRule);
+        order_courses(test::plain_rims(2), members, std::vector<LaidCourse>{{0, false}}, kTurns);
     ASSERT_EQ(order.size(), 1U);
     EXPECT_TRUE(order[0].cut_after);
-    EXPECT_TRUE(order_courses(test::plain_rims(2), members, {}, kRule).empty());
+    EXPECT_TRUE(order_courses(test::plain_rims(2), members, {}, kTurns).empty());
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ bool plan_and_judge_again(const Shape& shape, std::uint64_t seed) {
     options.tow.width_mm = kWidth_mm;
     options.tow.friction = kFriction;
     options.tow.bridging_tolerance_mm = kBridge_mm;
-    options.turn.extension_mm = kExtension_mm;
+    options.turns.rule.extension_mm = kExtension_mm;
     options.free_fibre.min_mm = 40.0;
     options.free_fibre.head_radius_mm = kHead_mm;
     options.free_fibre.clearance_mm = kClearance_mm;

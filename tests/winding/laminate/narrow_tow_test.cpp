@@ -136,7 +136,7 @@ TEST(NarrowTow, CoverAgreesWithAnUnrolledGrid) {
         const Mandrel mandrel = test::made_cylinder(kRadius_mm, 60.0, edge_mm);
         CoverOptions options;
         options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.25};
-        options.turn.extension_mm = 100.0;
+        options.turns.rule.extension_mm = 100.0;
         options.free_fibre.start_mm = 2.0 * edge_mm;
         options.candidates = 500;
         options.rounds = 0;
