@@ -18,6 +18,7 @@
 #include "report/page/page_arrays.h"
 #include "report/report_checks.h"
 #include "winding/laminate/wound_angle.h"
+#include "winding/turn/pin.h"
 
 namespace meshwind {
 namespace {
@@ -341,6 +342,11 @@ private:
             if (first_.job.mandrel.extension_mm > 0.0) {
                 const TriangleSoup one = extension_of(rim, first_.job.mandrel.extension_mm);
                 append(all, one);
+            }
+        }
+        for (const PinRing& ring : first_.pins) {
+            for (const Pin& pin : pins_of(ring, first_.mandrel.rims[std::size_t(ring.rim)])) {
+                append(all, mesh_of(pin));
             }
         }
         if (all.faces.empty()) {

@@ -106,7 +106,7 @@ Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run
         const PathPoint& last = half[e].path.back();
         course.end[e] = crossing_at(rim, last.position_mm, last.tangent);
         if (!can_turn(rim, course.end[e], rules.turns)) {
-            return Refusal::NotTurnable;
+            return rules.turns.pins.empty() ? Refusal::NotTurnable : Refusal::TouchesPins;
         }
     }
     run.seed = half[0].path.size() - 1;

@@ -10,6 +10,8 @@ const char* name_of(Refusal refusal) {
             return "reaches no rim";
         case Refusal::NotTurnable:
             return "too steep at a rim to be turned by friction on the extension";
+        case Refusal::TouchesPins:
+            return "too flat at a rim to pass between two pins";
         case Refusal::Bridging:
             return "bridges more than the tolerance";
         case Refusal::Slips:

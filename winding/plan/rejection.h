@@ -7,8 +7,16 @@
 namespace meshwind {
 
 /// Why a candidate is not admissible, in the order of the checks.
-enum class Refusal : std::uint8_t { None, NoRim, NotTurnable, Bridging, Slips, NotWindable };
-inline constexpr std::size_t kRefusals = 6;
+enum class Refusal : std::uint8_t {
+    None,
+    NoRim,
+    NotTurnable,  ///< by friction
+    TouchesPins,  ///< on its way between two of them
+    Bridging,
+    Slips,
+    NotWindable
+};
+inline constexpr std::size_t kRefusals = 7;
 
 /// Words for a report: "reaches no rim", ...
 [[nodiscard]] const char* name_of(Refusal refusal);
