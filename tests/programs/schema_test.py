@@ -64,6 +64,12 @@ class Schemas(program.ProgramTest):
         failed = self.wound(self.make(*TEE), "--effort", "0.1", *TOW, "--set", "tow.friction=0.01", "--set",
                             "redundancy=central-angle", code=1)
         self.assertFalse(failed["ok"])
+        # Without a plan there is nothing to write.
+        result = self.run_program("wind", self.make(*PIPE), *layers("cover"), "--set", "mandrel.turn=pins", "--set",
+                                  "mandrel.extension=5", "--json", "-o", "bare")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assert_held("report", json.loads(result.stdout))
+        self.assertNotIn("program", json.loads(result.stdout))
 
     def run_cover(self, tee, *job):
         """Whether it passes is not what is looked at here."""
