@@ -22,11 +22,8 @@ struct LinearProgramme::Model {
 
 namespace {
 
-// The simplex method goes round in a circle now and then, where many bases are one corner. Columns
-// by the hundred beside eight hundred rows take two thousand steps.
-constexpr int kMostSteps = 20'000;
-
-// Then rows may lack so much, of their bound.
+// The simplex method goes round in a circle now and then, where many bases are one corner. Then
+// rows may lack so much, of their bound.
 constexpr double kMostLack = 1e-4;
 
 // GLPK counts rows and columns from 1.
@@ -95,13 +92,13 @@ int LinearProgramme::add_column(double cost, double most, std::span<const RowEnt
     return column - 1;
 }
 
-LinearProgramme::Solution LinearProgramme::solve() {
+LinearProgramme::Solution LinearProgramme::solve(int most_steps) {
     Model& model = *model_;
     glp_smcp options;
     glp_init_smcp(&options);
     options.msg_lev = GLP_MSG_OFF;
     options.meth = GLP_PRIMAL;
-    options.it_lim = kMostSteps;
+    options.it_lim = most_steps;
     if (glp_simplex(model.glp, &options) == GLP_EITLIM) {
         tell_apart(model);
         glp_simplex(model.glp, &options);

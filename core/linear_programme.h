@@ -46,9 +46,13 @@ public:
     };
     /// The first call from nothing, each further one from where the last ended. Where the method
     /// goes round in a circle it goes on with rows that may lack up to 1e-4 of their bounds.
-    [[nodiscard]] Solution solve();
+    /// \param most_steps after which it is taken to go round
+    [[nodiscard]] Solution solve(int most_steps = kMostSteps);
 
 private:
+    // Columns by the hundred beside eight hundred rows take two thousand.
+    static constexpr int kMostSteps = 20'000;
+
     struct Model;
     static void tell_apart(Model& model);
     std::unique_ptr<Model> model_;

@@ -98,7 +98,7 @@ Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) 
     pattern.angle_rad = angle_rad;
     pattern.layers =
         kind == PatternKind::Hoop ? task.layer.target_layers : covers_of(task.layer.target_layers);
-    pattern.tow = task.tow();
+    pattern.tow = planned_tow(task.setup);
     pattern.turn.extension_mm = job.mandrel.extension_mm;
     if (kind == PatternKind::Hoop && task.options.bare != nullptr) {
         pattern.hoop_z_mm = cylinder_of(*task.options.bare);
@@ -167,7 +167,7 @@ TriedPlan plan_elbow_layer(const LayerTask& task) {
         elbow.angle_rad = rad_from_deg(*layer.angle_deg);
     }
     elbow.layers = covers_of(layer.target_layers);
-    elbow.tow = task.tow();
+    elbow.tow = planned_tow(task.setup);
     elbow.turn.extension_mm = task.setup.job.mandrel.extension_mm;
     elbow.context = task.options.context;
     elbow.on_layers = task.options.bare != nullptr;
@@ -191,12 +191,9 @@ std::string fits_all(const LayerTask& /*task*/) {
 TriedPlan plan_cover_layer(const LayerTask& task) {
     const Setup& setup = task.setup;
     CoverOptions cover;
-    cover.tow = task.tow();
+    cover.tow = planned_tow(task.setup);
     cover.turns.rule.extension_mm = setup.job.mandrel.extension_mm;
-    if (!setup.pins.empty()) {
-        std::string failure;
-        cover.turns.pins = pins_for_courses(setup, failure);
-    }
+    cover.turns.pins = task.options.pins;
     cover.free_fibre = setup.rule.free_fibre;
     cover.select.target_layers = static_cast<int>(std::ceil(task.layer.target_layers));
     if (task.layer.angle_deg) {
@@ -233,11 +230,6 @@ const TubeFinding& LayerTask::tube() const {
         }
     }
     return *found_tube;
-}
-
-Tow LayerTask::tow() const {
-    const Job::TowJob& tow = setup.job.tow;
-    return {tow.width_mm, tow.thickness_mm, setup.friction.planned(), tow.bridging_tolerance_mm};
 }
 
 std::span<const LayerPlanner> layer_planners() {

@@ -25,8 +25,6 @@ struct LayerTask {
     [[nodiscard]] const RevolutionFinding& revolution() const;
     /// Layers follow the bare tube's line, whatever shape they have.
     [[nodiscard]] const TubeFinding& tube() const;
-    /// What is planned with: less than all friction.
-    [[nodiscard]] Tow tow() const;
 };
 
 struct LayerPlanner {

@@ -53,7 +53,7 @@ PlannedLayer cover_instead(const LayerTask& task, const LayerPlanner& cover,
                           " m2 is too large to be covered by single courses of a tow of " +
                           fixed(tow_mm, 1) + " mm instead, unless \"kind\": \"cover\" asks for it");
     }
-    if (traits_of(task.setup.job.mandrel.turn).reads_pins) {
+    if (traits_of(task.setup.job.mandrel.turn).reads_pins) {  // none stand that courses could use
         return failed(Planner::Pattern, "no pattern is laid: " + why);
     }
     task.options.context.report_remark("no pattern is laid: " + why +
@@ -128,8 +128,10 @@ PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer, const Windabi
     return asked.kind == LayerKind::Auto ? plan_best(task) : plan_asked_for(task);
 }
 
-bool is_covered_on_pins(const Setup& setup, const LayerJob& layer,
-                        const LayerPlanOptions& options) {
+bool needs_pins_first(const Setup& setup, const LayerJob& layer, const LayerPlanOptions& options) {
+    if (!traits_of(setup.job.mandrel.turn).reads_pins) {
+        return false;
+    }
     const LayerKind kind = asked_of(layer, options).kind;
     return kind == LayerKind::Cover ||
            (kind == LayerKind::Auto && !find_revolution(setup.mandrel).body);

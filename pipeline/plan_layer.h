@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/run_context.h"
 #include "pipeline/job/job.h"
 #include "pipeline/setup.h"
 #include "winding/laminate/stage_ask.h"
 #include "winding/plan/windability.h"
+#include "winding/turn/course_turns.h"
 
 namespace meshwind {
 
@@ -24,6 +26,7 @@ struct LayerPlanOptions {
     const Plan* before = nullptr;     ///< of the layer before: its fibre goes on where it can
     double least_covered = 0.0;       ///< as in CoverOptions
     const StageAsk* stage = nullptr;  ///< of a layer of kind Wall
+    std::vector<PinStand> pins{};     ///< that courses turn on, by rim; empty: by friction
 };
 
 /// A cover of a body that has patterns is planned on a job's own account only where the wall is no
@@ -46,9 +49,9 @@ struct PlannedLayer {
                                       const Windability& machine,
                                       const LayerPlanOptions& options = {});
 
-/// Whether courses cover the part for a layer whose courses turn on pins: else it is a pattern that
-/// says where they stand.
-[[nodiscard]] bool is_covered_on_pins(const Setup& setup, const LayerJob& layer,
-                                      const LayerPlanOptions& options = {});
+/// Whether pins have to stand before the layer is planned: where courses cover the part and turn on
+/// them. Those of a pattern follow from it.
+[[nodiscard]] bool needs_pins_first(const Setup& setup, const LayerJob& layer,
+                                    const LayerPlanOptions& options = {});
 
 }  // namespace meshwind

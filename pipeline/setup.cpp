@@ -238,11 +238,9 @@ Setup setup_for(const Setup& setup, Mandrel mandrel, std::size_t layer) {
     return next;
 }
 
-std::vector<PinStand> pins_for_courses(const Setup& setup, std::string& failure) {
-    const Job& job = setup.job;
-    const Tow tow{job.tow.width_mm, job.tow.thickness_mm, setup.friction.planned(),
-                  job.tow.bridging_tolerance_mm};
-    return stand_pins(setup.mandrel.rims, job.mandrel.pins, tow, job.mandrel.extension_mm, failure);
+Tow planned_tow(const Setup& setup) {
+    const Job::TowJob& tow = setup.job.tow;
+    return {tow.width_mm, tow.thickness_mm, setup.friction.planned(), tow.bridging_tolerance_mm};
 }
 
 void put_pins(Setup& setup, std::span<const PinRing> rings) {

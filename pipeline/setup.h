@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "machines/machine.h"
@@ -17,7 +16,8 @@
 #include "postproc/nc/dialect.h"
 #include "postproc/verify/verify.h"
 #include "winding/plan/friction.h"
-#include "winding/turn/course_turns.h"
+#include "winding/plan/tow.h"
+#include "winding/plan/turns.h"
 #include "winding/turn/pin.h"
 
 namespace meshwind {
@@ -63,9 +63,8 @@ struct Setup {
 /// \param layer that is wound on it, counted from 0
 [[nodiscard]] Setup setup_for(const Setup& setup, Mandrel mandrel, std::size_t layer);
 
-/// Rings on which courses turn, as the job wants them, one for each rim.
-/// \return none, with the reason in `failure`, where fibre cannot turn on pins
-[[nodiscard]] std::vector<PinStand> pins_for_courses(const Setup& setup, std::string& failure);
+/// The tow that is planned with: with less than all friction.
+[[nodiscard]] Tow planned_tow(const Setup& setup);
 
 /// Puts the pins that a plan needs on the mandrel: what can be hit, and what holds the fibre.
 void put_pins(Setup& setup, std::span<const PinRing> rings);

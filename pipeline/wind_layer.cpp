@@ -56,10 +56,9 @@ private:
             plan.least_covered = options_.least_covered;
             plan.stage = options_.stage;
             plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;
-            if (traits_of(setup_.job.mandrel.turn).reads_pins &&
-                is_covered_on_pins(setup_, layer_.job, plan)) {
+            if (needs_pins_first(setup_, layer_.job, plan)) {
                 planned.plan.planner = Planner::Cover;
-                put_pins(layer_.setup, rings_of(pins_for_courses(setup_, planned.plan.failure)));
+                plan.pins = stand_pins(planned.plan.failure);
             }
             if (planned.plan.failure.empty()) {
                 planned = plan_layer(setup_, layer_.job, machine, plan);
@@ -79,6 +78,15 @@ private:
             options_.stage_done("plan");
         }
         return std::move(planned.trial);
+    }
+
+    // Puts them on the mandrel; none, with the reason, where fibre cannot turn on pins.
+    std::vector<PinStand> stand_pins(std::string& failure) {
+        const Job::MandrelJob& job = setup_.job.mandrel;
+        std::vector<PinStand> stands = meshwind::stand_pins(
+            setup_.mandrel.rims, job.pins, planned_tow(setup_), job.extension_mm, failure);
+        put_pins(layer_.setup, rings_of(stands));
+        return stands;
     }
 
     [[nodiscard]] static std::string place_of(const EyePoint& eye) {

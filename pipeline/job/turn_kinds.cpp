@@ -28,12 +28,13 @@ std::unique_ptr<RimTurns> turns_about_poles(const Job& /*job*/, const Tow& /*tow
 // Turns on pins belong to a pattern, which says how many there are and where.
 std::string why_not_on_pins(const Job& job, bool points_given) {
     const std::string mend =
-        " is not offered yet; give one layer of kind \"helical\" or \"lattice\" with its angle";
+        " is not offered yet; give one layer of kind \"helical\" or \"lattice\" with its angle, or "
+        "layers of kinds \"cover\" and \"wall\"";
     if (points_given) {
         return "turning on pins with landing points that are given is not offered yet; use "
                "\"friction\"";
     }
-    const auto is_any_of = [&](const LayerJob& layer, std::initializer_list<LayerKind> kinds) {
+    const auto is_any_of = [](const LayerJob& layer, std::initializer_list<LayerKind> kinds) {
         return std::find(kinds.begin(), kinds.end(), layer.kind) != kinds.end();
     };
     const bool courses = std::all_of(job.layers.begin(), job.layers.end(), [&](const LayerJob& l) {

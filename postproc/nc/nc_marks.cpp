@@ -12,6 +12,10 @@ namespace {
 constexpr std::string_view kTieOn = "tie on";
 constexpr std::string_view kPins = "pins at rim ";
 
+bool begins_with(std::string_view comment, std::string_view words) {
+    return comment.substr(0, words.size()) == words;
+}
+
 // More pins at a ring, or mm of one, than anything has.
 constexpr double kMostOfPins = 1e4;
 
@@ -91,13 +95,13 @@ void NcMarks::tie_on(const NcLine& line, std::string_view comment, BlockList& li
 void NcMarks::pins(const NcLine& line, std::string_view comment, BlockList& list) {
     static constexpr std::array<std::string_view, 7> kBefore = {kPins, ": N", " D", " H",
                                                                 " S",  " Z",  " A"};
-    if (comment.substr(0, kPins.size()) != kPins) {
+    if (!begins_with(comment, kPins)) {
         return;
     }
     std::array<double, kBefore.size()> value{};
     for (std::size_t i = 0; i < kBefore.size(); ++i) {
-        const bool key = comment.substr(0, kBefore[i].size()) == kBefore[i];
-        comment.remove_prefix(key ? kBefore[i].size() : comment.size());
+        comment.remove_prefix(begins_with(comment, kBefore[i]) ? kBefore[i].size()
+                                                               : comment.size());
         const auto [end, error] = std::from_chars(comment.data(), comment.data() + comment.size(),
                                                   value[i], std::chars_format::fixed);
         if (error != std::errc{} || !std::isfinite(value[i]) ||
@@ -118,6 +122,10 @@ void NcMarks::pins(const NcLine& line, std::string_view comment, BlockList& list
     if (!comment.empty() || !whole || !(ring.diameter_mm > 0.0) || !(ring.height_mm > 0.0)) {
         bad_pins(line);
     }
+    if (std::any_of(list.pins.begin(), list.pins.end(),
+                    [&](const PinRing& other) { return other.rim == ring.rim; })) {
+        line.fail("nc.pins", "a second ring of pins at one rim; keep one");
+    }
     list.pins.push_back(ring);
 }
 
@@ -133,8 +141,7 @@ std::string code_of_nc(NcComments comments, std::string_view text, const std::st
             code.erase(0, std::min(code.find_first_not_of("0123456789", 1), code.size()));
         }
         for (const std::string_view comment : line.comments) {
-            if (comment.substr(0, kTieOn.size()) == kTieOn ||
-                comment.substr(0, kPins.size()) == kPins) {
+            if (begins_with(comment, kTieOn) || begins_with(comment, kPins)) {
                 code += comment.substr(0, comment.find_last_not_of(" \t") + 1);
             }
         }

@@ -48,8 +48,7 @@ constexpr int kMaxBridges = 50;
 // Fibre about a pin is recorded so often.
 constexpr double kPinStation_mm = 0.25;
 
-// Where along its curve the eye is in line with a place about a pin: to the last digits, for which
-// ten steps are mostly enough.
+// Where along its curve the eye is in line with a place about a pin: to the last digits.
 constexpr int kPinRootBits = 50;
 constexpr std::uintmax_t kPinRootSteps = 60;
 

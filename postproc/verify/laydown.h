@@ -73,7 +73,7 @@ struct LaidAt {
     std::size_t block = 0;
     bool lifted = false;  ///< on the wall under a bridge; the fibre is in the air there
     double gap_mm = 0.0;  ///< height of the fibre over the wall, where lifted
-    bool held = false;    ///< at a pin that the fibre bends about
+    bool held = false;    ///< at the flank of a pin, which says how the fibre runs
 };
 
 /// What a program lays. Mandrel frame.

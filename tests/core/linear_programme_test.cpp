@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -52,6 +53,40 @@ TEST(LinearProgramme, SaysWhatCannotBe) {
     LinearProgramme programme(rows);
     programme.add_column(1.0, kNoEnd, std::array{RowEntry{0, 1.0}, RowEntry{1, 1.0}});
     EXPECT_FALSE(programme.solve().optimal);
+}
+
+// Equal covers have many bases at one corner. Stopped after a few steps the programme goes on with
+// bounds that are told apart, and ends as good as at the optimum or says that it did not.
+TEST(LinearProgramme, GoesOnWhereItIsStopped) {
+    constexpr int kRows = 40;
+    const std::vector<LinearProgramme::Row> rows(kRows, {4.0, kNoEnd});
+    const auto programme = [&] {
+        auto made = std::make_unique<LinearProgramme>(rows);
+        for (int c = 0; c < kRows; ++c) {
+            std::vector<RowEntry> column;
+            for (int r = 0; r < kRows; ++r) {
+                if ((r - c + kRows) % kRows < 7) {
+                    column.push_back({r, 1.0});
+                }
+            }
+            made->add_column(1.0, kNoEnd, column);
+        }
+        return made;
+    };
+    const double least = programme()->solve().cost;
+    EXPECT_NEAR(least, 4.0 * kRows / 7.0, kRounding);
+    const LinearProgramme::Solution few = programme()->solve(1);
+    EXPECT_FALSE(few.optimal);
+    int ended = 0;
+    for (const int steps : {10, 30, 60, 90}) {
+        const LinearProgramme::Solution solution = programme()->solve(steps);
+        EXPECT_LE(solution.feasible ? solution.worst_breach : 0.0, 4e-4 + kRounding) << steps;
+        if (solution.optimal) {
+            ++ended;
+            EXPECT_NEAR(solution.cost, least, 1e-4 * least) << steps;
+        }
+    }
+    EXPECT_GT(ended, 0);
 }
 
 // Where prices are feasible, b . p is no more than any feasible cost; at the optimum both meet.

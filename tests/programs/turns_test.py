@@ -73,8 +73,10 @@ class Pins(Turns):
         program = self.folder / "out/program.ngc"
         self.done("verify", program, "--mandrel", mandrel, "--machine", MACHINE)
         text = re.sub(r"\(pins at rim.*\)\n", "", program.read_text())
-        again = self.run_program("verify", self.write("bare.ngc", text), "--mandrel", mandrel, "--machine", MACHINE)
+        again = self.run_program("verify", self.write("bare.ngc", text), "--mandrel", mandrel, "--machine", MACHINE,
+                                 "--json")
         self.assertEqual(again.returncode, 1, again.stdout + again.stderr)
+        self.assertFalse(json.loads(again.stdout)["checks"]["slip"]["ok"])
 
     def test_courses_cover_a_pipe(self):
         pipe = self.make("cylinder", "--radius", "30", "--length", "120", "--edge", "6")

@@ -14,7 +14,6 @@ namespace meshwind {
 namespace {
 
 constexpr int kParts = CourseFields::ColsAtCompileTime;
-using Fields = CourseFields;
 using Shares = Eigen::Matrix<double, kParts, 1>;  // of the modes, or parts of a move
 
 // Steps of the search: the first, in bands of root mean square displacement; by how much one grows
@@ -42,7 +41,7 @@ CourseFields displacements(const Surface& surface, const SurfacePath& path,
     for (std::size_t i = 0; i < path.size(); ++i) {
         curvature[i] = curvature_along(surface, path[i]);
     }
-    Fields fields(static_cast<Eigen::Index>(path.size()), kParts);
+    CourseFields fields(static_cast<Eigen::Index>(path.size()), kParts);
     for (const int side : {1, -1}) {
         const double steering = candidate.slip_ratio + (side < 0 ? candidate.more_behind : 0.0);
         const auto ratio = [&](std::size_t i) { return path[i].kn_per_mm > 0.0 ? steering : 0.0; };
@@ -76,12 +75,12 @@ namespace {
 // Displacements at right angles to each other, of 1 mm root mean square, and the moves they are of.
 struct Modes {
     using Square = Eigen::Matrix<double, kParts, kParts>;
-    Fields at_station;
+    CourseFields at_station;
     Square parts;   // of a move, per share of each mode
     Square shares;  // of the modes, per part of a move
 };
 
-Modes modes_of(const Fields& fields) {
+Modes modes_of(const CourseFields& fields) {
     using Square = Modes::Square;
     const Square gram = fields.transpose() * fields / static_cast<double>(fields.rows());
     const Shares scale =
@@ -101,7 +100,8 @@ Modes modes_of(const Fields& fields) {
 // What covering the samples of a strip saves, as the band is displaced.
 class Strips {
 public:
-    Strips(const Strip& strip, std::span<const float> saving, const Fields& modes, double band_mm)
+    Strips(const Strip& strip, std::span<const float> saving, const CourseFields& modes,
+           double band_mm)
         : half_band_(static_cast<float>(0.5 * band_mm)),
           slope_(static_cast<float>(1.0 / (kEdgeBands * band_mm))),
           blocks_((strip.sample.size() + kLanes - 1) / kLanes) {

@@ -1,7 +1,6 @@
 #include "winding/cover/prove.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -28,10 +27,6 @@ constexpr std::size_t kAbound = 8;
 // any holds.
 constexpr std::int32_t kScarcePassing = 20;
 
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 // An end as near to where a pin takes hold of it is there.
 constexpr double kAtPin_mm = 0.004;
 
@@ -42,6 +37,10 @@ constexpr double kMostPitches = 2.0;
 
 // Directions at a course's ends are told by stations this far apart, at least.
 constexpr double kSlope_mm = 1.0;
+
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
 
 // What a course's end is off the nearest pins, and by how much it comes nearer per mm to the left
 // and per rad about the seed.
@@ -57,7 +56,7 @@ OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const Surface
     std::size_t beside = station;
     while (std::abs(path[beside].s_mm - path[station].s_mm) < kSlope_mm &&
            beside != (last ? 0 : path.size() - 1)) {
-        beside += last ? std::size_t(-1) : 1;
+        beside = last ? beside - 1 : beside + 1;
     }
     const auto row = [&](std::size_t i) -> Eigen::RowVector2d {
         return fields.row(static_cast<Eigen::Index>(i)).head<2>();
@@ -71,21 +70,25 @@ OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const Surface
                 end.sense * off_pins_mm_per_rad(rim, end, rules.turns) * turned};
 }
 
-// The least move by which both ends come to pins, by their displacements: nothing where they are
-// there, or would have to go too far.
-std::optional<CourseMove> move_to_pins(const CourseRules& rules, const Member& member,
-                                       const SurfacePath& path, bool& there) {
+bool ends_at_pins(const CourseRules& rules, const Member& member) {
+    return std::all_of(member.end.begin(), member.end.end(), [&](const RimCrossing& end) {
+        return std::abs(off_pins_mm(rules.mandrel.rims[at(end.rim)], end, rules.turns)) <=
+               kAtPin_mm;
+    });
+}
+
+// The move by which both ends come to pins, by their displacements: nothing where that is too far.
+std::optional<CourseMove> move_to_pins(const CourseRules& rules, const PlacedCourse& course) {
+    const Member& member = course.member;
     const CourseFields fields =
-        displacements(rules.mandrel.surface, path, member.candidate, seed_station({member, path}));
-    const OffPins first = off_pins(rules, member.end[0], path, fields, false);
-    const OffPins last = off_pins(rules, member.end[1], path, fields, true);
-    there = std::max(std::abs(first.off_mm), std::abs(last.off_mm)) <= kAtPin_mm;
+        displacements(rules.mandrel.surface, course.path, member.candidate, seed_station(course));
+    const OffPins first = off_pins(rules, member.end[0], course.path, fields, false);
+    const OffPins last = off_pins(rules, member.end[1], course.path, fields, true);
     Eigen::Matrix2d nearer;
     nearer << first.nearer, last.nearer;
     const Eigen::Vector2d move = nearer.inverse() * Eigen::Vector2d(first.off_mm, last.off_mm);
     const double most_mm = kMostPitches * rules.turns.pins.front().shape.pitch_mm;
-    if (there || !move.allFinite() ||
-        (fields.leftCols<2>() * move).cwiseAbs().maxCoeff() > most_mm) {
+    if (!move.allFinite() || (fields.leftCols<2>() * move).cwiseAbs().maxCoeff() > most_mm) {
         return std::nullopt;
     }
     return CourseMove{move.x(), move.y()};
@@ -103,18 +106,14 @@ Rejection follow_to_pins(const CourseRules& rules, Candidate candidate, Member& 
             default:
                 return Rejection::Path;
         }
-        if (rules.turns.pins.empty()) {
+        if (ends_at_pins(rules, member)) {
             return Rejection::None;
         }
-        bool there = false;
-        const auto move = move_to_pins(rules, member, followed.path, there);
-        if (there) {
-            return Rejection::None;
-        }
+        const PlacedCourse placed{member, followed.path};
+        const auto move = move_to_pins(rules, placed);
         if (!move || moves == kMovesToPins) {
             return Rejection::Path;
         }
-        const PlacedCourse placed{member, followed.path};
         candidate = moved(rules, placed, seed_station(placed), *move);
     }
 }

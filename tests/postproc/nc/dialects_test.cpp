@@ -104,6 +104,33 @@ TEST(Dialects, ReadBackWhatTheyWrite) {
     }
 }
 
+TEST(Dialects, TellWherePinsStand) {
+    const PinRing ring{.rim = 1,
+                       .count = 120,
+                       .diameter_mm = 2.0,
+                       .height_mm = 12.25,
+                       .strand_mm = 0.690988,
+                       .offset_mm = 108.5,
+                       .azimuth_rad = rad_from_deg(-123.4567891)};
+    for (const std::string& name : kAll) {
+        SCOPED_TRACE(name);
+        const Machine machine = machine_for(name);
+        const auto dialect = make_dialect(name);
+        ProgramHeader with = header();
+        with.pins = {ring};
+        const BlockList planned = dialect->prepare(random_list(machine, 1, 20));
+        const BlockList read =
+            dialect->read(dialect->write(machine, planned, {}, with), "p", machine);
+        ASSERT_EQ(read.pins.size(), 1U);
+        EXPECT_EQ(read.pins[0].rim, ring.rim);
+        EXPECT_EQ(read.pins[0].count, ring.count);
+        EXPECT_EQ(read.pins[0].height_mm, ring.height_mm);
+        EXPECT_EQ(read.pins[0].strand_mm, ring.strand_mm);
+        EXPECT_EQ(read.pins[0].offset_mm, ring.offset_mm);
+        EXPECT_NEAR(read.pins[0].azimuth_rad, ring.azimuth_rad, 1e-12);
+    }
+}
+
 TEST(Dialects, GoldenPrograms) {
     for (const std::string& name : kAll) {
         SCOPED_TRACE(name);

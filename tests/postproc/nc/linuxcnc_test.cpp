@@ -309,7 +309,9 @@ TEST(LinuxCncRead, PinsAreReadWholeOrRefused) {
           "pins at rim 0: N36 D2 H2 S1 Z8 A0 "}) {
         EXPECT_EQ(refusal('(' + std::string(bad) + ")\n" + moves), "nc.pins p.ngc:1") << bad;
     }
-    EXPECT_EQ(refusal("(pins at rim 0: N36 D2 H2 S1 Z8 A-90)\n" + moves), "accepted");
+    const std::string good = "(pins at rim 0: N36 D2 H2 S1 Z8 A-90)\n";
+    EXPECT_EQ(refusal(good + moves), "accepted");
+    EXPECT_EQ(refusal(good + good + moves), "nc.pins p.ngc:2");
 }
 
 TEST(LinuxCncRead, SurvivesEveryTruncationAndByteChange) {
