@@ -29,6 +29,12 @@ constexpr double kLeastEigenvalue = 1e-6;
 // The edge of a band is taken for a slope of this width, in bands: samples are as far apart.
 constexpr double kEdgeBands = 0.1;
 
+// No place of a course moves by more pitches of the pins than so many.
+constexpr double kMostPitches = 2.0;
+
+// Directions at a course's ends are told by stations this far apart, at least.
+constexpr double kSlope_mm = 1.0;
+
 }  // namespace
 
 // From the seed both ways, as in jacobi_field_mm() but with a source: j = y e^G,
@@ -203,6 +209,61 @@ Fit fit_course(const CourseRules& rules, const PlacedCourse& course, const Strip
     }
     const Shares move = modes.parts * by;
     return {{move(0), move(1), move(2), move(3)}, most};
+}
+
+namespace {
+
+// What a course's end is off the nearest pins, and by how much it comes nearer per mm to the left
+// and per rad about the seed.
+struct OffPins {
+    double off_mm;
+    Eigen::RowVector2d nearer;
+};
+
+OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const SurfacePath& path,
+                 const CourseFields& fields, bool last) {
+    const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(end.rim)];
+    const std::size_t station = last ? path.size() - 1 : 0;
+    std::size_t beside = station;
+    while (std::abs(path[beside].s_mm - path[station].s_mm) < kSlope_mm &&
+           beside != (last ? 0 : path.size() - 1)) {
+        beside = last ? beside - 1 : beside + 1;
+    }
+    const auto row = [&](std::size_t i) -> Eigen::RowVector2d {
+        return fields.row(static_cast<Eigen::Index>(i)).head<2>();
+    };
+    const Eigen::RowVector2d left = row(station);
+    const Eigen::RowVector2d turned =
+        (left - row(beside)) / (path[station].s_mm - path[beside].s_mm);
+    const double side = last ? 1.0 : -1.0;
+    return {off_pins_mm(rim, end, rules.turns),
+            -end.sense * side / std::cos(end.angle_rad) * left +
+                end.sense * off_pins_mm_per_rad(rim, end, rules.turns) * turned};
+}
+
+}  // namespace
+
+bool ends_at_pins(const CourseRules& rules, const Member& member, double within_mm) {
+    return std::all_of(member.end.begin(), member.end.end(), [&](const RimCrossing& end) {
+        return std::abs(off_pins_mm(rules.mandrel.rims[static_cast<std::size_t>(end.rim)], end,
+                                    rules.turns)) <= within_mm;
+    });
+}
+
+std::optional<CourseMove> move_to_pins(const CourseRules& rules, const PlacedCourse& course) {
+    const Member& member = course.member;
+    const CourseFields fields =
+        displacements(rules.mandrel.surface, course.path, member.candidate, seed_station(course));
+    const OffPins first = off_pins(rules, member.end[0], course.path, fields, false);
+    const OffPins last = off_pins(rules, member.end[1], course.path, fields, true);
+    Eigen::Matrix2d nearer;
+    nearer << first.nearer, last.nearer;
+    const Eigen::Vector2d move = nearer.inverse() * Eigen::Vector2d(first.off_mm, last.off_mm);
+    const double most_mm = kMostPitches * rules.turns.pins.front().shape.pitch_mm;
+    if (!move.allFinite() || (fields.leftCols<2>() * move).cwiseAbs().maxCoeff() > most_mm) {
+        return std::nullopt;
+    }
+    return CourseMove{move.x(), move.y()};
 }
 
 }  // namespace meshwind

@@ -1,7 +1,9 @@
-/// Fitting a course to what its neighbours leave: by how much it has to move, turn and be steered.
+/// Fitting a course to what its neighbours leave, or to the pins that it turns on: by how much it
+/// has to move, turn and be steered.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -41,5 +43,14 @@ struct Fit {
 /// now
 [[nodiscard]] Fit fit_course(const CourseRules& rules, const PlacedCourse& course,
                              const Strip& strip, std::span<const float> saving);
+
+/// Whether both ends are as near as `within_mm` to where pins take hold of them; so are ends that
+/// turn by friction.
+[[nodiscard]] bool ends_at_pins(const CourseRules& rules, const Member& member, double within_mm);
+
+/// The move from seed_station() by which both ends come to the nearest pins, to first order:
+/// sideways and about the seed. Nothing where a place would move by more than two pitches.
+[[nodiscard]] std::optional<CourseMove> move_to_pins(const CourseRules& rules,
+                                                     const PlacedCourse& course);
 
 }  // namespace meshwind

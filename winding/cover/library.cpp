@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/units.h"
 #include "geodesic/bridge.h"
+#include "winding/cover/fit.h"
 #include "winding/laminate/wound_angle.h"
 
 namespace meshwind {
@@ -23,6 +24,11 @@ constexpr double kWindableStep_mm = 2.0;
 
 // Stations that a seed is moved beyond a bridge.
 constexpr std::size_t kStationsBeyond = 3;
+
+// A sketch comes to pins by so many moves, and ends as near to where they take hold of it: the
+// course itself is moved once more when it is proven.
+constexpr int kSketchMoves = 3;
+constexpr double kSketchAtPin_mm = 0.2;
 
 // So many seeds are tried for a course; the last is kept.
 constexpr int kMaxMoves = 3;
@@ -292,10 +298,27 @@ Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& 
 
 namespace {
 
+// As draw_path(). Where fibre turns on pins, a course beside it that ends at pins.
+Refusal draw_path_to_pins(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
+    Refusal refusal = draw_path(rules, candidate, sketch);
+    for (int moves = 0; refusal == Refusal::None; ++moves) {
+        if (ends_at_pins(rules, sketch.course, kSketchAtPin_mm)) {
+            break;
+        }
+        const PlacedCourse placed{sketch.course, std::move(sketch.path)};
+        const auto move = move_to_pins(rules, placed);
+        if (!move || moves == kSketchMoves) {
+            return Refusal::MissesPins;
+        }
+        refusal = draw_path(rules, moved(rules, placed, seed_station(placed), *move), sketch);
+    }
+    return refusal;
+}
+
 Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
                         FootprintFinder::Scratch& scratch, Member& member) {
     Sketch sketch;
-    const Refusal refusal = draw_path(rules, candidate, sketch);
+    const Refusal refusal = draw_path_to_pins(rules, candidate, sketch);
     if (refusal != Refusal::None) {
         return refusal;
     }
@@ -316,7 +339,7 @@ Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
 
 Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
                     FootprintFinder::Scratch& scratch, Sketch& sketch) {
-    const Refusal refusal = draw_path(rules, candidate, sketch);
+    const Refusal refusal = draw_path_to_pins(rules, candidate, sketch);
     if (refusal == Refusal::None) {
         sketch.course.footprint = rules.footprints.footprint(sketch.path, scratch);
     }

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
-
-#include <Eigen/LU>
 
 #include "core/parallel.h"
 #include "winding/cover/balance.h"
@@ -30,68 +27,11 @@ constexpr std::int32_t kScarcePassing = 20;
 // An end as near to where a pin takes hold of it is there.
 constexpr double kAtPin_mm = 0.004;
 
-// A course comes to pins by a few moves, each as far off as the square of the one before; by no
-// more than so many pitches.
+// A course comes to pins by a few moves, each as far off as the square of the one before.
 constexpr int kMovesToPins = 4;
-constexpr double kMostPitches = 2.0;
-
-// Directions at a course's ends are told by stations this far apart, at least.
-constexpr double kSlope_mm = 1.0;
 
 std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
-}
-
-// What a course's end is off the nearest pins, and by how much it comes nearer per mm to the left
-// and per rad about the seed.
-struct OffPins {
-    double off_mm;
-    Eigen::RowVector2d nearer;
-};
-
-OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const SurfacePath& path,
-                 const CourseFields& fields, bool last) {
-    const Rim& rim = rules.mandrel.rims[at(end.rim)];
-    const std::size_t station = last ? path.size() - 1 : 0;
-    std::size_t beside = station;
-    while (std::abs(path[beside].s_mm - path[station].s_mm) < kSlope_mm &&
-           beside != (last ? 0 : path.size() - 1)) {
-        beside = last ? beside - 1 : beside + 1;
-    }
-    const auto row = [&](std::size_t i) -> Eigen::RowVector2d {
-        return fields.row(static_cast<Eigen::Index>(i)).head<2>();
-    };
-    const Eigen::RowVector2d left = row(station);
-    const Eigen::RowVector2d turned =
-        (left - row(beside)) / (path[station].s_mm - path[beside].s_mm);
-    const double side = last ? 1.0 : -1.0;
-    return {off_pins_mm(rim, end, rules.turns),
-            -end.sense * side / std::cos(end.angle_rad) * left +
-                end.sense * off_pins_mm_per_rad(rim, end, rules.turns) * turned};
-}
-
-bool ends_at_pins(const CourseRules& rules, const Member& member) {
-    return std::all_of(member.end.begin(), member.end.end(), [&](const RimCrossing& end) {
-        return std::abs(off_pins_mm(rules.mandrel.rims[at(end.rim)], end, rules.turns)) <=
-               kAtPin_mm;
-    });
-}
-
-// The move by which both ends come to pins, by their displacements: nothing where that is too far.
-std::optional<CourseMove> move_to_pins(const CourseRules& rules, const PlacedCourse& course) {
-    const Member& member = course.member;
-    const CourseFields fields =
-        displacements(rules.mandrel.surface, course.path, member.candidate, seed_station(course));
-    const OffPins first = off_pins(rules, member.end[0], course.path, fields, false);
-    const OffPins last = off_pins(rules, member.end[1], course.path, fields, true);
-    Eigen::Matrix2d nearer;
-    nearer << first.nearer, last.nearer;
-    const Eigen::Vector2d move = nearer.inverse() * Eigen::Vector2d(first.off_mm, last.off_mm);
-    const double most_mm = kMostPitches * rules.turns.pins.front().shape.pitch_mm;
-    if (!move.allFinite() || (fields.leftCols<2>() * move).cwiseAbs().maxCoeff() > most_mm) {
-        return std::nullopt;
-    }
-    return CourseMove{move.x(), move.y()};
 }
 
 // Follows a course accurately. Where fibre turns on pins, one beside it that ends at pins.
@@ -106,7 +46,7 @@ Rejection follow_to_pins(const CourseRules& rules, Candidate candidate, Member& 
             default:
                 return Rejection::Path;
         }
-        if (ends_at_pins(rules, member)) {
+        if (ends_at_pins(rules, member, kAtPin_mm)) {
             return Rejection::None;
         }
         const PlacedCourse placed{member, followed.path};

@@ -12,6 +12,8 @@ const char* name_of(Refusal refusal) {
             return "too steep at a rim to be turned by friction on the extension";
         case Refusal::TouchesPins:
             return "too flat at a rim to pass between two pins";
+        case Refusal::MissesPins:
+            return "cannot be moved to where pins take hold of both its ends";
         case Refusal::Bridging:
             return "bridges more than the tolerance";
         case Refusal::Slips:

@@ -12,11 +12,12 @@ enum class Refusal : std::uint8_t {
     NoRim,
     NotTurnable,  ///< by friction
     TouchesPins,  ///< on its way between two of them
+    MissesPins,   ///< none beside it ends where pins take hold of it
     Bridging,
     Slips,
     NotWindable
 };
-inline constexpr std::size_t kRefusals = 7;
+inline constexpr std::size_t kRefusals = 8;
 
 /// Words for a report: "reaches no rim", ...
 [[nodiscard]] const char* name_of(Refusal refusal);
