@@ -92,6 +92,11 @@ int LinearProgramme::add_column(double cost, double most, std::span<const RowEnt
     return column - 1;
 }
 
+void LinearProgramme::close(int column) {
+    glp_set_col_bnds(model_->glp, column + 1, GLP_FX, 0.0, 0.0);
+    model_->most[static_cast<std::size_t>(column)] = 0.0;
+}
+
 LinearProgramme::Solution LinearProgramme::solve(int most_steps) {
     Model& model = *model_;
     glp_smcp options;

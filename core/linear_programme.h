@@ -34,6 +34,9 @@ public:
     /// \return its number, in the order in which they are added
     int add_column(double cost, double most, std::span<const RowEntry> entries);
 
+    /// The column is 0 from now on.
+    void close(int column);
+
     struct Solution {
         bool optimal = false;
         /// x keeps all bounds; where it is not optimal, the method was given up.

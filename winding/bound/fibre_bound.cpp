@@ -2,16 +2,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 #include "core/linear_programme.h"
 #include "core/parallel.h"
+#include "core/units.h"
 
 namespace meshwind {
 namespace {
 
-// Rows of samples. With 6000 the bound of a tee is 10 % higher, and takes longer by their square.
-constexpr std::size_t kMostRows = 800;
+// Rows, each of a cell of samples. More take longer by their square.
+constexpr std::size_t kMostRows = 400;
+
+// Centres of cells that one task looks through.
+constexpr std::size_t kCellChunk = 256;
 
 // Columns that are added at a time, and rounds of that.
 constexpr std::size_t kColumnsOfARound = 300;
@@ -30,24 +37,31 @@ std::size_t at(std::int32_t i) {
     return static_cast<std::size_t>(i);
 }
 
-class BoundFinder {
-public:
-    explicit BoundFinder(const BoundTask& task) : task_(task), row_(task.asked.size(), -1) {
+// Like courses are those between the same nodes whose first ends are at angles in one of these
+// steps: they stand in the order of their azimuths.
+constexpr double kLikeAngle_rad = 10.0 * kPi / 180.0;
+
+}  // namespace
+
+struct FibreBoundFinder::State {
+    explicit State(const BoundTask& task) : task_(task), row_(task.asked.size(), -1) {
         choose_rows();
         fill_columns();
+        if (!rows_.empty()) {
+            programme_.emplace(row_bounds());
+            add_lacking();
+            add_first();
+        }
     }
 
     FibreBound run() {
         if (rows_.empty()) {
             return {};
         }
-        LinearProgramme programme(row_bounds());
-        add_lacking(programme);
-        add_first(programme);
         FibreBound bound;
         LinearProgramme::Solution solution;
         for (int round = 0; round < kMostRounds; ++round) {
-            solution = programme.solve();
+            solution = programme_->solve();
             if (!solution.feasible) {
                 break;
             }
@@ -55,7 +69,7 @@ public:
             const std::vector<double> reduced = reduced_costs(price);
             bound.least_mm = std::max(bound.least_mm, bound_of(price, reduced));
             if (!solution.optimal || bound.least_mm >= (1.0 - kGoodEnough) * solution.cost ||
-                !add_best(programme, reduced)) {
+                !add_best(reduced)) {
                 break;
             }
         }
@@ -65,12 +79,31 @@ public:
         return bound;
     }
 
+    void strike_off(std::int32_t member) {
+        for (Column& column : columns_) {
+            if (column.member == member) {
+                column.open = false;
+                if (column.number >= 0) {
+                    programme_->close(column.number);
+                }
+            }
+        }
+    }
+
 private:
+    // A cell of samples.
+    struct Row {
+        double asked = 0.0;  // layers, on average
+        double share = 0.0;  // of the samples, 1 on average
+        double samples = 0.0;
+    };
+
     // A member in one direction.
     struct Column {
         std::int32_t member = -1;
         bool backward = false;
         int number = -1;  // in the programme, once it is there
+        bool open = true;
     };
 
     void choose_rows() {
@@ -80,13 +113,46 @@ private:
                 asking.push_back(i);
             }
         }
+        std::vector<std::size_t> centres;
         const std::size_t n = std::min(kMostRows, asking.size());
         for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t sample = asking[k * asking.size() / n];
-            row_[sample] = static_cast<std::int32_t>(rows_.size());
-            rows_.push_back(sample);
-            asked_ += task_.asked[sample];
+            centres.push_back(asking[k * asking.size() / n]);
         }
+        if (n < asking.size() && task_.position_mm.empty()) {
+            asking = centres;
+        }
+        parallel_for(asking.size(), kCellChunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                row_[asking[k]] =
+                    n == asking.size() ? static_cast<std::int32_t>(k) : nearest(centres, asking[k]);
+            }
+        });
+        rows_.resize(n);
+        for (const std::size_t sample : asking) {
+            Row& row = rows_[at(row_[sample])];
+            row.samples += 1.0;
+            row.asked += task_.asked[sample];
+        }
+        for (Row& row : rows_) {
+            row.share = row.samples * static_cast<double>(n) / static_cast<double>(asking.size());
+            row.asked /= row.samples;
+            asked_ += row.share * row.asked;
+        }
+    }
+
+    [[nodiscard]] std::int32_t nearest(std::span<const std::size_t> centres,
+                                       std::size_t sample) const {
+        std::size_t best = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < centres.size(); ++k) {
+            const double distance =
+                (task_.position_mm[centres[k]] - task_.position_mm[sample]).squaredNorm();
+            if (distance < least) {
+                least = distance;
+                best = k;
+            }
+        }
+        return static_cast<std::int32_t>(best);
     }
 
     void fill_columns() {
@@ -103,7 +169,12 @@ private:
                 }
             }
             std::sort(rows.begin(), rows.end());
-            covers_[i] = std::move(rows);
+            for (const std::int32_t row : rows) {
+                if (covers_[i].empty() || covers_[i].back().row != row) {
+                    covers_[i].push_back({row, 0.0});
+                }
+                covers_[i].back().value += 1.0 / rows_[at(row)].samples;
+            }
             if (member.windable_forward) {
                 columns_.push_back({static_cast<std::int32_t>(i), false});
             }
@@ -116,8 +187,8 @@ private:
     [[nodiscard]] std::vector<LinearProgramme::Row> row_bounds() const {
         constexpr double kNoEnd = std::numeric_limits<double>::infinity();
         std::vector<LinearProgramme::Row> bounds;
-        for (const std::size_t sample : rows_) {
-            bounds.push_back({static_cast<double>(task_.asked[sample]), kNoEnd});
+        for (const Row& row : rows_) {
+            bounds.push_back({row.asked, kNoEnd});
         }
         bounds.resize(rows_.size() + task_.nodes, {0.0, 0.0});
         bounds.push_back({-kNoEnd, task_.most_below * asked_});
@@ -127,15 +198,15 @@ private:
     [[nodiscard]] int budget_row() const { return static_cast<int>(rows_.size() + task_.nodes); }
 
     // What may lack, and what lacks beyond that, so that there is a solution from the first.
-    void add_lacking(LinearProgramme& programme) const {
+    void add_lacking() {
         for (std::size_t r = 0; r < rows_.size(); ++r) {
             const std::array<RowEntry, 2> entries{RowEntry{static_cast<int>(r), 1.0},
-                                                  RowEntry{budget_row(), 1.0}};
-            programme.add_column(0.0, task_.asked[rows_[r]], entries);
+                                                  RowEntry{budget_row(), rows_[r].share}};
+            programme_->add_column(0.0, rows_[r].asked, entries);
         }
         const std::array<RowEntry, 1> beyond{RowEntry{budget_row(), -1.0}};
-        programme.add_column(kLacks * fibre_of_a_row_mm(), std::numeric_limits<double>::infinity(),
-                             beyond);
+        programme_->add_column(kLacks * fibre_of_a_row_mm(),
+                               std::numeric_limits<double>::infinity(), beyond);
     }
 
     // Fibre that covers what a row stands for, on average over the library.
@@ -144,7 +215,9 @@ private:
         double covered = 0.0;
         for (const Column& column : columns_) {
             length_mm += task_.members[at(column.member)].length_mm;
-            covered += static_cast<double>(covers_[at(column.member)].size());
+            for (const RowEntry& cell : covers_[at(column.member)]) {
+                covered += cell.value;
+            }
         }
         return length_mm / std::max(1.0, covered);
     }
@@ -154,29 +227,22 @@ private:
         return member.length_mm + member.turn_mm + task_.off_angle_cost * member.off_angle_mm;
     }
 
-    void add(LinearProgramme& programme, Column& column) const {
-        std::vector<RowEntry> entries;
-        for (const std::int32_t row : covers_[at(column.member)]) {
-            if (!entries.empty() && entries.back().row == row) {
-                entries.back().value += 1.0;
-            } else {
-                entries.push_back({row, 1.0});
-            }
-        }
+    void add(Column& column) {
+        std::vector<RowEntry> entries = covers_[at(column.member)];
         const auto [from, to] = nodes_of(task_.members[at(column.member)], column.backward);
         if (from != to) {
             entries.push_back({static_cast<int>(rows_.size() + from), -1.0});
             entries.push_back({static_cast<int>(rows_.size() + to), 1.0});
         }
         column.number =
-            programme.add_column(cost(column), std::numeric_limits<double>::infinity(), entries);
+            programme_->add_column(cost(column), std::numeric_limits<double>::infinity(), entries);
     }
 
     // Some of all, evenly.
-    void add_first(LinearProgramme& programme) {
+    void add_first() {
         const std::size_t n = std::min(columns_.size(), 2 * kColumnsOfARound);
         for (std::size_t k = 0; k < n; ++k) {
-            add(programme, columns_[k * columns_.size() / n]);
+            add(columns_[k * columns_.size() / n]);
         }
     }
 
@@ -187,8 +253,8 @@ private:
             for (std::size_t k = begin; k < end; ++k) {
                 const Column& column = columns_[k];
                 double worth = 0.0;
-                for (const std::int32_t row : covers_[at(column.member)]) {
-                    worth += price[at(row)];
+                for (const RowEntry& cell : covers_[at(column.member)]) {
+                    worth += cell.value * price[at(cell.row)];
                 }
                 const auto [from, to] = nodes_of(task_.members[at(column.member)], column.backward);
                 worth += price[rows_.size() + to] - price[rows_.size() + from];
@@ -215,7 +281,7 @@ private:
                                   std::span<const double> reduced) const {
         double scale = 1.0;
         for (std::size_t k = 0; k < columns_.size(); ++k) {
-            if (reduced[k] < 0.0) {
+            if (columns_[k].open && reduced[k] < 0.0) {
                 const double costs = cost(columns_[k]);
                 scale = std::min(scale, costs / (costs - reduced[k]));
             }
@@ -224,16 +290,17 @@ private:
         const double lack = -price[static_cast<std::size_t>(budget_row())];
         double value = -lack * task_.most_below * asked_;
         for (std::size_t r = 0; r < rows_.size(); ++r) {
-            value += task_.asked[rows_[r]] * std::min(price[r], lack);
+            value += rows_[r].asked * std::min(price[r], lack * rows_[r].share);
         }
         return scale * value;
     }
 
     // The columns that gain most. \return whether there are any
-    bool add_best(LinearProgramme& programme, std::span<const double> reduced) {
+    bool add_best(std::span<const double> reduced) {
         std::vector<std::size_t> paying;
         for (std::size_t k = 0; k < columns_.size(); ++k) {
-            if (columns_[k].number < 0 && reduced[k] < -kPays * cost(columns_[k])) {
+            if (columns_[k].open && columns_[k].number < 0 &&
+                reduced[k] < -kPays * cost(columns_[k])) {
                 paying.push_back(k);
             }
         }
@@ -246,7 +313,7 @@ private:
         std::partial_sort(paying.begin(), paying.begin() + static_cast<std::ptrdiff_t>(n),
                           paying.end(), better);
         for (std::size_t k = 0; k < n; ++k) {
-            add(programme, columns_[paying[k]]);
+            add(columns_[paying[k]]);
         }
         return n > 0;
     }
@@ -255,7 +322,7 @@ private:
         bound.forward.assign(task_.members.size(), 0.0);
         bound.backward.assign(task_.members.size(), 0.0);
         for (const Column& column : columns_) {
-            if (column.number < 0) {
+            if (column.number < 0 || !column.open) {
                 continue;
             }
             const double x = solution.x[static_cast<std::size_t>(column.number)];
@@ -265,29 +332,66 @@ private:
         }
     }
 
-    const BoundTask& task_;
-    std::vector<std::int32_t> row_;                  // per sample, -1: none
-    std::vector<std::size_t> rows_;                  // their samples
-    double asked_ = 0.0;                             // layers of all rows
-    std::vector<std::vector<std::int32_t>> covers_;  // per member: rows, one for each layer
+    const BoundTask task_;
+    std::vector<std::int32_t> row_;              // per sample, -1: none
+    std::vector<Row> rows_;                      // cells
+    double asked_ = 0.0;                         // layers of all rows
+    std::vector<std::vector<RowEntry>> covers_;  // per member: layers on cells, on average
     std::vector<Column> columns_;
+    std::optional<LinearProgramme> programme_;
 };
 
-}  // namespace
+FibreBoundFinder::FibreBoundFinder(const BoundTask& task) : state_(std::make_unique<State>(task)) {}
 
-FibreBound bound_fibre(const BoundTask& task) {
-    return BoundFinder(task).run();
+FibreBoundFinder::~FibreBoundFinder() = default;
+
+FibreBound FibreBoundFinder::find() {
+    return state_->run();
 }
 
-std::vector<LaidCourse> whole_courses(const FibreBound& bound, double share) {
+void FibreBoundFinder::strike_off(std::int32_t member) {
+    state_->strike_off(member);
+}
+
+FibreBound bound_fibre(const BoundTask& task) {
+    return FibreBoundFinder(task).find();
+}
+
+std::vector<LaidCourse> whole_courses(const FibreBound& bound, std::span<const Member> members,
+                                      double share) {
+    struct Laid {
+        NodePair nodes;
+        long step;
+        double azimuth_rad;
+        LaidCourse course;
+        double times;
+
+        bool operator<(const Laid& other) const {
+            return std::tie(nodes, step, azimuth_rad, course) <
+                   std::tie(other.nodes, other.step, other.azimuth_rad, other.course);
+        }
+    };
+    std::vector<Laid> laid;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const RimCrossing& end = members[i].end[0];
+        for (const bool backward : {false, true}) {
+            const double times = share * (backward ? bound.backward : bound.forward)[i];
+            if (times > 0.0) {
+                laid.push_back({nodes_of(members[i], backward),
+                                std::lround(end.angle_rad / kLikeAngle_rad),
+                                std::remainder(end.azimuth_rad, 2.0 * kPi),
+                                {static_cast<std::int32_t>(i), backward},
+                                times});
+            }
+        }
+    }
+    std::sort(laid.begin(), laid.end());
     std::vector<LaidCourse> courses;
     double carried = 0.5;
-    for (std::size_t i = 0; i < bound.forward.size(); ++i) {
-        for (const bool backward : {false, true}) {
-            carried += share * (backward ? bound.backward : bound.forward)[i];
-            for (; carried >= 1.0; carried -= 1.0) {
-                courses.push_back({static_cast<std::int32_t>(i), backward});
-            }
+    for (const Laid& like : laid) {
+        carried += like.times;
+        for (; carried >= 1.0; carried -= 1.0) {
+            courses.push_back(like.course);
         }
     }
     return courses;

@@ -3,20 +3,25 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "winding/plan/course.h"
 
 namespace meshwind {
 
-/// What the least fibre is sought for. References outlive the call.
+/// What the least fibre is sought for. References outlive who seeks it.
 struct BoundTask {
     std::span<const Member> members;      ///< the library
     std::span<const char> allowed;        ///< per member
     std::span<const std::int32_t> asked;  ///< per sample: layers
     std::span<const char> reached;        ///< per sample: others ask for nothing
-    std::size_t nodes = 0;                ///< 2 for each rim
+    /// Per sample. Samples that are near each other share a row; empty: each has one.
+    std::span<const Eigen::Vector3d> position_mm{};
+    std::size_t nodes = 0;  ///< 2 for each rim
     /// Share of the samples that may have less than they ask for.
     double most_below = 0.0;
     /// Fibre off the wanted winding angle costs as so much more of it; above 0 the bound is one of
@@ -35,14 +40,35 @@ struct FibreBound {
     std::vector<double> backward;
 };
 
-/// Courses in fractions, each as often as is best: every sample of a subset gets its layers, but
-/// for `most_below` of all layers, and as much fibre arrives at a node as leaves it. Columns are
-/// added while some pay; a bound for fractions is one for plans as well, as far as they leave
-/// no larger share below on the subset than on all.
+/// Courses in fractions, each as often as is best: the samples of a cell get their layers on
+/// average, but for `most_below` of all layers, and as much fibre arrives at a node as leaves it.
+/// Columns are added while some pay. A bound for fractions and cells is one for plans as well.
+class FibreBoundFinder {
+public:
+    explicit FibreBoundFinder(const BoundTask& task);
+    ~FibreBoundFinder();
+    FibreBoundFinder(const FibreBoundFinder&) = delete;
+    FibreBoundFinder& operator=(const FibreBoundFinder&) = delete;
+    FibreBoundFinder(FibreBoundFinder&&) = delete;
+    FibreBoundFinder& operator=(FibreBoundFinder&&) = delete;
+
+    /// From where the last call ended.
+    [[nodiscard]] FibreBound find();
+
+    /// A member that does not hold is laid no more.
+    void strike_off(std::int32_t member);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The same, once.
 [[nodiscard]] FibreBound bound_fibre(const BoundTask& task);
 
-/// Whole courses for a share of those fractions: in the order of the library, one more each time
-/// that their sum passes a half, so that like courses share their roundings.
-[[nodiscard]] std::vector<LaidCourse> whole_courses(const FibreBound& bound, double share);
+/// Whole courses for a share of those fractions: like courses beside each other, one more each time
+/// that their sum passes a half, so that they share their roundings. \param members the library
+[[nodiscard]] std::vector<LaidCourse> whole_courses(const FibreBound& bound,
+                                                    std::span<const Member> members, double share);
 
 }  // namespace meshwind

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "winding/cover/fibre_routes.h"
 #include "winding/cover/grow.h"
 #include "winding/cover/join.h"
+#include "winding/cover/joints.h"
 #include "winding/cover/lay_out.h"
 #include "winding/cover/order_to_follow.h"
 #include "winding/cover/prove.h"
@@ -245,13 +247,38 @@ private:
 
     // Those to begin with that hold.
     void choose() {
-        FirstChoice first = choose_first(members_, allowed_, library_.reached,
-                                         2 * mandrel_.rims.size(), select_, stage_);
+        keep_proven(false);
+        std::map<LaidCourse, PlacedCourse> proven;
+        const FirstChoice first = choose_first(
+            members_, allowed_, library_.reached, samples_.position_mm, 2 * mandrel_.rims.size(),
+            select_, stage_,
+            [&](std::span<const LaidCourse> courses) { return hold(courses, proven); });
         plan_.least_fibre_mm = first.least_fibre_mm;
         for (const LaidCourse& course : first.courses) {
-            courses_.push_back(placed(course.member, course.backward));
+            courses_.push_back(proven.at(course));
         }
-        keep_proven(false);
+    }
+
+    // Which of these hold, and what they are then. The others are struck off the library.
+    std::vector<char> hold(std::span<const LaidCourse> courses,
+                           std::map<LaidCourse, PlacedCourse>& proven) {
+        tell("prove", 0.0);
+        std::vector<PlacedCourse> tried(courses.size());
+        std::vector<Rejection> found(courses.size());
+        parallel_for(courses.size(), 1, [&](std::size_t i, std::size_t) {
+            tried[i] = placed(courses[i].member, courses[i].backward);
+            found[i] = prove(tried[i]);
+        });
+        std::vector<char> holds;
+        for (std::size_t i = 0; i < courses.size(); ++i) {
+            holds.push_back(found[i] == Rejection::None);
+            if (holds.back() != 0) {
+                proven.emplace(courses[i], std::move(tried[i]));
+            } else {
+                refuse(tried[i], found[i]);
+            }
+        }
+        return holds;
     }
 
     // Places that no course which holds passes are not in reach.
@@ -359,13 +386,28 @@ private:
                 return;
             }
             std::vector<PlacedCourse> before = std::exchange(courses_, {});
+            Joints joints = joints_of(before);
             for (const std::int32_t i : members) {
-                courses_.push_back(placed(i, !members_[at(i)].windable_forward));
+                const Member& member = members_[at(i)];
+                const bool backward =
+                    !member.windable_forward ||
+                    (member.windable_backward &&
+                     joints.evener(nodes_of(member, true), nodes_of(member, false)));
+                joints.add(member, backward, 1);
+                courses_.push_back(placed(i, backward));
             }
             keep_proven(true);
             std::move(courses_.begin(), courses_.end(), std::back_inserter(before));
             courses_ = std::move(before);
         }
+    }
+
+    [[nodiscard]] Joints joints_of(std::span<const PlacedCourse> courses) const {
+        Joints joints(2 * mandrel_.rims.size());
+        for (const PlacedCourse& course : courses) {
+            joints.add(course.member, course.backward, 1);
+        }
+        return joints;
     }
 
     // Replaces the courses whose own programs do not lay them as planned.

@@ -32,6 +32,9 @@ constexpr double kEdgeBands = 0.1;
 // No place of a course moves by more pitches of the pins than so many.
 constexpr double kMostPitches = 2.0;
 
+// A part of a move that displaces hardly any place counts as one that displaces them by so much.
+constexpr double kLeastSize = 1e-9;
+
 // Directions at a course's ends are told by stations this far apart, at least.
 constexpr double kSlope_mm = 1.0;
 
@@ -168,14 +171,58 @@ private:
     std::vector<Block> blocks_;
 };
 
+// What a course's end is off the nearest pins, and by how much it comes nearer per part of a move.
+struct OffPins {
+    double off_mm;
+    Eigen::Matrix<double, 1, kParts> nearer;
+};
+
+OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const SurfacePath& path,
+                 const CourseFields& fields, bool last) {
+    const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(end.rim)];
+    const std::size_t station = last ? path.size() - 1 : 0;
+    std::size_t beside = station;
+    while (std::abs(path[beside].s_mm - path[station].s_mm) < kSlope_mm &&
+           beside != (last ? 0 : path.size() - 1)) {
+        beside = last ? beside - 1 : beside + 1;
+    }
+    const auto row = [&](std::size_t i) { return fields.row(static_cast<Eigen::Index>(i)); };
+    const Eigen::Matrix<double, 1, kParts> left = row(station);
+    const Eigen::Matrix<double, 1, kParts> turned =
+        (left - row(beside)) / (path[station].s_mm - path[beside].s_mm);
+    const double side = last ? 1.0 : -1.0;
+    return {off_pins_mm(rim, end, rules.turns),
+            -end.sense * side / std::cos(end.angle_rad) * left +
+                end.sense * off_pins_mm_per_rad(rim, end, rules.turns) * turned};
+}
+
+// Displacements that leave both ends at their pins, and the moves they are of.
+Modes modes_at_pins(const CourseRules& rules, const PlacedCourse& course,
+                    const CourseFields& fields) {
+    Eigen::Matrix<double, 2, kParts> nearer;
+    nearer << off_pins(rules, course.member.end[0], course.path, fields, false).nearer,
+        off_pins(rules, course.member.end[1], course.path, fields, true).nearer;
+    // Parts of a move are compared by how far they displace the course.
+    const Shares size = fields.colwise().norm().cwiseMax(kLeastSize).transpose();
+    const Eigen::Matrix<double, 2, kParts> rates = nearer * size.cwiseInverse().asDiagonal();
+    const Modes::Square keeping = Modes::Square::Identity() -
+                                  rates.transpose() * (rates * rates.transpose()).inverse() * rates;
+    const Modes::Square kept = size.cwiseInverse().asDiagonal() * keeping * size.asDiagonal();
+    Modes modes = modes_of(fields * kept);
+    modes.parts = kept * modes.parts;
+    return modes;
+}
+
 }  // namespace
 
 Fit fit_course(const CourseRules& rules, const PlacedCourse& course, const Strip& strip,
                std::span<const float> saving) {
     const double band_mm = rules.tow.width_mm;
     const Candidate& from = course.member.candidate;
+    const CourseFields fields =
+        displacements(rules.mandrel.surface, course.path, from, seed_station(course));
     const Modes modes =
-        modes_of(displacements(rules.mandrel.surface, course.path, from, seed_station(course)));
+        rules.turns.pins.empty() ? modes_of(fields) : modes_at_pins(rules, course, fields);
     const Strips strips(strip, saving, modes.at_station, band_mm);
     // The nearest that is allowed: steered no harder than it may be.
     const double most_steering = rules.tow.friction.share(margin::kCoverSteering);
@@ -211,38 +258,6 @@ Fit fit_course(const CourseRules& rules, const PlacedCourse& course, const Strip
     return {{move(0), move(1), move(2), move(3)}, most};
 }
 
-namespace {
-
-// What a course's end is off the nearest pins, and by how much it comes nearer per mm to the left
-// and per rad about the seed.
-struct OffPins {
-    double off_mm;
-    Eigen::RowVector2d nearer;
-};
-
-OffPins off_pins(const CourseRules& rules, const RimCrossing& end, const SurfacePath& path,
-                 const CourseFields& fields, bool last) {
-    const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(end.rim)];
-    const std::size_t station = last ? path.size() - 1 : 0;
-    std::size_t beside = station;
-    while (std::abs(path[beside].s_mm - path[station].s_mm) < kSlope_mm &&
-           beside != (last ? 0 : path.size() - 1)) {
-        beside = last ? beside - 1 : beside + 1;
-    }
-    const auto row = [&](std::size_t i) -> Eigen::RowVector2d {
-        return fields.row(static_cast<Eigen::Index>(i)).head<2>();
-    };
-    const Eigen::RowVector2d left = row(station);
-    const Eigen::RowVector2d turned =
-        (left - row(beside)) / (path[station].s_mm - path[beside].s_mm);
-    const double side = last ? 1.0 : -1.0;
-    return {off_pins_mm(rim, end, rules.turns),
-            -end.sense * side / std::cos(end.angle_rad) * left +
-                end.sense * off_pins_mm_per_rad(rim, end, rules.turns) * turned};
-}
-
-}  // namespace
-
 bool ends_at_pins(const CourseRules& rules, const Member& member, double within_mm) {
     return std::all_of(member.end.begin(), member.end.end(), [&](const RimCrossing& end) {
         return std::abs(off_pins_mm(rules.mandrel.rims[static_cast<std::size_t>(end.rim)], end,
@@ -257,7 +272,7 @@ std::optional<CourseMove> move_to_pins(const CourseRules& rules, const PlacedCou
     const OffPins first = off_pins(rules, member.end[0], course.path, fields, false);
     const OffPins last = off_pins(rules, member.end[1], course.path, fields, true);
     Eigen::Matrix2d nearer;
-    nearer << first.nearer, last.nearer;
+    nearer << first.nearer.head<2>(), last.nearer.head<2>();
     const Eigen::Vector2d move = nearer.inverse() * Eigen::Vector2d(first.off_mm, last.off_mm);
     const double most_mm = kMostPitches * rules.turns.pins.front().shape.pitch_mm;
     if (!move.allFinite() || (fields.leftCols<2>() * move).cwiseAbs().maxCoeff() > most_mm) {

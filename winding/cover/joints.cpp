@@ -20,6 +20,14 @@ int Joints::excess(std::size_t node) const {
     return excess;
 }
 
+bool Joints::evener(const NodePair& way, const NodePair& other) const {
+    // A course takes one from the excess of where it departs and adds one where it arrives.
+    const auto more_uneven = [&](const NodePair& nodes) {
+        return excess(nodes.second) - excess(nodes.first);
+    };
+    return more_uneven(way) < more_uneven(other);
+}
+
 std::vector<std::size_t> Joints::part_of() const {
     std::vector<std::size_t> part(nodes_);
     std::iota(part.begin(), part.end(), std::size_t{0});

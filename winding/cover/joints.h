@@ -18,6 +18,9 @@ public:
     /// Arrivals less departures.
     [[nodiscard]] int excess(std::size_t node) const;
 
+    /// Whether a course by the first way leaves arrivals and departures evener than by the other.
+    [[nodiscard]] bool evener(const NodePair& way, const NodePair& other) const;
+
     /// Per node the lowest one that courses join it to; its own number where there are none.
     [[nodiscard]] std::vector<std::size_t> part_of() const;
 

@@ -282,7 +282,10 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
     return Refusal::None;
 }
 
-Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
+namespace {
+
+// As draw_path(), wherever it ends.
+Refusal draw_where_it_is(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
     Member& course = sketch.course;
     course.candidate = candidate;
     course.windable_forward = false;
@@ -296,11 +299,10 @@ Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& 
     return refusal;
 }
 
-namespace {
+}  // namespace
 
-// As draw_path(). Where fibre turns on pins, a course beside it that ends at pins.
-Refusal draw_path_to_pins(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
-    Refusal refusal = draw_path(rules, candidate, sketch);
+Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
+    Refusal refusal = draw_where_it_is(rules, candidate, sketch);
     for (int moves = 0; refusal == Refusal::None; ++moves) {
         if (ends_at_pins(rules, sketch.course, kSketchAtPin_mm)) {
             break;
@@ -310,15 +312,18 @@ Refusal draw_path_to_pins(const CourseRules& rules, const Candidate& candidate, 
         if (!move || moves == kSketchMoves) {
             return Refusal::MissesPins;
         }
-        refusal = draw_path(rules, moved(rules, placed, seed_station(placed), *move), sketch);
+        refusal =
+            draw_where_it_is(rules, moved(rules, placed, seed_station(placed), *move), sketch);
     }
     return refusal;
 }
 
+namespace {
+
 Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
                         FootprintFinder::Scratch& scratch, Member& member) {
     Sketch sketch;
-    const Refusal refusal = draw_path_to_pins(rules, candidate, sketch);
+    const Refusal refusal = draw_path(rules, candidate, sketch);
     if (refusal != Refusal::None) {
         return refusal;
     }
@@ -339,7 +344,7 @@ Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
 
 Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
                     FootprintFinder::Scratch& scratch, Sketch& sketch) {
-    const Refusal refusal = draw_path_to_pins(rules, candidate, sketch);
+    const Refusal refusal = draw_path(rules, candidate, sketch);
     if (refusal == Refusal::None) {
         sketch.course.footprint = rules.footprints.footprint(sketch.path, scratch);
     }

@@ -68,12 +68,13 @@ struct CourseRules {
 [[nodiscard]] Refusal judge(const CourseRules& rules, const Candidate& candidate,
                             FootprintFinder::Scratch& scratch, Member& member);
 
-/// Judges a candidate by the walk alone: as draw_sketch(), but without a footprint.
+/// Judges a candidate by the walk alone: as draw_sketch(), but without a footprint. Where fibre
+/// turns on pins the path is one beside it that ends at pins.
 [[nodiscard]] Refusal draw_path(const CourseRules& rules, const Candidate& candidate,
                                 Sketch& sketch);
 
 /// Judges a candidate by the walk: ends, turns and bridges. On Refusal::None `sketch` is filled, on
-/// others it is of no use. Where fibre turns on pins it is of a course beside it that ends at pins.
+/// others it is of no use.
 /// Slip is not measured: the candidate is steered within the friction.
 [[nodiscard]] Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
                                   FootprintFinder::Scratch& scratch, Sketch& sketch);

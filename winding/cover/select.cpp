@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "core/parallel.h"
 #include "winding/bound/fibre_bound.h"
@@ -16,6 +18,11 @@ std::size_t at(std::int32_t i) {
 
 // A course that fills less than this share of what it covers is too dear for any wall.
 constexpr double kLeastFill = 0.005;
+
+// Courses are chosen anew without those that do not hold, so many times, until no more than this
+// share is lost.
+constexpr int kMostChoices = 3;
+constexpr double kFewLost = 0.03;
 
 // Members whose gain one task works out.
 constexpr std::size_t kGainChunk = 256;
@@ -71,23 +78,51 @@ std::vector<std::int32_t> fill_thin_places(std::span<const Member> members,
 }
 
 FirstChoice choose_first(std::span<const Member> members, std::span<const char> allowed,
-                         std::span<const char> reached, std::size_t nodes,
-                         const SelectOptions& options, const StageAsk& stage) {
+                         std::span<const char> reached,
+                         std::span<const Eigen::Vector3d> position_mm, std::size_t nodes,
+                         const SelectOptions& options, const StageAsk& stage, const Holding& hold) {
+    FirstChoice first;
     if (stage.stages_left == 0) {
-        return {};  // thin places are filled one by one
+        return first;  // thin places are filled one by one
     }
-    const FibreBound bound = bound_fibre({.members = members,
-                                          .allowed = allowed,
-                                          .asked = stage.left,
-                                          .reached = reached,
-                                          .nodes = nodes,
-                                          .most_below = kMostBelow,
-                                          .off_angle_cost = options.angle_weight});
     const bool of_fibre = std::none_of(members.begin(), members.end(), [](const Member& member) {
         return member.off_angle_mm > 0.0;
     });
-    return {whole_courses(bound, 1.0 / stage.stages_left),
-            of_fibre ? std::optional(bound.least_mm) : std::nullopt};
+    FibreBoundFinder finder({.members = members,
+                             .allowed = allowed,
+                             .asked = stage.left,
+                             .reached = reached,
+                             .position_mm = position_mm,
+                             .nodes = nodes,
+                             .most_below = kMostBelow,
+                             .off_angle_cost = options.angle_weight});
+    std::map<LaidCourse, bool> known;
+    for (int round = 0; round < kMostChoices; ++round) {
+        const FibreBound bound = finder.find();
+        if (of_fibre) {
+            first.least_fibre_mm = bound.least_mm;
+        }
+        first.courses = whole_courses(bound, members, 1.0 / stage.stages_left);
+        std::vector<LaidCourse> unknown;
+        for (const LaidCourse& course : first.courses) {
+            if (known.emplace(course, false).second) {
+                unknown.push_back(course);
+            }
+        }
+        const std::vector<char> holds = hold(unknown);
+        for (std::size_t i = 0; i < unknown.size(); ++i) {
+            known[unknown[i]] = holds[i] != 0;
+            if (holds[i] == 0) {
+                finder.strike_off(unknown[i].member);
+            }
+        }
+        const auto lost =
+            std::erase_if(first.courses, [&](const LaidCourse& course) { return !known[course]; });
+        if (static_cast<double>(lost) <= kFewLost * static_cast<double>(first.courses.size())) {
+            break;
+        }
+    }
+    return first;
 }
 
 }  // namespace meshwind

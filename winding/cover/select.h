@@ -4,9 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "winding/laminate/stage_ask.h"
 #include "winding/plan/course.h"
@@ -47,13 +50,17 @@ struct FirstChoice {
     std::optional<double> least_fibre_mm;  ///< as in Plan
 };
 
+/// Says of courses, each once, whether they hold.
+using Holding = std::function<std::vector<char>(std::span<const LaidCourse>)>;
+
 /// Whole courses for a stage's share of the fractions with which what is left of the wall takes
-/// least fibre (winding/bound/); none behind the last stage. \param reached per sample
-/// \param nodes 2 for each rim
+/// least fibre (winding/bound/); none behind the last stage. Where some do not hold, the fractions
+/// are looked for without them, a few times. \param reached per sample \param nodes 2 for each rim
 /// No bound of fibre where an angle is wanted.
 [[nodiscard]] FirstChoice choose_first(std::span<const Member> members,
                                        std::span<const char> allowed, std::span<const char> reached,
+                                       std::span<const Eigen::Vector3d> position_mm,
                                        std::size_t nodes, const SelectOptions& options,
-                                       const StageAsk& stage);
+                                       const StageAsk& stage, const Holding& hold);
 
 }  // namespace meshwind

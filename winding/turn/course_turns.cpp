@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "core/text/text_number.h"
@@ -12,9 +13,13 @@
 namespace meshwind {
 namespace {
 
-// Pins stand as far apart as so many bands, unless the job says how many there are: closer together
-// they let pass only what runs along the axis; farther apart they ask courses to move more.
+// Pins stand as far apart as so many bands, unless the job says how many there are, or farther by
+// this factor each time until fibre at enough of an angle passes between them. Farther apart they
+// ask courses to move more.
 constexpr double kPitchBands = 1.25;
+constexpr double kFartherApart = 1.25;
+constexpr double kEnough_rad = 55.0 * kPi / 180.0;
+constexpr int kFewestPins = 3;
 
 // The widest angle to the axis at which fibre passes between pins is looked for in these steps.
 constexpr double kAngleStep_rad = kPi / 180.0;
@@ -97,8 +102,9 @@ std::array<Piece, 2> halves(const Rim& rim, const RimCrossing& from, const PinSt
     return {part_of(turn, 0, middle), part_of(turn, middle, turn.path.size() - 1)};
 }
 
-// The widest fibre that passes, and what pins that let it pass are like.
-PinStand stand_at(const Rim& rim, const PinWish& wish, const Tow& tow, std::string& failure) {
+// The widest fibre that passes between so many pins, and what pins that let it pass are like.
+PinStand stand_at(const Rim& rim, const PinWish& wish, int count, const Tow& tow,
+                  std::string& failure) {
     PinStand stand;
     PinTurnShape& shape = stand.shape;
     const double strand_mm = strand_radius_mm(tow.width_mm, tow.thickness_mm);
@@ -106,11 +112,7 @@ PinStand stand_at(const Rim& rim, const PinWish& wish, const Tow& tow, std::stri
     shape.diameter_mm = wish.diameter_mm;
     shape.held_mm = 0.5 * wish.diameter_mm + strand_mm;
     shape.offset_mm = wish.offset_mm > 0.0 ? wish.offset_mm : tow.width_mm + wish.diameter_mm;
-    const double around_mm = 2.0 * kPi * rim.radius_mm;
-    stand.ring.count =
-        wish.count > 0 ? wish.count
-                       : std::max(3, static_cast<int>(around_mm / (kPitchBands * tow.width_mm)));
-    shape.pitch_mm = around_mm / stand.ring.count;
+    shape.pitch_mm = 2.0 * kPi * rim.radius_mm / count;
     PinFit fit;
     for (double angle = kWidest_rad; angle >= kLeastWidest_rad; angle -= kAngleStep_rad) {
         shape.angle_rad = angle;
@@ -124,6 +126,7 @@ PinStand stand_at(const Rim& rim, const PinWish& wish, const Tow& tow, std::stri
     failure = fit.failure;
     shape.back_rad.reset();
     shape.lead_mm = fit.lead_mm;
+    stand.ring.count = count;
     stand.ring.rim = rim.id;
     stand.ring.diameter_mm = wish.diameter_mm;
     stand.ring.height_mm = fit.height_mm;
@@ -131,6 +134,30 @@ PinStand stand_at(const Rim& rim, const PinWish& wish, const Tow& tow, std::stri
     stand.ring.offset_mm = shape.offset_mm;
     stand.ring.skip = std::max({1, wish.skip, fit.least_skip});
     return stand;
+}
+
+// As many pins as are wanted; else the most between which enough passes, or those that let pass
+// most.
+PinStand stand_at(const Rim& rim, const PinWish& wish, const Tow& tow, std::string& failure) {
+    if (wish.count > 0) {
+        return stand_at(rim, wish, wish.count, tow, failure);
+    }
+    const double around_mm = 2.0 * kPi * rim.radius_mm;
+    PinStand best;
+    double bands = kPitchBands;
+    for (int count = std::numeric_limits<int>::max(); count > kFewestPins; bands *= kFartherApart) {
+        count = std::max(kFewestPins, static_cast<int>(around_mm / (bands * tow.width_mm)));
+        std::string why;
+        const PinStand stand = stand_at(rim, wish, count, tow, why);
+        if (best.ring.count == 0 || stand.widest_rad > best.widest_rad) {
+            best = stand;
+            failure = std::move(why);
+        }
+        if (best.widest_rad >= kEnough_rad) {
+            break;
+        }
+    }
+    return best;
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ struct Problem {
     double most_below = 0.0;
 
     [[nodiscard]] FibreBound bound() const {
-        return bound_fibre({members, allowed, asked, reached, 4, most_below});
+        return bound_fibre({members, allowed, asked, reached, {}, 4, most_below});
     }
 };
 
@@ -152,15 +152,58 @@ TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
     }
 }
 
-TEST(FibreBound, RoundsToWholeCoursesByTheirSum) {
+// Courses that cover 50 neighbours of 4000 each: any cover takes 80 of them. Were 800 of the
+// samples rows, courses would pass the places between.
+TEST(FibreBound, CountsSamplesBetweenThoseOfTheRows) {
+    Problem problem;
+    std::vector<Eigen::Vector3d> position_mm;
+    for (std::int32_t i = 0; i < 4000; ++i) {
+        position_mm.emplace_back(0.5 * i, 0.0, 0.0);
+    }
+    for (std::int32_t first = -49; first < 4000; first += 7) {
+        problem.members.push_back(
+            course(std::max(0, first), std::min(3999, first + 49), 100.0, 0, 0));
+    }
+    problem.allowed.assign(problem.members.size(), 1);
+    problem.asked.assign(position_mm.size(), 1);
+    problem.reached.assign(position_mm.size(), 1);
+    const FibreBound bound = bound_fibre({.members = problem.members,
+                                          .allowed = problem.allowed,
+                                          .asked = problem.asked,
+                                          .reached = problem.reached,
+                                          .position_mm = position_mm,
+                                          .nodes = 4});
+    EXPECT_GE(bound.least_mm, (1.0 - kNear) * 80.0 * 100.0);
+    EXPECT_LE(bound.least_mm, 82.0 * 100.0);
+}
+
+TEST(FibreBound, GoesOnWithoutWhatDoesNotHold) {
+    const Problem problem{{course(0, 9, 100.0, 0, 0), course(0, 9, 130.0, 0, 0)}};
+    FibreBoundFinder finder(
+        {problem.members, problem.allowed, problem.asked, problem.reached, {}, 4});
+    EXPECT_NEAR(finder.find().least_mm, 100.0, kNear * 100.0);
+    finder.strike_off(0);
+    const FibreBound bound = finder.find();
+    EXPECT_NEAR(bound.least_mm, 130.0, kNear * 130.0);
+    EXPECT_EQ(times_laid(bound, 0), 0.0);
+    EXPECT_NEAR(times_laid(bound, 1), 1.0, 0.01);
+}
+
+// By angle, then around the rim.
+TEST(FibreBound, RoundsLikeCoursesTogether) {
+    std::vector<Member> members(4, course(0, 1, 100.0, 0, 0));
+    members[0].end[0].angle_rad = 1.0;
+    members[1].end[0].azimuth_rad = 2.0;
+    members[2].end[0].azimuth_rad = 1.0;
+    members[3].end[0].azimuth_rad = 3.0;
     FibreBound bound;
-    bound.forward = {0.3, 0.3, 0.0, 2.0};
-    bound.backward = {0.0, 0.3, 0.2, 0.0};
-    // Sums of 0.8, 1.1, 1.4, 1.6 and 3.6, from 0.5.
-    const std::vector<LaidCourse> all{{1, false}, {3, false}, {3, false}};
-    EXPECT_EQ(whole_courses(bound, 1.0), all);
-    EXPECT_EQ(whole_courses(bound, 0.0), std::vector<LaidCourse>{});
-    EXPECT_EQ(whole_courses(bound, 10.0).size(), 31U);
+    bound.forward = {0.4, 0.4, 0.4, 0.4};
+    bound.backward.assign(4, 0.0);
+    // Member 2, 1, 3 and 0; from 0.5, sums of 0.9, 1.3, 0.7 and 1.1.
+    const std::vector<LaidCourse> half{{1, false}, {0, false}};
+    EXPECT_EQ(whole_courses(bound, members, 1.0), half);
+    EXPECT_EQ(whole_courses(bound, members, 0.0), std::vector<LaidCourse>{});
+    EXPECT_EQ(whole_courses(bound, members, 10.0).size(), 16U);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -182,6 +183,47 @@ TEST(FitCourse, StaysWhereNothingIsToBeSaved) {
     EXPECT_EQ(fit.saved, 0.0);
     EXPECT_EQ(fit.move.left_mm, 0.0);
     EXPECT_EQ(fit.move.turn_rad, 0.0);
+}
+
+// Sketches end where pins take hold of them, and a fit moves no end from there to first order.
+TEST(FitCourse, KeepsEndsAtPins) {
+    Scene scene(test::made_cylinder(30.0, 160.0, 5.0));
+    std::string failure;
+    scene.rules.turns.pins = stand_pins(
+        scene.mandrel.rims, {}, {.width_mm = Scene::kBand_mm, .thickness_mm = 0.25}, 40.0, failure);
+    ASSERT_EQ(failure, "");
+    int fitted = 0;
+    for (std::size_t i = 0; i < 40; ++i) {
+        const SurfacePoint& seed = scene.samples.at[i * scene.samples.size() / 40];
+        const auto course = scene.placed({seed, 0.3 + 0.02 * static_cast<double>(i), 0.0});
+        const auto wanted = scene.placed({seed, 0.3 + 0.02 * static_cast<double>(i), 0.2});
+        if (!course || !wanted) {
+            continue;
+        }
+        EXPECT_TRUE(ends_at_pins(scene.rules, course->member, 0.2));
+        const Fit fit = fit_to(scene, *course, samples_of(*wanted));
+        if (std::abs(fit.move.steering) + std::abs(fit.move.behind) < 1e-3) {
+            continue;
+        }
+        ++fitted;
+        CourseMove tenth = fit.move;
+        for (double* part : {&tenth.left_mm, &tenth.turn_rad, &tenth.steering, &tenth.behind}) {
+            *part *= 0.1;
+        }
+        const auto off_at = [&](const CourseMove& move, std::size_t e) {
+            const Candidate to = moved(scene.rules, *course, seed_station(*course), move);
+            const SurfacePath path = trace_both_ways(scene.rules, to, TraceMethod::Walk);
+            const Rim& rim =
+                scene.mandrel.rims[static_cast<std::size_t>(course->member.end[e].rim)];
+            const PathPoint& last = e == 0 ? path.front() : path.back();
+            const Eigen::Vector3d outward = e == 0 ? Eigen::Vector3d(-last.tangent) : last.tangent;
+            return off_pins_mm(rim, crossing_at(rim, last.position_mm, outward), scene.rules.turns);
+        };
+        for (const std::size_t e : {std::size_t{0}, std::size_t{1}}) {
+            EXPECT_NEAR(off_at(tenth, e), off_at({}, e), 0.1);  // of moves by up to 0.4 mm
+        }
+    }
+    EXPECT_GE(fitted, 5);
 }
 
 }  // namespace

@@ -136,5 +136,17 @@ TEST(CourseTurns, PinsThatDoNotFitAreRefusedWithTheRim) {
     EXPECT_NE(failure.find("leave no gap"), std::string::npos) << failure;
 }
 
+// Of a narrow tow pins at its own pitch leave no room between each other: they stand farther apart.
+TEST(CourseTurns, StandFartherApartForNarrowTows) {
+    const std::vector<Rim> rims = one_rim();
+    for (const double width_mm : {2.0, 3.0, 6.0, 10.0, 20.0}) {
+        std::string failure;
+        const auto stands =
+            stand_pins(rims, {}, {.width_mm = width_mm, .thickness_mm = 0.25}, 60.0, failure);
+        ASSERT_EQ(failure, "") << width_mm;
+        EXPECT_GE(stands.front().widest_rad, 55.0 * kPi / 180.0) << width_mm;
+    }
+}
+
 }  // namespace
 }  // namespace meshwind
