@@ -43,6 +43,7 @@
 #include "report/report_design.h"
 #include "report/report_study.h"
 #include "report/report_verify.h"
+#include "report/summary.h"
 #include "report/write_run.h"
 #include "study/study_run.h"
 
@@ -153,7 +154,7 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
     if (common.json) {
         std::cout << report;
     } else if (!common.quiet) {
-        print_summary(std::cout, run, arguments.out);
+        print_summary(std::cout, run, arguments.out, common.verbose ? Detail::Full : Detail::Brief);
     }
     return exit_code(post != nullptr ? post->points : arguments.mandrel, run.checks, common);
 }
@@ -420,6 +421,36 @@ int run_validate(const ValidateArguments& arguments, const Common& common) {
     }
     if (!common.quiet) {
         std::cout << name << ": a valid " << (machine ? "machine" : "job") << " file\n" << more;
+    }
+    return kDone;
+}
+
+int run_machines(const Common& common) {
+    nlohmann::json all = nlohmann::json::array();
+    std::size_t widest = 0;
+    for (const std::string& name : shipped_machines()) {
+        const Machine machine = read_machine(find_input(name).string());
+        std::string letters;
+        for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
+            letters += joint > 0 ? " " : "";
+            letters += machine.axis(joint).letter;
+        }
+        widest = std::max(widest, name.size());
+        all.push_back({{"file", name},
+                       {"name", machine.name},
+                       {"axes", letters},
+                       {"dialect", machine.controller.dialect},
+                       {"main_job", machine_class(machine).refusal.empty()}});
+    }
+    if (common.json) {
+        std::cout << json_text(all);
+        return kDone;
+    }
+    for (const nlohmann::json& row : all) {
+        const auto text = [&](const char* key) { return row[key].get<std::string>(); };
+        std::cout << text("file") << std::string(widest + 2 - text("file").size(), ' ')
+                  << text("name") << ": axes " << text("axes") << ", dialect " << text("dialect")
+                  << (row["main_job"].get<bool>() ? "" : ", for \"carry\" alone") << '\n';
     }
     return kDone;
 }

@@ -22,6 +22,7 @@ struct Common {
     int threads = 0;         ///< 0: one per core
     std::uint64_t seed = 1;  ///< of every random draw
     bool quiet = false;
+    bool verbose = false;
     bool json = false;
     bool force = false;
     std::string units;  ///< auto, um, mm, cm, m, in; empty: auto
@@ -115,6 +116,8 @@ struct CarryArguments {
 [[nodiscard]] int run_mesh_size(StudyArguments& arguments, const Common& common);
 [[nodiscard]] int run_carry_command(CarryArguments& arguments, const Common& common);
 [[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);
+/// Lists the machines that come with the program.
+int run_machines(const Common& common);
 [[nodiscard]] int run_validate(const ValidateArguments& arguments, const Common& common);
 
 }  // namespace meshwind

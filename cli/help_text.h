@@ -100,6 +100,13 @@ constexpr const char* kTraceHelp =
     "  meshwind trace tee.stl --start 0,-50,0 --angle 45 -o path.csv\n"
     "  meshwind trace tee.stl --start 0,-50,-100 --to 0,-50,100 --lambda 0.1 -o path.csv";
 
+constexpr const char* kMachinesHelp =
+    "A name of the list is enough for --machine; docs/how-to/own_machine.md tells how to write a\n"
+    "file for your own.\n"
+    "\n"
+    "Example:\n"
+    "  meshwind machines";
+
 constexpr const char* kValidateHelp =
     "A file with a key \"schema\" or \"eye_chain\" is read as a machine, any other as a job. Of a\n"
     "machine its class is told, its axes, and whether the main job can be run with it.\n"

@@ -77,6 +77,8 @@ int run(const std::vector<std::string>& arguments) {
         ->check(one_of({"auto", "um", "mm", "cm", "m", "in"}));
     app.add_flag("--json", common.json, "the report as JSON on stdout, in place of the summary")
         ->group(kEvery);
+    app.add_flag("--verbose", common.verbose, "every check and all figures in the summary")
+        ->group(kEvery);
     app.add_flag("--quiet", common.quiet, "no progress and no summary")->group(kEvery);
     app.add_flag("--force", common.force,
                  "write the program although a check failed; its head says so")
@@ -107,6 +109,8 @@ int run(const std::vector<std::string>& arguments) {
     CLI::App* trace_command =
         app.add_subcommand("trace", "one fibre path over a mandrel, as a table");
     CLI::Option* angle = add_trace(*trace_command, trace_text);
+    CLI::App* machines =
+        app.add_subcommand("machines", "the machine files that come with meshwind");
     ValidateArguments validate_options;
     CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
     validate->add_option("file", validate_options.file, "JSON file")->type_name("FILE");
@@ -159,6 +163,7 @@ int run(const std::vector<std::string>& arguments) {
                                         {inspect, kInspectHelp},
                                         {make, kMakeHelp},
                                         {trace_command, kTraceHelp},
+                                        {machines, kMachinesHelp},
                                         {validate, kValidateHelp},
                                         {carry, kCarryHelp},
                                         {design_vessel, kDesignHelp},
@@ -232,6 +237,9 @@ int run(const std::vector<std::string>& arguments) {
     }
     if (strength->parsed()) {
         return run_strength(shell_arguments, common);
+    }
+    if (machines->parsed()) {
+        return run_machines(common);
     }
     if (validate->parsed()) {
         return run_validate(validate_options, common);

@@ -2,10 +2,10 @@
 # shellcheck shell=bash disable=SC2207
 
 # Options of every command.
-_meshwind_common='--threads --seed --units --json --quiet --force'
+_meshwind_common='--threads --seed --units --json --verbose --quiet --force'
 # Options and commands by command; - is the program itself.
 declare -gA _meshwind_words=(
-    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify inspect make trace validate carry design study export strength'
+    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify inspect make trace machines validate carry design study export strength'
     [wind]='-h --help --machine --job --set -o --out --effort --png --png-size --png-colour'
     [post]='-h --help --mandrel --machine --job --set --frame --within -o --out --png --png-size --png-colour'
     [verify]='-h --help --mandrel --machine --job --set --plan --tie-on -o --out'
@@ -22,6 +22,7 @@ declare -gA _meshwind_words=(
     [make torus]='-h --help --ring-radius --tube-radius --angle'
     [make ellipsoid]='-h --help --equator-radius --pole-radius'
     [trace]='-h --help --start --direction --angle --to --lambda --length --method --frame -o --out'
+    [machines]='-h --help'
     [validate]='-h --help --schema'
     [carry]='-h --help --from-end --bend-turn --machine --tool --speed --tolerance --tolerance-angle --tube-radius --ring-radius --ring-distance --clearance --angle --tows --tow-width --passes --at-once --spool-radius --angle-tolerance --friction --tow-tex --name -o --out'
     [design]='-h --help vessel'

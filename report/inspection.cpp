@@ -117,8 +117,13 @@ void check_part_page(const std::string& file) {
     }
 }
 
+std::string part_page(const Inspection& found) {
+    const std::string_view page = part_page_template();
+    return page.empty() ? std::string() : packed_page(page, part_data(found));
+}
+
 void write_part_page(const Inspection& found, const std::filesystem::path& file) {
-    write_file(file, packed_page(part_page_template(), part_data(found)));
+    write_file(file, part_page(found));
 }
 
 }  // namespace meshwind

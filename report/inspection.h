@@ -53,6 +53,9 @@ void print_inspection(std::ostream& out, const Inspection& found);
 /// \throws InputError cli.page, cli.page_name
 void check_part_page(const std::string& file);
 
+/// The same as a text; nothing where the program was built without its pages.
+[[nodiscard]] std::string part_page(const Inspection& found);
+
 /// The page of the part in one file: its triangles by region, rims, spindle, places of the remarks
 /// and all that is printed. \pre check_part_page \throws IoError output.unwritable
 void write_part_page(const Inspection& found, const std::filesystem::path& file);

@@ -15,28 +15,14 @@
 #include "core/version.h"
 #include "pipeline/part_words.h"
 #include "pipeline/run_names.h"
-#include "report/page/packed_page.h"
 #include "report/report_checks.h"
 #include "report/report_layers.h"
 #include "report/report_mandrel.h"
-#include "winding/laminate/coverage.h"
 
 namespace meshwind {
 namespace {
 
 using nlohmann::json;
-
-const char* name_of(WhatIf::Rule rule) {
-    switch (rule) {
-        case WhatIf::Rule::Friction:
-            return "friction";
-        case WhatIf::Rule::Bridging:
-            return "bridging tolerance";
-        case WhatIf::Rule::Extension:
-            return "extension";
-    }
-    return "";
-}
 
 json what_if_report(const Plan& plan) {
     json all = json::array();
@@ -102,20 +88,6 @@ json angles_report(const Plan& plan) {
         angles["off_share"] = report_number(plan.angle.off_share);
     }
     return angles;
-}
-
-const char* word_of(BandOrder order) {
-    return order == BandOrder::Leading ? "leading" : "lagging";
-}
-
-// Angles that differ by less are the same to whoever winds.
-constexpr double kSameAngle_deg = 0.05;
-
-// What the layer asks for, where another angle was laid.
-std::optional<double> other_angle_asked(const LayerJob& job, double laid_rad) {
-    const bool other =
-        job.angle_deg && std::abs(*job.angle_deg - deg_from_rad(laid_rad)) > kSameAngle_deg;
-    return other ? job.angle_deg : std::nullopt;
 }
 
 json pattern_report(const LaidPattern& laid) {
@@ -336,103 +308,6 @@ json import_report(const ImportFit& fit) {
             {"limit_mm", report_number(fit.limit_mm)}};
 }
 
-// Where the motion of least time is asked for and could not be had.
-void print_first_motions(std::ostream& out, const WoundLayer& layer) {
-    const std::vector<FibreProgram>& programs = layer.programs;
-    if (!wants_least_time(layer.setup)) {
-        return;
-    }
-    for (std::size_t fibre = 0; fibre < programs.size(); ++fibre) {
-        if (!programs[fibre].made.optimal) {
-            const std::string which =
-                programs.size() > 1 ? " of fibre " + std::to_string(fibre + 1) : "";
-            out << "  motion" << which
-                << ": by the central angle; none of least time was found that keeps clear and lays "
-                   "the fibre as planned\n";
-        }
-    }
-}
-
-std::string asked_words(const LayerJob& job, double laid_rad) {
-    const std::optional<double> asked = other_angle_asked(job, laid_rad);
-    return asked ? " (" + fixed(*asked, 2) + " asked for)" : "";
-}
-
-void print_pattern(std::ostream& out, const LaidPattern& laid, const LayerJob& job) {
-    const Pattern& pattern = laid.pattern;
-    out << "pattern: " << counted(pattern.circuits, "circuit") << " at "
-        << fixed(deg_from_rad(laid.angle_rad), 2) << " deg" << asked_words(job, laid.angle_rad)
-        << ", " << counted(pattern.starts, "start") << ' ' << word_of(pattern.order) << ", dwell "
-        << fixed(deg_from_rad(pattern.dwell_rad), 2) << " deg a circuit, bands "
-        << (pattern.overlap < 0.0 ? "leave gaps of " : "overlap by ")
-        << percent(std::abs(pattern.overlap)) << '\n';
-    const Interlacing& cross = laid.interlacing;
-    out << "  " << counted(cross.crossing_rows, "row") << " of "
-        << counted(pattern.circuits, "crossing") << ", "
-        << counted(cross.diamonds_around, "diamond") << " around\n";
-    if (laid.lattice) {
-        const LaidLattice& lattice = *laid.lattice;
-        out << "  lattice: " << counted(2 * pattern.circuits, "rib") << " of "
-            << fixed(lattice.rib_mm, 2) << " mm, " << fixed(lattice.rib_spacing_mm, 2)
-            << " mm apart at the widest place, " << lattice.series << " series "
-            << fixed(lattice.offset_mm, 2) << " mm apart, "
-            << counted(lattice.plies, "ply", "plies") << '\n';
-    }
-}
-
-void print_elbow(std::ostream& out, const LaidElbow& laid, const LayerJob& job) {
-    out << "elbow: " << counted(laid.lines, "line") << " of either hand (" << laid.needed_by_bend
-        << " for the bend) at " << fixed(deg_from_rad(laid.angle_rad), 2) << " deg outside"
-        << asked_words(job, laid.angle_rad) << ", " << fixed(deg_from_rad(laid.inner_angle_rad), 2)
-        << " deg inside, " << fixed(laid.thinnest_layers, 2) << " to "
-        << fixed(laid.thickest_layers, 2) << " layers on the bend\n";
-    for (const LaidElbowLeg& leg : laid.leg) {
-        out << "leg: " << fixed(leg.length_mm, 1) << " mm, closed for " << fixed(leg.closed_mm, 1)
-            << ", steered over " << fixed(leg.run_mm, 1) << " to "
-            << fixed(deg_from_rad(leg.angle_rad), 2) << " deg, slip ratio "
-            << fixed(leg.slip_ratio, 3) << '\n';
-    }
-}
-
-// Bare wall by reason, the largest first, and what looser rules would reach.
-void print_bare_wall(std::ostream& out, const WoundLayer& layer) {
-    std::map<std::string, double> area_mm2;
-    for (const Uncovered& bare : layer.plan.uncovered) {
-        area_mm2[bare.rule] += bare.area_mm2;
-    }
-    std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
-    std::stable_sort(reasons.begin(), reasons.end(),
-                     [](const auto& a, const auto& b) { return a.second > b.second; });
-    for (const auto& [reason, mm2] : reasons) {
-        out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
-    }
-    const Job& job = layer.setup.job;
-    const std::vector<double>& reach = layer.plan.reach_of_fibres;
-    const auto fibres = static_cast<std::size_t>(job.fibres);
-    if (reach.size() > fibres) {
-        out << "  with \"fibres\": " << fibres + 1 << " in the job courses would reach "
-            << percent(reach[fibres]) << " of the wall instead of " << percent(reach[fibres - 1])
-            << '\n';
-    }
-    const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
-        {WhatIf::Rule::Friction, {layer.setup.friction.holds(), ""}},
-        {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
-        {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
-    for (const WhatIf& what_if : layer.plan.what_if) {
-        const auto [value, unit] = now.at(what_if.rule);
-        out << "  with a" << (what_if.rule == WhatIf::Rule::Extension ? "n " : " ")
-            << name_of(what_if.rule) << " of " << fixed(what_if.factor * value, 2) << unit
-            << " instead of " << fixed(value, 2) << unit << " courses would reach "
-            << percent(what_if.reachable) << " of the wall\n";
-    }
-}
-
-FibreUse use_of_fibre(const WoundLayer& layer) {
-    const Surface& surface = layer.setup.mandrel.surface;
-    return fibre_use(layer.plan, layer.setup.job.tow.width_mm,
-                     area_mm2({surface.position_mm, surface.face}), layer.job.target_layers);
-}
-
 // What a layer is and what came of it.
 void add_layer_report(json& report, const WoundLayer& layer, bool written) {
     report["plan"] = plan_report(layer.plan);
@@ -471,61 +346,6 @@ json eye_report(const Setup& setup) {
     return report;
 }
 
-// What the run is about, and what of it nobody has said.
-void print_part(std::ostream& out, const Run& run) {
-    const Setup& setup = run.layers.front().setup;
-    out << setup.mandrel.file << ": " << size_words(setup.mandrel) << '\n';
-    if (setup.rule_of_machine) {
-        out << "eye: " << fixed(setup.job.eye.radius_mm, 3) << " mm from the spindle axis, where "
-            << setup.machine.name << " keeps it (eye rule \"cylinder\")\n";
-    }
-}
-
-void print_layer(std::ostream& out, const WoundLayer& layer) {
-    const Plan& plan = layer.plan;
-    if (!plan.failure.empty()) {
-        return;
-    }
-    std::size_t blocks = 0;
-    double least_s = 0.0;
-    for (const FibreProgram& program : layer.programs) {
-        blocks += program.made.blocks.moves();
-        least_s += program.made.least_s;
-    }
-    out << layer.setup.mandrel.file << " on " << layer.setup.machine.name << ": "
-        << counted(plan.courses, "course") << ", " << fixed(plan.fibre_length_mm / 1000.0, 1)
-        << " m of fibre, " << counted(blocks, "block") << ", "
-        << fixed(layer.duration_s() / 60.0, 1) << " min (" << fixed(least_s / 60.0, 1)
-        << " at the fibre's full speed)\n";
-    print_first_motions(out, layer);
-    if (!layer.no_pattern.empty()) {
-        out << "no pattern is laid: " << layer.no_pattern << '\n';
-    }
-    out << "covered " << percent(plan.coverage.fraction) << " of the wall"
-        << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
-        << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
-        << plan.coverage.max_layers << ", at least " << plan.coverage.p1_layers
-        << (layer.import ? " on 99 % of it\n" : " on 99 % of what is reachable\n");
-    if (plan.planner == Planner::Cover && layer.job.kind != LayerKind::Wall) {
-        const FibreUse use = use_of_fibre(layer);
-        out << "fibre factor " << fixed(use.factor, 2)
-            << " (1 would be the layers asked for without gaps, overlaps and turns), "
-            << percent(use.turn_share, 1) << " of the fibre in turns\n";
-    }
-    if (plan.pattern() != nullptr) {
-        print_pattern(out, *plan.pattern(), layer.job);
-    }
-    if (plan.elbow() != nullptr) {
-        print_elbow(out, *plan.elbow(), layer.job);
-    }
-    if (layer.import) {
-        const ImportFit& fit = *layer.import;
-        out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
-            << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
-            << " mm in line " << fit.worst_line << '\n';
-    }
-}
-
 }  // namespace
 
 json report_of(const Run& run, const std::map<std::string, double>& timing_s) {
@@ -541,6 +361,7 @@ json report_of(const Run& run, const std::map<std::string, double>& timing_s) {
     if (!run.walls.empty()) {
         add_walls_report(report, run);
     }
+    add_cost_report(report, run);
     if (run.layers.size() == 1) {
         add_layer_report(report, first, run.usable);
     } else {
@@ -554,34 +375,6 @@ json report_of(const Run& run, const std::map<std::string, double>& timing_s) {
 
 std::string report_text(const Run& run) {
     return json_text(report_of(run, run.timing_s));
-}
-
-void print_summary(std::ostream& out, const Run& run, const std::filesystem::path& folder) {
-    print_part(out, run);
-    for (std::size_t i = 0; i < run.layers.size(); ++i) {
-        out << (run.layers.size() > 1 ? "layer " + std::to_string(i + 1) + ": " : "");
-        print_layer(out, run.layers[i]);
-        print_bare_wall(out, run.layers[i]);
-    }
-    if (run.layers.size() > 1) {
-        print_laminate(out, run);
-    }
-    print_walls(out, run);
-    print_checks(out, run.checks);
-    if (!run.usable) {
-        out << "no program written\n";
-    }
-    for (const WoundLayer& layer : run.layers) {
-        for (const FibreProgram& program : layer.programs) {
-            if (run.usable) {
-                out << "program: " << (folder / program.file).string() << '\n';
-            }
-        }
-    }
-    if (run.planned() && !report_page_template().empty()) {
-        out << "page:    " << (folder / "report.html").string() << '\n';
-    }
-    out << "report:  " << (folder / "report.json").string() << '\n';
 }
 
 }  // namespace meshwind

@@ -1,9 +1,7 @@
-/// The report of a run: report.json, and the summary that a user reads on the terminal.
+/// The report of a run: report.json.
 #pragma once
 
-#include <filesystem>
 #include <map>
-#include <ostream>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,8 +17,5 @@ namespace meshwind {
 
 /// Text of report.json, with the times of the run.
 [[nodiscard]] std::string report_text(const Run& run);
-
-/// A dozen lines: what was wound, how it is covered, the checks, where the files are.
-void print_summary(std::ostream& out, const Run& run, const std::filesystem::path& folder);
 
 }  // namespace meshwind

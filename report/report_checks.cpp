@@ -119,6 +119,18 @@ void print_checks(std::ostream& out, const std::vector<Check>& checks) {
     }
 }
 
+void print_failed_checks(std::ostream& out, const std::vector<Check>& checks) {
+    std::size_t passed = 0;
+    for (const Check& check : checks) {
+        if (check.ok) {
+            ++passed;
+            continue;
+        }
+        out << "FAILED: " << check.name << ": " << check.words << '\n';
+    }
+    out << "checks: " << passed << " of " << checks.size() << " passed\n";
+}
+
 std::string json_text(const json& value) {
     return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
 }

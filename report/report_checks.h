@@ -28,6 +28,9 @@ namespace meshwind {
 /// A line for each check, a second one with the words of a failed one.
 void print_checks(std::ostream& out, const std::vector<Check>& checks);
 
+/// A line for each that failed, and how many passed.
+void print_failed_checks(std::ostream& out, const std::vector<Check>& checks);
+
 /// Indented by one, with a line break at the end. Bytes of names that are no UTF-8 become U+FFFD,
 /// as JSON has no other place for them.
 [[nodiscard]] std::string json_text(const nlohmann::json& json);

@@ -13,6 +13,7 @@
 #include "mesh/triangle_soup.h"
 #include "pipeline/run_names.h"
 #include "report/report_checks.h"
+#include "winding/laminate/coverage.h"
 
 namespace meshwind {
 namespace {
@@ -67,24 +68,6 @@ json figures_report(const LayerFigures& figures) {
             {"time_s", report_number(figures.time_s)}};
 }
 
-// What adds up. The angle of the sum is left at 0; its thickness is that of the sum per vertex.
-LayerFigures figures_of_all(const Run& run) {
-    LayerFigures all;
-    std::vector<double> thickness(run.layers.front().setup.mandrel.surface.position_mm.size());
-    for (const WoundLayer& layer : run.layers) {
-        const LayerFigures figures = figures_of(layer);
-        all.mean_thickness_mm += figures.mean_thickness_mm;
-        all.fibre_m += figures.fibre_m;
-        all.mass_g += figures.mass_g;
-        all.time_s += figures.time_s;
-        for (std::size_t v = 0; v < layer.build_up_mm.size(); ++v) {
-            thickness[v] += layer.build_up_mm[v];
-        }
-    }
-    all.most_thickness_mm = *std::max_element(thickness.begin(), thickness.end());
-    return all;
-}
-
 json wall_report(const WoundWall& wall) {
     const WallFigures& figures = wall.figures;
     json thin = json::array();
@@ -126,30 +109,119 @@ void print_row(std::ostream& out, const std::string& name, const std::string& an
 
 }  // namespace
 
+namespace {
+
+// Of a triangle: as the wall grows by it, where that is known, else as much tow as lies there.
+double thickness_mm(const WoundLayer& layer, std::size_t face) {
+    if (layer.build_up_mm.empty()) {
+        return layer.plan.face_layers[face] * layer.setup.job.tow.thickness_mm;
+    }
+    double sum = 0.0;
+    for (const std::int32_t v : layer.setup.mandrel.surface.face[face]) {
+        sum += layer.build_up_mm[static_cast<std::size_t>(v)];
+    }
+    return sum / 3.0;
+}
+
+}  // namespace
+
 LayerFigures figures_of(const WoundLayer& layer) {
     const Plan& plan = layer.plan;
     const Surface& surface = layer.setup.mandrel.surface;
     LayerFigures figures;
     figures.angle_rad = plan.pattern() != nullptr ? plan.pattern()->angle_rad : plan.angle.mean_rad;
+    const Job::TowJob& tow = layer.setup.job.tow;
     double area = 0.0;
-    for (std::size_t f = 0; f < surface.face.size() && !layer.build_up_mm.empty(); ++f) {
-        const double third = area_mm2(surface.position_mm, surface.face[f]) / 3.0;
-        for (const std::int32_t v : surface.face[f]) {
-            area += third;
-            figures.mean_thickness_mm += third * layer.build_up_mm[static_cast<std::size_t>(v)];
-        }
+    for (std::size_t f = 0; f < surface.face.size() && f < plan.face_layers.size(); ++f) {
+        const double face_mm2 = area_mm2(surface.position_mm, surface.face[f]);
+        area += face_mm2;
+        figures.mean_thickness_mm += face_mm2 * thickness_mm(layer, f);
+        figures.most_thickness_mm = std::max(figures.most_thickness_mm, thickness_mm(layer, f));
     }
     if (area > 0.0) {
         figures.mean_thickness_mm /= area;
-        figures.most_thickness_mm =
-            *std::max_element(layer.build_up_mm.begin(), layer.build_up_mm.end());
     }
-    const Job::TowJob& tow = layer.setup.job.tow;
     figures.fibre_m = plan.fibre_length_mm / kMmPerM;
     figures.mass_g =
         plan.fibre_length_mm * tow.width_mm * tow.thickness_mm / kMm3PerCm3 * tow.density_g_cm3;
+    figures.scrap_m = use_of_fibre(layer).turn_share * figures.fibre_m;
     figures.time_s = layer.duration_s();
     return figures;
+}
+
+LayerFigures figures_of_all(const Run& run) {
+    LayerFigures all;
+    std::vector<double> thickness(run.layers.front().setup.mandrel.surface.face.size());
+    for (const WoundLayer& layer : run.layers) {
+        const LayerFigures figures = figures_of(layer);
+        all.mean_thickness_mm += figures.mean_thickness_mm;
+        all.fibre_m += figures.fibre_m;
+        all.mass_g += figures.mass_g;
+        all.scrap_m += figures.scrap_m;
+        all.time_s += figures.time_s;
+        for (std::size_t f = 0; f < thickness.size() && f < layer.plan.face_layers.size(); ++f) {
+            thickness[f] += thickness_mm(layer, f);
+        }
+    }
+    for (const double face_mm : thickness) {
+        all.most_thickness_mm = std::max(all.most_thickness_mm, face_mm);
+    }
+    return all;
+}
+
+double least_fibre_m(const Run& run) {
+    double least_m = 0.0;
+    for (const WoundWall& wall : run.walls) {
+        const WallFigures& figures = wall.figures;
+        if (!(figures.least_factor > 0.0)) {
+            return 0.0;
+        }
+        least_m += figures.fibre_mm / kMmPerM * figures.least_factor / figures.fibre_factor;
+    }
+    for (const WoundLayer& layer : run.layers) {
+        if (layer.job.kind == LayerKind::Wall) {
+            continue;
+        }
+        const double layer_m = layer.plan.least_fibre_mm.value_or(0.0) / kMmPerM;
+        if (!(layer_m > 0.0)) {
+            return 0.0;
+        }
+        least_m += layer_m;
+    }
+    return least_m;
+}
+
+FibreUse use_of_fibre(const WoundLayer& layer) {
+    const Surface& surface = layer.setup.mandrel.surface;
+    return fibre_use(layer.plan, layer.setup.job.tow.width_mm,
+                     area_mm2({surface.position_mm, surface.face}), layer.job.target_layers);
+}
+
+const char* name_of(WhatIf::Rule rule) {
+    switch (rule) {
+        case WhatIf::Rule::Friction:
+            return "friction";
+        case WhatIf::Rule::Bridging:
+            return "bridging tolerance";
+        case WhatIf::Rule::Extension:
+            return "extension";
+    }
+    return "";
+}
+
+const char* word_of(BandOrder order) {
+    return order == BandOrder::Leading ? "leading" : "lagging";
+}
+
+void add_cost_report(json& report, const Run& run) {
+    const LayerFigures all = figures_of_all(run);
+    report["cost"] = {{"fibre_m", report_number(all.fibre_m)},
+                      {"mass_g", report_number(all.mass_g)},
+                      {"scrap_m", report_number(all.scrap_m)},
+                      {"time_s", report_number(all.time_s)}};
+    if (const double least_m = least_fibre_m(run); least_m > 0.0) {
+        report["cost"]["least_fibre_m"] = report_number(least_m);
+    }
 }
 
 json bound_report(double least_factor, double factor) {
@@ -176,9 +248,7 @@ void print_walls(std::ostream& out, const Run& run) {
             << " times that on average, " << percent(figures.below_share, 2)
             << " of what is reachable is thinner, " << fixed(figures.p1_ratio, 2)
             << " times that or more on 99 % of it\n"
-            << "  " << fixed(figures.fibre_mm / kMmPerM, 1) << " m of fibre, "
-            << percent(figures.turn_share, 1) << " of it in turns: factor "
-            << fixed(figures.fibre_factor, 2)
+            << "  fibre factor " << fixed(figures.fibre_factor, 2)
             << " (1 would be the layers asked for without gaps, overlaps and turns)";
         if (figures.least_factor > 0.0) {
             out << "; no plan of single courses takes less than " << fixed(figures.least_factor, 2);

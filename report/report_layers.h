@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "pipeline/wind.h"
+#include "winding/plan/figures.h"
 
 namespace meshwind {
 
@@ -16,12 +17,31 @@ struct LayerFigures {
     double mean_thickness_mm = 0.0;  ///< over the wall
     double most_thickness_mm = 0.0;
     double fibre_m = 0.0;
-    double mass_g = 0.0;  ///< of the tow as it is laid
+    double mass_g = 0.0;   ///< of the tow as it is laid
+    double scrap_m = 0.0;  ///< of the fibre, what lies in turns and is cut off
     double time_s = 0.0;
 };
 
 /// \pre the layer has a plan
 [[nodiscard]] LayerFigures figures_of(const WoundLayer& layer);
+
+/// What adds up. The angle is left at 0; the thickness is that of the sum per triangle.
+[[nodiscard]] LayerFigures figures_of_all(const Run& run);
+
+/// The least fibre that is known to be needed, turns included: of the layers and walls that have a
+/// bound. 0 where one has none.
+[[nodiscard]] double least_fibre_m(const Run& run);
+
+[[nodiscard]] FibreUse use_of_fibre(const WoundLayer& layer);
+
+/// "friction", ...
+[[nodiscard]] const char* name_of(WhatIf::Rule rule);
+
+/// "leading" or "lagging".
+[[nodiscard]] const char* word_of(BandOrder order);
+
+/// Adds "cost": fibre, mass, scrap and time of all that is wound, and how little fibre would do.
+void add_cost_report(nlohmann::json& report, const Run& run);
 
 /// Adds "plan", "program" and "laminate" of all layers together, and for each of "layers" its
 /// figures.

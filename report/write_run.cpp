@@ -3,7 +3,7 @@
 #include <chrono>
 #include <map>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +12,7 @@
 #include "pipeline/run_names.h"
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
+#include "report/inspection.h"
 #include "report/layup.h"
 #include "report/layup_files.h"
 #include "report/page/packed_page.h"
@@ -43,7 +44,23 @@ void add_layer(const Run& run, std::size_t number, OutputFolder& folder) {
     }
 }
 
+// What was not planned is shown as the part that it is, with the reason.
+std::string page_of_part(const Run& run) {
+    const WoundLayer& layer = run.layers.front();
+    Inspection found = inspect(layer.setup.mandrel, layer.setup.job.tow.width_mm);
+    for (const WoundLayer& planned : run.layers) {
+        if (found.refused.empty()) {
+            found.refused = planned.plan.failure;
+        }
+    }
+    return part_page(found);
+}
+
 }  // namespace
+
+bool has_page(const Run& run) {
+    return !(run.planned() ? report_page_template() : part_page_template()).empty();
+}
 
 std::string write_run(const Run& run, OutputFolder& folder) {
     const auto begun = std::chrono::steady_clock::now();
@@ -65,9 +82,10 @@ std::string write_run(const Run& run, OutputFolder& folder) {
     nlohmann::json report = report_of(run, timing_s);
     std::string text = json_text(report);
     folder.add("report.json", text);
-    const std::string_view page = report_page_template();
-    if (layup && !page.empty()) {
-        folder.add("report.html", packed_page(page, page_data(run, *layup, std::move(report))));
+    if (has_page(run)) {
+        folder.add("report.html", layup ? packed_page(report_page_template(),
+                                                      page_data(run, *layup, std::move(report)))
+                                        : page_of_part(run));
     }
     folder.publish();
     return text;

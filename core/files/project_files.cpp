@@ -18,19 +18,6 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 4> kFolders = {"data/meshes", "data", "data/materials",
                                                  "machines"};
 
-std::vector<std::string> shipped_machines() {
-    std::vector<std::string> names;
-    std::error_code ignored;
-    for (const fs::directory_entry& entry :
-         fs::directory_iterator(project_home() / "machines", ignored)) {
-        if (entry.path().extension() == ".json") {
-            names.push_back(entry.path().filename().string());
-        }
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 }  // namespace
 
 fs::path project_home() {
@@ -62,6 +49,19 @@ fs::path find_input(const std::string& name) {
         }
     }
     return name;
+}
+
+std::vector<std::string> shipped_machines() {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(project_home() / "machines", ignored)) {
+        if (entry.path().extension() == ".json") {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 void require_machine_file(const fs::path& file) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace meshwind {
 
@@ -15,6 +16,9 @@ namespace meshwind {
 /// "tee.stl", the file of this name in data/meshes, data, data/materials or machines of
 /// `project_home()`; else `name` as given.
 [[nodiscard]] std::filesystem::path find_input(const std::string& name);
+
+/// Names of the machine files that come with the program, in their order.
+[[nodiscard]] std::vector<std::string> shipped_machines();
 
 /// \throws IoError io.cannot_read where there is no such file, with the nearest of the machines
 /// that come with the program, and all of them

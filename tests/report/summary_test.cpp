@@ -1,4 +1,4 @@
-#include "report/report.h"
+#include "report/summary.h"
 
 #include <sstream>
 #include <string>
@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "machines/machine_json.h"
+#include "postproc/verify/check.h"
 
 namespace meshwind {
 namespace {
@@ -25,7 +26,7 @@ std::string summary(const std::string& machine, RedundancyRule redundancy,
         layer.programs.emplace_back().made.optimal = optimal;
     }
     std::ostringstream out;
-    print_summary(out, run, "out");
+    print_summary(out, run, "out", Detail::Brief);
     return out.str();
 }
 
@@ -48,6 +49,28 @@ TEST(Summary, SaysNothingOfAMotionThatWasNotAskedFor) {
     EXPECT_FALSE(tells(summary(kSixAxis, RedundancyRule::CentralAngle, {false}), "motion"));
     // The turn is forced.
     EXPECT_FALSE(tells(summary("four_axis.json", RedundancyRule::Optimal, {false}), "motion"));
+}
+
+// What failed stands there; what passed is counted, and listed on demand.
+TEST(Summary, TellsWhatFailedAndCountsTheRest) {
+    meshwind::Run run;
+    WoundLayer& layer = run.layers.emplace_back();
+    layer.setup.machine = read_machine(MESHWIND_SOURCE_DIR "/machines/six_axis.json");
+    layer.setup.mandrel.whole.points_mm = {{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}};
+    const CheckKind kind{"slip", "Slip", "friction holds it there"};
+    Check failed(kind, false, "0.31 where friction holds 0.2");
+    Check passed(kind);
+    passed.name = "slip-2";
+    run.checks = {passed, failed};
+    const auto told = [&](Detail detail) {
+        std::ostringstream out;
+        print_summary(out, run, "out", detail);
+        return out.str();
+    };
+    EXPECT_TRUE(tells(told(Detail::Brief), "slip: 0.31 where friction holds 0.2\n"));
+    EXPECT_TRUE(tells(told(Detail::Brief), "1 of 2"));
+    EXPECT_FALSE(tells(told(Detail::Brief), "slip-2"));
+    EXPECT_TRUE(tells(told(Detail::Full), "slip-2"));
 }
 
 }  // namespace
