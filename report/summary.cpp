@@ -61,13 +61,12 @@ void print_pattern(std::ostream& out, const LaidPattern& laid, const LayerJob& j
         << fixed(deg_from_rad(pattern.dwell_rad), 2) << " deg a circuit, bands "
         << (pattern.overlap < 0.0 ? "leave gaps of " : "overlap by ")
         << percent(std::abs(pattern.overlap)) << '\n';
-    const Interlacing& cross = laid.interlacing;
-    if (detail == Detail::Brief) {
-        return;
+    if (detail == Detail::Full) {
+        const Interlacing& cross = laid.interlacing;
+        out << "  " << counted(cross.crossing_rows, "row") << " of "
+            << counted(pattern.circuits, "crossing") << ", "
+            << counted(cross.diamonds_around, "diamond") << " around\n";
     }
-    out << "  " << counted(cross.crossing_rows, "row") << " of "
-        << counted(pattern.circuits, "crossing") << ", "
-        << counted(cross.diamonds_around, "diamond") << " around\n";
     if (laid.lattice) {
         const LaidLattice& lattice = *laid.lattice;
         out << "  lattice: " << counted(2 * pattern.circuits, "rib") << " of "
@@ -185,7 +184,7 @@ void print_layer(std::ostream& out, const WoundLayer& layer, Detail detail) {
                 << " (1 would be the layers asked for without gaps, overlaps and turns)\n";
         }
     }
-    print_bare_wall(out, layer, layer.plan.failure.empty() ? detail : Detail::Full);
+    print_bare_wall(out, layer, detail);
 }
 
 // Fibre, what of it is cut off, and time: what it costs.
@@ -243,7 +242,7 @@ void print_summary(std::ostream& out, const Run& run, const std::filesystem::pat
         if (run.layers.size() > 1) {
             out << "layer " << i + 1 << ", " << name_of(run.layers[i].job.kind) << ": ";
         }
-        print_layer(out, run.layers[i], detail);
+        print_layer(out, run.layers[i], run.passed() ? detail : Detail::Full);
     }
     if (run.layers.size() > 1) {
         print_laminate(out, run);
