@@ -426,31 +426,34 @@ int run_validate(const ValidateArguments& arguments, const Common& common) {
 }
 
 int run_machines(const Common& common) {
-    nlohmann::json all = nlohmann::json::array();
+    std::vector<std::pair<std::string, Machine>> machines;
     std::size_t widest = 0;
-    for (const std::string& name : shipped_machines()) {
-        const Machine machine = read_machine(find_input(name).string());
-        std::string letters;
+    for (const std::string& file : shipped_machines()) {
+        machines.emplace_back(file, read_machine(find_input(file).string()));
+        widest = std::max(widest, file.size());
+    }
+    nlohmann::json all = nlohmann::json::array();
+    for (const auto& [file, machine] : machines) {
+        const bool main_job = machine_class(machine).refusal.empty();
+        std::string axes;
         for (std::size_t joint = 0; joint < machine.axis_count(); ++joint) {
-            letters += joint > 0 ? " " : "";
-            letters += machine.axis(joint).letter;
+            axes += joint > 0 ? " " : "";
+            axes += machine.axis(joint).letter;
         }
-        widest = std::max(widest, name.size());
-        all.push_back({{"file", name},
-                       {"name", machine.name},
-                       {"axes", letters},
-                       {"dialect", machine.controller.dialect},
-                       {"main_job", machine_class(machine).refusal.empty()}});
+        if (common.json) {
+            all.push_back({{"file", file},
+                           {"name", machine.name},
+                           {"axes", axes},
+                           {"dialect", machine.controller.dialect},
+                           {"main_job", main_job}});
+        } else {
+            std::cout << file << std::string(widest + 2 - file.size(), ' ') << machine.name
+                      << ": axes " << axes << ", dialect " << machine.controller.dialect
+                      << (main_job ? "" : ", for \"carry\" alone") << '\n';
+        }
     }
     if (common.json) {
         std::cout << json_text(all);
-        return kDone;
-    }
-    for (const nlohmann::json& row : all) {
-        const auto text = [&](const char* key) { return row[key].get<std::string>(); };
-        std::cout << text("file") << std::string(widest + 2 - text("file").size(), ' ')
-                  << text("name") << ": axes " << text("axes") << ", dialect " << text("dialect")
-                  << (row["main_job"].get<bool>() ? "" : ", for \"carry\" alone") << '\n';
     }
     return kDone;
 }

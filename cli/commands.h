@@ -117,7 +117,7 @@ struct CarryArguments {
 [[nodiscard]] int run_carry_command(CarryArguments& arguments, const Common& common);
 [[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);
 /// Lists the machines that come with the program.
-int run_machines(const Common& common);
+[[nodiscard]] int run_machines(const Common& common);
 [[nodiscard]] int run_validate(const ValidateArguments& arguments, const Common& common);
 
 }  // namespace meshwind

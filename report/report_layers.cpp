@@ -111,35 +111,47 @@ void print_row(std::ostream& out, const std::string& name, const std::string& an
 
 namespace {
 
-// Of a triangle: as the wall grows by it, where that is known, else as much tow as lies there.
-double thickness_mm(const WoundLayer& layer, std::size_t face) {
-    if (layer.build_up_mm.empty()) {
-        return layer.plan.face_layers[face] * layer.setup.job.tow.thickness_mm;
+// As the wall grows by the layer.
+void add_build_up(const WoundLayer& layer, LayerFigures& figures) {
+    const Surface& surface = layer.setup.mandrel.surface;
+    double area = 0.0;
+    for (const auto& face : surface.face) {
+        const double third = area_mm2(surface.position_mm, face) / 3.0;
+        for (const std::int32_t v : face) {
+            area += third;
+            figures.mean_thickness_mm += third * layer.build_up_mm[static_cast<std::size_t>(v)];
+        }
     }
-    double sum = 0.0;
-    for (const std::int32_t v : layer.setup.mandrel.surface.face[face]) {
-        sum += layer.build_up_mm[static_cast<std::size_t>(v)];
+    figures.mean_thickness_mm /= area;
+    figures.most_thickness_mm =
+        *std::max_element(layer.build_up_mm.begin(), layer.build_up_mm.end());
+}
+
+// Of a single layer, on which nothing is wound: as much tow as lies on each triangle.
+void add_tow(const WoundLayer& layer, LayerFigures& figures) {
+    const Surface& surface = layer.setup.mandrel.surface;
+    double area = 0.0;
+    for (std::size_t f = 0; f < layer.plan.face_layers.size(); ++f) {
+        const double face_mm2 = area_mm2(surface.position_mm, surface.face[f]);
+        const double thickness_mm = layer.plan.face_layers[f] * layer.setup.job.tow.thickness_mm;
+        area += face_mm2;
+        figures.mean_thickness_mm += face_mm2 * thickness_mm;
+        figures.most_thickness_mm = std::max(figures.most_thickness_mm, thickness_mm);
     }
-    return sum / 3.0;
+    figures.mean_thickness_mm /= area > 0.0 ? area : 1.0;
 }
 
 }  // namespace
 
 LayerFigures figures_of(const WoundLayer& layer) {
     const Plan& plan = layer.plan;
-    const Surface& surface = layer.setup.mandrel.surface;
+    const Job::TowJob& tow = layer.setup.job.tow;
     LayerFigures figures;
     figures.angle_rad = plan.pattern() != nullptr ? plan.pattern()->angle_rad : plan.angle.mean_rad;
-    const Job::TowJob& tow = layer.setup.job.tow;
-    double area = 0.0;
-    for (std::size_t f = 0; f < surface.face.size() && f < plan.face_layers.size(); ++f) {
-        const double face_mm2 = area_mm2(surface.position_mm, surface.face[f]);
-        area += face_mm2;
-        figures.mean_thickness_mm += face_mm2 * thickness_mm(layer, f);
-        figures.most_thickness_mm = std::max(figures.most_thickness_mm, thickness_mm(layer, f));
-    }
-    if (area > 0.0) {
-        figures.mean_thickness_mm /= area;
+    if (layer.build_up_mm.empty()) {
+        add_tow(layer, figures);
+    } else {
+        add_build_up(layer, figures);
     }
     figures.fibre_m = plan.fibre_length_mm / kMmPerM;
     figures.mass_g =
@@ -151,20 +163,21 @@ LayerFigures figures_of(const WoundLayer& layer) {
 
 LayerFigures figures_of_all(const Run& run) {
     LayerFigures all;
-    std::vector<double> thickness(run.layers.front().setup.mandrel.surface.face.size());
+    std::vector<double> thickness(run.layers.front().setup.mandrel.surface.position_mm.size());
     for (const WoundLayer& layer : run.layers) {
         const LayerFigures figures = figures_of(layer);
         all.mean_thickness_mm += figures.mean_thickness_mm;
+        all.most_thickness_mm = std::max(all.most_thickness_mm, figures.most_thickness_mm);
         all.fibre_m += figures.fibre_m;
         all.mass_g += figures.mass_g;
         all.scrap_m += figures.scrap_m;
         all.time_s += figures.time_s;
-        for (std::size_t f = 0; f < thickness.size() && f < layer.plan.face_layers.size(); ++f) {
-            thickness[f] += thickness_mm(layer, f);
+        for (std::size_t v = 0; v < layer.build_up_mm.size(); ++v) {
+            thickness[v] += layer.build_up_mm[v];
         }
     }
-    for (const double face_mm : thickness) {
-        all.most_thickness_mm = std::max(all.most_thickness_mm, face_mm);
+    for (const double vertex_mm : thickness) {
+        all.most_thickness_mm = std::max(all.most_thickness_mm, vertex_mm);
     }
     return all;
 }

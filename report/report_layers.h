@@ -25,7 +25,8 @@ struct LayerFigures {
 /// \pre the layer has a plan
 [[nodiscard]] LayerFigures figures_of(const WoundLayer& layer);
 
-/// What adds up. The angle is left at 0; the thickness is that of the sum per triangle.
+/// What adds up. The angle is left at 0; the thickness of several layers is that of the sum per
+/// vertex.
 [[nodiscard]] LayerFigures figures_of_all(const Run& run);
 
 /// The least fibre that is known to be needed, turns included: of the layers and walls that have a

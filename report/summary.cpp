@@ -83,10 +83,10 @@ void print_elbow(std::ostream& out, const LaidElbow& laid, const LayerJob& job, 
         << asked_words(job, laid.angle_rad) << ", " << fixed(deg_from_rad(laid.inner_angle_rad), 2)
         << " deg inside, " << fixed(laid.thinnest_layers, 2) << " to "
         << fixed(laid.thickest_layers, 2) << " layers on the bend\n";
+    if (detail == Detail::Brief) {
+        return;
+    }
     for (const LaidElbowLeg& leg : laid.leg) {
-        if (detail == Detail::Brief) {
-            break;
-        }
         out << "leg: " << fixed(leg.length_mm, 1) << " mm, closed for " << fixed(leg.closed_mm, 1)
             << ", steered over " << fixed(leg.run_mm, 1) << " to "
             << fixed(deg_from_rad(leg.angle_rad), 2) << " deg, slip ratio "
@@ -104,11 +104,14 @@ void print_bare_wall(std::ostream& out, const WoundLayer& layer, Detail detail) 
     std::vector<std::pair<std::string, double>> reasons(area_mm2.begin(), area_mm2.end());
     std::stable_sort(reasons.begin(), reasons.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
+    if (detail == Detail::Brief && !reasons.empty()) {
+        reasons.resize(1);
+    }
     for (const auto& [reason, mm2] : reasons) {
         out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
-        if (detail == Detail::Brief) {
-            return;
-        }
+    }
+    if (detail == Detail::Brief) {
+        return;
     }
     const Job& job = layer.setup.job;
     const std::vector<double>& reach = layer.plan.reach_of_fibres;

@@ -10,15 +10,13 @@
 #include "core/linear_programme.h"
 #include "core/parallel.h"
 #include "core/units.h"
+#include "mesh/nearest.h"
 
 namespace meshwind {
 namespace {
 
 // Rows, each of a cell of samples. More take longer by their square.
 constexpr std::size_t kMostRows = 400;
-
-// Centres of cells that one task looks through.
-constexpr std::size_t kCellChunk = 256;
 
 // Columns that are added at a time, and rounds of that.
 constexpr std::size_t kColumnsOfARound = 300;
@@ -113,20 +111,26 @@ private:
                 asking.push_back(i);
             }
         }
-        std::vector<std::size_t> centres;
         const std::size_t n = std::min(kMostRows, asking.size());
+        std::vector<std::size_t> centres;
         for (std::size_t k = 0; k < n; ++k) {
             centres.push_back(asking[k * asking.size() / n]);
         }
-        if (n < asking.size() && task_.position_mm.empty()) {
+        if (task_.position_mm.empty() || n == asking.size()) {
             asking = centres;
-        }
-        parallel_for(asking.size(), kCellChunk, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                row_[asking[k]] =
-                    n == asking.size() ? static_cast<std::int32_t>(k) : nearest(centres, asking[k]);
+            for (std::size_t k = 0; k < n; ++k) {
+                row_[asking[k]] = static_cast<std::int32_t>(k);
             }
-        });
+        } else {
+            std::vector<Eigen::Vector3d> centres_mm;
+            for (const std::size_t sample : centres) {
+                centres_mm.push_back(task_.position_mm[sample]);
+            }
+            const NearestPoints cells(centres_mm);
+            for (const std::size_t sample : asking) {
+                row_[sample] = cells.nearest(task_.position_mm[sample]);
+            }
+        }
         rows_.resize(n);
         for (const std::size_t sample : asking) {
             Row& row = rows_[at(row_[sample])];
@@ -138,21 +142,6 @@ private:
             row.asked /= row.samples;
             asked_ += row.share * row.asked;
         }
-    }
-
-    [[nodiscard]] std::int32_t nearest(std::span<const std::size_t> centres,
-                                       std::size_t sample) const {
-        std::size_t best = 0;
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < centres.size(); ++k) {
-            const double distance =
-                (task_.position_mm[centres[k]] - task_.position_mm[sample]).squaredNorm();
-            if (distance < least) {
-                least = distance;
-                best = k;
-            }
-        }
-        return static_cast<std::int32_t>(best);
     }
 
     void fill_columns() {

@@ -19,7 +19,8 @@ struct BoundTask {
     std::span<const char> allowed;        ///< per member
     std::span<const std::int32_t> asked;  ///< per sample: layers
     std::span<const char> reached;        ///< per sample: others ask for nothing
-    /// Per sample. Samples that are near each other share a row; empty: each has one.
+    /// Per sample. Where there are many, those that are near each other share a row; empty: some
+    /// of them stand for all.
     std::span<const Eigen::Vector3d> position_mm{};
     std::size_t nodes = 0;  ///< 2 for each rim
     /// Share of the samples that may have less than they ask for.
@@ -30,7 +31,8 @@ struct BoundTask {
 };
 
 struct FibreBound {
-    /// No plan of courses of the library takes less fibre, turns included: mm. It is that of a dual
+    /// No plan of courses of the library, but for those struck off, takes less fibre, turns
+    /// included: mm. It is that of a dual
     /// solution whose feasibility is computed here, so it holds however well it was solved.
     double least_mm = 0.0;
     double solved_mm = 0.0;  ///< the least found, by courses in fractions; 0 where none was

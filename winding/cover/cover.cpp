@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/margins.h"
@@ -92,7 +93,8 @@ public:
                  options.tow,
                  options.turns,
                  options.free_fibre,
-                 max_half_length_mm(mandrel.surface)} {
+                 max_half_length_mm(mandrel.surface)},
+          prover_(rules_, machine) {
         rules_.turns.rule.friction = options.tow.friction;
         rules_.turns.rule.band_mm = options.tow.width_mm;
         rules_.angle_rad = options.angle_rad;
@@ -160,24 +162,6 @@ private:
                " % nothing is planned; refused most often, " + refused_most(plan_.effort);
     }
 
-    Rejection prove(PlacedCourse& course) const { return prove_course(rules_, machine_, course); }
-
-    // Of a proven course that is to stay its own program is wound.
-    Rejection wind(PlacedCourse& course) const {
-        if (machine_ != nullptr && !course.wound) {
-            const Piece piece = piece_of(rules_, course.member, course.backward);
-            const Rejection rejection = machine_->wind_alone({&piece, 1});
-            course.wound = rejection == Rejection::None;
-            return rejection;
-        }
-        return Rejection::None;
-    }
-
-    Rejection prove_and_wind(PlacedCourse& course) const {
-        const Rejection rejection = prove(course);
-        return rejection == Rejection::None ? wind(course) : rejection;
-    }
-
     void note_refused(const Member& member, Rejection reason) {
         const std::lock_guard lock(refused_mutex_);
         refused_.emplace_back(member.footprint, reason);
@@ -190,7 +174,7 @@ private:
     void find_routes() {
         const Ways ways = ways_between_nodes(members_);
         const auto [known, refused] = prove_ways(
-            members_, ways, [this](PlacedCourse& course) { return prove(course); },
+            members_, ways, [this](PlacedCourse& course) { return prover_.prove(course); },
             [this](double share) { tell("route", share); });
         for (const auto& [member, rejection] : refused) {
             note_refused(members_[at(member)], rejection);
@@ -247,7 +231,7 @@ private:
 
     // Those to begin with that hold.
     void choose() {
-        keep_proven(false);
+        courses_ = those_that_hold(std::move(courses_), false);
         std::map<LaidCourse, PlacedCourse> proven;
         const FirstChoice first = choose_first(
             members_, allowed_, library_.reached, samples_.position_mm, 2 * mandrel_.rims.size(),
@@ -259,24 +243,23 @@ private:
         }
     }
 
-    // Which of these hold, and what they are then. The others are struck off the library.
+    // Which of these hold; the others are struck off the library. \param proven what holds, kept
     std::vector<char> hold(std::span<const LaidCourse> courses,
                            std::map<LaidCourse, PlacedCourse>& proven) {
-        tell("prove", 0.0);
-        std::vector<PlacedCourse> tried(courses.size());
-        std::vector<Rejection> found(courses.size());
-        parallel_for(courses.size(), 1, [&](std::size_t i, std::size_t) {
-            tried[i] = placed(courses[i].member, courses[i].backward);
-            found[i] = prove(tried[i]);
-        });
+        std::set<LaidCourse> unknown;
+        std::copy_if(courses.begin(), courses.end(), std::inserter(unknown, unknown.end()),
+                     [&](const LaidCourse& course) { return !proven.contains(course); });
+        std::vector<PlacedCourse> tried;
+        for (const LaidCourse& course : unknown) {
+            tried.push_back(placed(course.member, course.backward));
+        }
+        for (PlacedCourse& course : those_that_hold(std::move(tried), false)) {
+            const LaidCourse of{course.of_library, course.backward};
+            proven.emplace(of, std::move(course));
+        }
         std::vector<char> holds;
-        for (std::size_t i = 0; i < courses.size(); ++i) {
-            holds.push_back(found[i] == Rejection::None);
-            if (holds.back() != 0) {
-                proven.emplace(courses[i], std::move(tried[i]));
-            } else {
-                refuse(tried[i], found[i]);
-            }
+        for (const LaidCourse& course : courses) {
+            holds.push_back(proven.contains(course));
         }
         return holds;
     }
@@ -284,9 +267,9 @@ private:
     // Places that no course which holds passes are not in reach.
     void confirm_reach() {
         tell("prove", 0.0);
-        for (const auto& [member, rejection] :
-             prove_at_scarce_places(members_, samples_.size(),
-                                    [this](PlacedCourse& course) { return prove(course); })) {
+        for (const auto& [member, rejection] : prove_at_scarce_places(
+                 members_, samples_.size(),
+                 [this](PlacedCourse& course) { return prover_.prove(course); })) {
             strike_off(at(member), rejection);
         }
         library_.reached.assign(samples_.size(), 0);
@@ -297,30 +280,26 @@ private:
         }
     }
 
+    // Not followed yet.
     [[nodiscard]] PlacedCourse placed(std::int32_t member, bool backward) const {
-        const Member& course = members_[at(member)];
-        PlacedCourse placed{course, trace_both_ways(rules_, course.candidate, TraceMethod::Walk),
-                            backward};
+        PlacedCourse placed{members_[at(member)], {}, backward};
         placed.of_library = member;
         return placed;
     }
 
-    // \param to_stay their own programs are wound as well
-    void keep_proven(bool to_stay) {
-        std::vector<Rejection> found(courses_.size());
+    // The others are refused. \param to_stay their own programs are wound as well
+    std::vector<PlacedCourse> those_that_hold(std::vector<PlacedCourse> courses, bool to_stay) {
         tell("prove", 0.0);
-        parallel_for(courses_.size(), 1, [&](std::size_t i, std::size_t) {
-            found[i] = to_stay ? prove_and_wind(courses_[i]) : prove(courses_[i]);
-        });
-        std::vector<PlacedCourse> proven;
+        const std::vector<Rejection> found = prover_.prove_all(courses, to_stay);
+        std::vector<PlacedCourse> holding;
         for (std::size_t i = 0; i < found.size(); ++i) {
             if (found[i] == Rejection::None) {
-                proven.push_back(std::move(courses_[i]));
-                continue;
+                holding.push_back(std::move(courses[i]));
+            } else {
+                refuse(courses[i], found[i]);
             }
-            refuse(courses_[i], found[i]);
         }
-        courses_ = std::move(proven);
+        return holding;
     }
 
     void anneal_proven(bool mending) {
@@ -347,7 +326,8 @@ private:
         annealing.progress = [this](double share) { tell("anneal", share); };
         annealing.way = [this](const NodePair& nodes) { return on_a_route(nodes); };
         annealing.verify = [this, mending](PlacedCourse& course) {
-            const Rejection rejection = mending ? prove_and_wind(course) : prove(course);
+            const Rejection rejection =
+                mending ? prover_.prove_and_wind(course) : prover_.prove(course);
             if (rejection != Rejection::None) {
                 FootprintFinder::Scratch scratch = footprints_.make_scratch();
                 Member refused;  // on the samples of the plan, not on those of the annealing
@@ -385,43 +365,22 @@ private:
             if (members.empty()) {
                 return;
             }
-            std::vector<PlacedCourse> before = std::exchange(courses_, {});
-            Joints joints = joints_of(before);
+            Joints joints(2 * mandrel_.rims.size(), courses_);
+            std::vector<PlacedCourse> filling;
             for (const std::int32_t i : members) {
-                const Member& member = members_[at(i)];
-                const bool backward =
-                    !member.windable_forward ||
-                    (member.windable_backward &&
-                     joints.evener(nodes_of(member, true), nodes_of(member, false)));
-                joints.add(member, backward, 1);
-                courses_.push_back(placed(i, backward));
+                const bool backward = joints.evener_backward(members_[at(i)]);
+                joints.add(members_[at(i)], backward, 1);
+                filling.push_back(placed(i, backward));
             }
-            keep_proven(true);
-            std::move(courses_.begin(), courses_.end(), std::back_inserter(before));
-            courses_ = std::move(before);
+            filling = those_that_hold(std::move(filling), true);
+            std::move(filling.begin(), filling.end(), std::back_inserter(courses_));
         }
-    }
-
-    [[nodiscard]] Joints joints_of(std::span<const PlacedCourse> courses) const {
-        Joints joints(2 * mandrel_.rims.size());
-        for (const PlacedCourse& course : courses) {
-            joints.add(course.member, course.backward, 1);
-        }
-        return joints;
     }
 
     // Replaces the courses whose own programs do not lay them as planned.
     void keep_what_winds() {
         tell("prove", 0.0);
-        std::vector<Rejection> found(courses_.size(), Rejection::None);
-        parallel_for(courses_.size(), 1,
-                     [&](std::size_t i, std::size_t) { found[i] = wind(courses_[i]); });
-        std::vector<std::pair<std::size_t, Rejection>> refused;
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            if (found[i] != Rejection::None) {
-                refused.emplace_back(i, found[i]);
-            }
-        }
+        const auto refused = prover_.wind_all(courses_);
         if (!refused.empty()) {
             give_up(refused);
             replace_lost();
@@ -444,7 +403,7 @@ private:
     void join(int fibres) {
         const auto place = [this](const LaidCourse& course, PlacedCourse& in_place) {
             in_place = placed(course.member, course.backward);
-            return prove_and_wind(in_place);
+            return prover_.prove_and_wind(in_place);
         };
         const auto strike = [this](std::size_t member, Rejection why) { strike_off(member, why); };
         joiner_.join({members_, library_size_, std::span(allowed_).first(library_size_),
@@ -555,7 +514,7 @@ private:
             PlacedCourse course = placed(spares.back().member, spares.back().backward);
             spares.pop_back();
             course.link = link;
-            if (prove_and_wind(course) == Rejection::None) {
+            if (prover_.prove_and_wind(course) == Rejection::None) {
                 courses_.push_back(std::move(course));
                 return;
             }
@@ -602,6 +561,7 @@ private:
     FootprintFinder footprints_;
     LiftedWall lifted_;
     CourseRules rules_;
+    CourseProver prover_;
     Library library_;
     std::vector<Member>& members_ = library_.members;  // then the courses of the plan
     std::size_t library_size_ = 0;

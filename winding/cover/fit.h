@@ -37,7 +37,8 @@ struct Fit {
 /// The move that saves most, to first order: the displacement of every place is the sum of four
 /// **Jacobi fields**, one for each part of the move (geodesic/jacobi_field.h; steering adds kn as a
 /// source), and the band covers what then lies within half its width. No place moves by more than
-/// kFitBands, and steering stays within what moved() allows. \param strip of the course's path,
+/// kFitBands, and steering stays within what moved() allows. Where fibre turns on pins only moves
+/// count that leave both ends at theirs, to first order. \param strip of the course's path,
 /// kStripBands wide \param saving per entry of the strip: what covering it saves, negative where it
 /// costs \return the move from seed_station(); nothing where none saves more than the course does
 /// now

@@ -45,12 +45,12 @@ void CourseJoiner::join(const JoinTask& task, std::vector<PlacedCourse>& courses
 
 void CourseJoiner::join_to(const JoinTask& task, int fibres, std::vector<PlacedCourse>& courses) {
     for (int attempt = 0; attempt < kMaxJoins; ++attempt) {
-        gather(courses, task.library_size, task.members);
+        gather(courses, task.first_placed, task.members);
         std::vector<char> allowed(task.allowed.begin(), task.allowed.end());
         allowed.resize(task.members.size(), 0);
         Selection selection;
         selection.layers = layers_of(courses, task.samples);
-        for (std::size_t i = task.library_size; i < task.members.size(); ++i) {
+        for (std::size_t i = task.first_placed; i < task.members.size(); ++i) {
             selection.chosen.push_back(static_cast<std::int32_t>(i));
         }
         const std::vector<LaidCourse> laid =
@@ -68,8 +68,8 @@ bool CourseJoiner::take_proven(const JoinTask& task, std::span<const LaidCourse>
     std::vector<Rejection> found(laid.size(), Rejection::None);
     parallel_for(laid.size(), 1, [&](std::size_t i, std::size_t) {
         const std::size_t member = at(laid[i].member);
-        if (member >= task.library_size) {
-            taken[i] = courses[member - task.library_size];
+        if (member >= task.first_placed) {
+            taken[i] = courses[member - task.first_placed];
         } else if (const auto before = proven_.find(laid[i]); before != proven_.end()) {
             taken[i] = before->second;
         } else {
@@ -78,7 +78,7 @@ bool CourseJoiner::take_proven(const JoinTask& task, std::span<const LaidCourse>
     });
     for (std::size_t i = 0; i < laid.size(); ++i) {
         const std::size_t number = at(laid[i].member);
-        if (number >= task.library_size) {
+        if (number >= task.first_placed) {
             continue;
         }
         if (found[i] == Rejection::None) {

@@ -16,8 +16,8 @@ namespace meshwind {
 
 /// What joining needs of a plan.
 struct JoinTask {
-    std::vector<Member>& members;  ///< the library, behind which the plan's courses are put
-    std::size_t library_size = 0;
+    std::vector<Member>& members;   ///< the library, behind which the plan's courses are put
+    std::size_t first_placed = 0;   ///< where these begin
     std::span<const char> allowed;  ///< per member of the library
     std::size_t rims = 0;
     std::size_t samples = 0;

@@ -7,6 +7,13 @@
 
 namespace meshwind {
 
+Joints::Joints(std::size_t nodes, std::span<const PlacedCourse> courses)
+    : nodes_(nodes), courses_(nodes * nodes, 0) {
+    for (const PlacedCourse& course : courses) {
+        add(course.member, course.backward, 1);
+    }
+}
+
 void Joints::add(const Member& member, bool backward, int times) {
     const auto [from, to] = nodes_of(member, backward);
     courses_[from * nodes_ + to] += times;
@@ -20,12 +27,14 @@ int Joints::excess(std::size_t node) const {
     return excess;
 }
 
-bool Joints::evener(const NodePair& way, const NodePair& other) const {
+bool Joints::evener_backward(const Member& member) const {
     // A course takes one from the excess of where it departs and adds one where it arrives.
-    const auto more_uneven = [&](const NodePair& nodes) {
-        return excess(nodes.second) - excess(nodes.first);
+    const auto unevener = [&](bool backward) {
+        const auto [from, to] = nodes_of(member, backward);
+        return excess(to) - excess(from);
     };
-    return more_uneven(way) < more_uneven(other);
+    return !member.windable_forward ||
+           (member.windable_backward && unevener(true) < unevener(false));
 }
 
 std::vector<std::size_t> Joints::part_of() const {

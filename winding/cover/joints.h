@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "winding/cover/library.h"
@@ -11,15 +12,15 @@ namespace meshwind {
 /// How many courses lead from node to node (see balance.h).
 class Joints {
 public:
-    explicit Joints(std::size_t nodes) : nodes_(nodes), courses_(nodes * nodes, 0) {}
+    explicit Joints(std::size_t nodes, std::span<const PlacedCourse> courses = {});
 
     void add(const Member& member, bool backward, int times);
 
     /// Arrivals less departures.
     [[nodiscard]] int excess(std::size_t node) const;
 
-    /// Whether a course by the first way leaves arrivals and departures evener than by the other.
-    [[nodiscard]] bool evener(const NodePair& way, const NodePair& other) const;
+    /// Which way a windable member leaves arrivals and departures the evener.
+    [[nodiscard]] bool evener_backward(const Member& member) const;
 
     /// Per node the lowest one that courses join it to; its own number where there are none.
     [[nodiscard]] std::vector<std::size_t> part_of() const;

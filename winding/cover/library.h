@@ -74,8 +74,7 @@ struct CourseRules {
                                 Sketch& sketch);
 
 /// Judges a candidate by the walk: ends, turns and bridges. On Refusal::None `sketch` is filled, on
-/// others it is of no use.
-/// Slip is not measured: the candidate is steered within the friction.
+/// others it is of no use. Slip is not measured: the candidate is steered within the friction.
 [[nodiscard]] Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
                                   FootprintFinder::Scratch& scratch, Sketch& sketch);
 

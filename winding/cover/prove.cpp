@@ -96,6 +96,44 @@ Rejection prove_course(const CourseRules& rules, const Windability* machine, Pla
     return Rejection::None;
 }
 
+Rejection CourseProver::wind(PlacedCourse& course) const {
+    if (machine_ == nullptr || course.wound) {
+        return Rejection::None;
+    }
+    const Piece piece = piece_of(rules_, course.member, course.backward);
+    const Rejection rejection = machine_->wind_alone({&piece, 1});
+    course.wound = rejection == Rejection::None;
+    return rejection;
+}
+
+Rejection CourseProver::prove_and_wind(PlacedCourse& course) const {
+    const Rejection rejection = prove(course);
+    return rejection == Rejection::None ? wind(course) : rejection;
+}
+
+std::vector<Rejection> CourseProver::prove_all(std::span<PlacedCourse> courses,
+                                               bool to_stay) const {
+    std::vector<Rejection> found(courses.size());
+    parallel_for(courses.size(), 1, [&](std::size_t i, std::size_t) {
+        found[i] = to_stay ? prove_and_wind(courses[i]) : prove(courses[i]);
+    });
+    return found;
+}
+
+std::vector<std::pair<std::size_t, Rejection>> CourseProver::wind_all(
+    std::span<PlacedCourse> courses) const {
+    std::vector<Rejection> found(courses.size(), Rejection::None);
+    parallel_for(courses.size(), 1,
+                 [&](std::size_t i, std::size_t) { found[i] = wind(courses[i]); });
+    std::vector<std::pair<std::size_t, Rejection>> refused;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (found[i] != Rejection::None) {
+            refused.emplace_back(i, found[i]);
+        }
+    }
+    return refused;
+}
+
 ProvenWays prove_ways(std::span<const Member> members, const Ways& ways,
                       const std::function<Rejection(PlacedCourse&)>& prove,
                       const std::function<void(double share)>& progress) {

@@ -2,6 +2,7 @@
 /// which scarce places are open to the machine.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <utility>
@@ -21,6 +22,35 @@ namespace meshwind {
 /// that of `rules`, windable in this direction alone; on others it is unchanged.
 [[nodiscard]] Rejection prove_course(const CourseRules& rules, const Windability* machine,
                                      PlacedCourse& course);
+
+/// Proves courses and winds their own programs. Thread-safe. References must outlive it.
+class CourseProver {
+public:
+    /// \param machine null: none
+    CourseProver(const CourseRules& rules, const Windability* machine)
+        : rules_(rules), machine_(machine) {}
+
+    [[nodiscard]] Rejection prove(PlacedCourse& course) const {
+        return prove_course(rules_, machine_, course);
+    }
+
+    /// Of a proven course that is to stay; once.
+    [[nodiscard]] Rejection wind(PlacedCourse& course) const;
+
+    [[nodiscard]] Rejection prove_and_wind(PlacedCourse& course) const;
+
+    /// In parallel. \param to_stay their own programs are wound as well
+    [[nodiscard]] std::vector<Rejection> prove_all(std::span<PlacedCourse> courses,
+                                                   bool to_stay) const;
+
+    /// In parallel, of proven courses. \return the numbers of those that are refused, in order
+    [[nodiscard]] std::vector<std::pair<std::size_t, Rejection>> wind_all(
+        std::span<PlacedCourse> courses) const;
+
+private:
+    const CourseRules& rules_;
+    const Windability* machine_;
+};
 
 struct ProvenWays {
     KnownWays known;                                          ///< the open ones

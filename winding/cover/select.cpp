@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "core/parallel.h"
@@ -96,29 +95,24 @@ FirstChoice choose_first(std::span<const Member> members, std::span<const char> 
                              .nodes = nodes,
                              .most_below = kMostBelow,
                              .off_angle_cost = options.angle_weight});
-    std::map<LaidCourse, bool> known;
     for (int round = 0; round < kMostChoices; ++round) {
         const FibreBound bound = finder.find();
         if (of_fibre) {
             first.least_fibre_mm = bound.least_mm;
         }
-        first.courses = whole_courses(bound, members, 1.0 / stage.stages_left);
-        std::vector<LaidCourse> unknown;
-        for (const LaidCourse& course : first.courses) {
-            if (known.emplace(course, false).second) {
-                unknown.push_back(course);
+        const std::vector<LaidCourse> chosen =
+            whole_courses(bound, members, 1.0 / stage.stages_left);
+        const std::vector<char> holds = hold(chosen);
+        first.courses.clear();
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            if (holds[i] != 0) {
+                first.courses.push_back(chosen[i]);
+            } else {
+                finder.strike_off(chosen[i].member);
             }
         }
-        const std::vector<char> holds = hold(unknown);
-        for (std::size_t i = 0; i < unknown.size(); ++i) {
-            known[unknown[i]] = holds[i] != 0;
-            if (holds[i] == 0) {
-                finder.strike_off(unknown[i].member);
-            }
-        }
-        const auto lost =
-            std::erase_if(first.courses, [&](const LaidCourse& course) { return !known[course]; });
-        if (static_cast<double>(lost) <= kFewLost * static_cast<double>(first.courses.size())) {
+        const auto lost = static_cast<double>(chosen.size() - first.courses.size());
+        if (lost <= kFewLost * static_cast<double>(first.courses.size())) {
             break;
         }
     }

@@ -50,7 +50,7 @@ struct FirstChoice {
     std::optional<double> least_fibre_mm;  ///< as in Plan
 };
 
-/// Says of courses, each once, whether they hold.
+/// Says of courses whether they hold; asked of some again and again.
 using Holding = std::function<std::vector<char>(std::span<const LaidCourse>)>;
 
 /// Whole courses for a stage's share of the fractions with which what is left of the wall takes

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "core/text/text_number.h"
@@ -103,7 +102,7 @@ std::array<Piece, 2> halves(const Rim& rim, const RimCrossing& from, const PinSt
 }
 
 // The widest fibre that passes between so many pins, and what pins that let it pass are like.
-PinStand stand_at(const Rim& rim, const PinWish& wish, int count, const Tow& tow,
+PinStand stand_of(int count, const Rim& rim, const PinWish& wish, const Tow& tow,
                   std::string& failure) {
     PinStand stand;
     PinTurnShape& shape = stand.shape;
@@ -138,23 +137,24 @@ PinStand stand_at(const Rim& rim, const PinWish& wish, int count, const Tow& tow
 
 // As many pins as are wanted; else the most between which enough passes, or those that let pass
 // most.
-PinStand stand_at(const Rim& rim, const PinWish& wish, const Tow& tow, std::string& failure) {
+PinStand choose_stand(const Rim& rim, const PinWish& wish, const Tow& tow, std::string& failure) {
     if (wish.count > 0) {
-        return stand_at(rim, wish, wish.count, tow, failure);
+        return stand_of(wish.count, rim, wish, tow, failure);
     }
-    const double around_mm = 2.0 * kPi * rim.radius_mm;
-    PinStand best;
+    const auto pins_at = [&](double bands) {
+        const double pitch_mm = bands * tow.width_mm;
+        return std::max(kFewestPins, static_cast<int>(2.0 * kPi * rim.radius_mm / pitch_mm));
+    };
     double bands = kPitchBands;
-    for (int count = std::numeric_limits<int>::max(); count > kFewestPins; bands *= kFartherApart) {
-        count = std::max(kFewestPins, static_cast<int>(around_mm / (bands * tow.width_mm)));
+    PinStand best = stand_of(pins_at(bands), rim, wish, tow, failure);
+    for (int count = best.ring.count; best.widest_rad < kEnough_rad && count > kFewestPins;) {
+        bands *= kFartherApart;
+        count = pins_at(bands);
         std::string why;
-        const PinStand stand = stand_at(rim, wish, count, tow, why);
-        if (best.ring.count == 0 || stand.widest_rad > best.widest_rad) {
+        const PinStand stand = stand_of(count, rim, wish, tow, why);
+        if (stand.widest_rad > best.widest_rad) {
             best = stand;
             failure = std::move(why);
-        }
-        if (best.widest_rad >= kEnough_rad) {
-            break;
         }
     }
     return best;
@@ -166,7 +166,7 @@ std::vector<PinStand> stand_pins(std::span<const Rim> rims, const PinWish& wish,
                                  double extension_mm, std::string& failure) {
     std::vector<PinStand> stands;
     for (const Rim& rim : rims) {
-        stands.push_back(stand_at(rim, wish, tow, failure));
+        stands.push_back(choose_stand(rim, wish, tow, failure));
         const PinTurnShape& shape = stands.back().shape;
         const double needed_mm = shape.offset_mm + shape.held_mm + 0.5 * tow.width_mm;
         if (failure.empty() && needed_mm > extension_mm) {
