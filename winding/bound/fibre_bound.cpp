@@ -113,6 +113,7 @@ private:
         }
         const std::size_t n = std::min(kMostRows, asking.size());
         std::vector<std::size_t> centres;
+        centres.reserve(n);
         for (std::size_t k = 0; k < n; ++k) {
             centres.push_back(asking[k * asking.size() / n]);
         }
@@ -123,6 +124,7 @@ private:
             }
         } else {
             std::vector<Eigen::Vector3d> centres_mm;
+            centres_mm.reserve(n);
             for (const std::size_t sample : centres) {
                 centres_mm.push_back(task_.position_mm[sample]);
             }

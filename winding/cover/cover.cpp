@@ -250,6 +250,7 @@ private:
         std::copy_if(courses.begin(), courses.end(), std::inserter(unknown, unknown.end()),
                      [&](const LaidCourse& course) { return !proven.contains(course); });
         std::vector<PlacedCourse> tried;
+        tried.reserve(unknown.size());
         for (const LaidCourse& course : unknown) {
             tried.push_back(placed(course.member, course.backward));
         }
