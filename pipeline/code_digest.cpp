@@ -10,6 +10,10 @@ std::string code_digest(const Dialect& dialect, std::string_view text, const std
     return "sha256/128 " + sha256_hex(dialect.code_of(text, file)).substr(0, kDigits);
 }
 
+std::string job_digest(const Job& job) {
+    return "sha256 " + sha256_hex(job_text(job));
+}
+
 std::string write_with_digest(const Dialect& dialect, const Machine& machine, const BlockList& list,
                               const ProgramLayout& layout, ProgramHeader header) {
     header.code_digest.clear();

@@ -1,10 +1,11 @@
-/// Whether a program's code is what was written.
+/// Digests in a program's head: whether its code is what was written, and for which job.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "pipeline/job/job.h"
 #include "postproc/motion/block.h"
 #include "postproc/nc/dialect.h"
 #include "postproc/verify/verify.h"
@@ -15,6 +16,9 @@ namespace meshwind {
 /// fit in a line of every controller, and nobody changes a program by chance without changing them.
 [[nodiscard]] std::string code_digest(const Dialect& dialect, std::string_view text,
                                       const std::string& file);
+
+/// Of job_text().
+[[nodiscard]] std::string job_digest(const Job& job);
 
 /// The program with its own digest in the head.
 [[nodiscard]] std::string write_with_digest(const Dialect& dialect, const Machine& machine,

@@ -1,5 +1,6 @@
 #include "pipeline/layer_planners.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,6 +18,9 @@ namespace {
 constexpr double kFirstAngle_deg = 45.0;
 constexpr double kLastAngle_deg = 80.0;
 constexpr double kAngleStep_deg = 5.0;
+
+// Radii at which the circuits of a stage of a wall are tried to turn back.
+constexpr int kMostTurnsTried = 4;
 
 // A whole number of layers is meant, not one more.
 constexpr double kSameLayers = 1e-9;
@@ -117,26 +121,82 @@ Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) 
     return plan_pattern(task.setup.mandrel, *task.revolution().body, pattern);
 }
 
-// Of `auto`: helical by the angle asked for; else polar where both ends are narrow, else helical by
-// the smallest angle that holds.
+// Of a stage of a wall: the radius at which, from the poles out, the wall first wants a layer, but
+// for what may lack. Nearer to the poles the circuits of the stages before have piled up.
+double first_wanting_mm(const Surface& surface, const StageAsk& stage) {
+    std::vector<double> radius_mm;
+    for (std::size_t i = 0; i < stage.measured.at.size(); ++i) {
+        if (stage.left[i] > 0) {
+            const Eigen::Vector3d place = position_mm(surface, stage.measured.at[i]);
+            radius_mm.push_back(std::hypot(place.x(), place.y()));
+        }
+    }
+    const auto may_lack = static_cast<std::ptrdiff_t>(
+        stage.filled_to * static_cast<double>(stage.measured.at.size()));
+    if (static_cast<std::ptrdiff_t>(radius_mm.size()) <= may_lack) {
+        return 0.0;
+    }
+    const auto first = radius_mm.begin() + may_lack;
+    std::nth_element(radius_mm.begin(), first, radius_mm.end());
+    return *first;
+}
+
+// Polar where both ends are narrow, else helical by the smallest angle that holds.
+Plan plan_from_rim_to_rim(const LayerTask& task) {
+    Plan plan = covering(plan_pattern_of(task, PatternKind::Polar, 0.0));
+    for (double next_deg = kFirstAngle_deg; !plan.failure.empty() && next_deg <= kLastAngle_deg;
+         next_deg += kAngleStep_deg) {
+        plan = covering(plan_pattern_of(task, PatternKind::Helical, rad_from_deg(next_deg)));
+    }
+    return plan;
+}
+
+// Circuits of a stage of a wall turn back where it first wants a layer; where that is at a rim they
+// are those of a whole wall. What cannot be wound, over what has piled up at the poles, turns back
+// the sooner, by a tow width each time.
+TriedPlan plan_stage_in_patterns(const LayerTask& task) {
+    const Mandrel& mandrel = task.setup.mandrel;
+    const Meridian& meridian = task.revolution().body->meridian;
+    const double widest_mm = meridian.at(meridian.widest_mm()).radius_mm;
+    const double width_mm = task.setup.job.tow.width_mm;
+    double beyond_rims_mm = 0.0;
+    for (const Rim& rim : mandrel.rims) {
+        beyond_rims_mm = std::max(beyond_rims_mm, rim.radius_mm + width_mm);
+    }
+    double turn_mm = first_wanting_mm(mandrel.surface, *task.options.stage);
+    TriedPlan tried;
+    for (int tries = 0; tries < kMostTurnsTried && (tries == 0 || turn_mm <= widest_mm); ++tries) {
+        const bool at_rim = turn_mm < beyond_rims_mm;
+        const double sine = std::min(turn_mm / widest_mm, std::sin(rad_from_deg(kLastAngle_deg)));
+        tried = untried(at_rim ? plan_from_rim_to_rim(task)
+                               : plan_pattern_of(task, PatternKind::Helical, std::asin(sine)));
+        if (!tried.plan.pins.empty()) {  // that are yet to be put on the mandrel
+            break;
+        }
+        if (tried.plan.failure.empty()) {
+            tried.trial = task.machine.wind_all(tried.plan);
+            if (tried.trial->refused.empty()) {
+                break;
+            }
+        }
+        turn_mm = at_rim ? beyond_rims_mm : turn_mm + width_mm;
+    }
+    return tried;
+}
+
+// Of `auto`: by the angle asked for, else by one that is found.
 TriedPlan plan_pattern_layer(const LayerTask& task) {
     const LayerJob& layer = task.layer;
-    const auto helical = [&](double angle_deg) {
-        return plan_pattern_of(task, PatternKind::Helical, rad_from_deg(angle_deg));
-    };
     if (layer.kind != LayerKind::Auto) {
         return untried(plan_pattern_of(task, pattern_of(layer.kind),
                                        rad_from_deg(layer.angle_deg.value_or(kFirstAngle_deg))));
     }
     if (layer.angle_deg) {
-        return untried(covering(helical(*layer.angle_deg)));
+        return untried(
+            covering(plan_pattern_of(task, PatternKind::Helical, rad_from_deg(*layer.angle_deg))));
     }
-    Plan plan = covering(plan_pattern_of(task, PatternKind::Polar, 0.0));
-    for (double next_deg = kFirstAngle_deg; !plan.failure.empty() && next_deg <= kLastAngle_deg;
-         next_deg += kAngleStep_deg) {
-        plan = covering(helical(next_deg));
-    }
-    return untried(std::move(plan));
+    return task.options.stage != nullptr ? plan_stage_in_patterns(task)
+                                         : untried(plan_from_rim_to_rim(task));
 }
 
 // Lines of elbows.

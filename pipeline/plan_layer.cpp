@@ -82,7 +82,9 @@ PlannedLayer plan_best(const LayerTask& task) {
         if (!tried.plan.pins.empty()) {  // that are yet to be put on the mandrel
             return planned(std::move(tried));
         }
-        tried.trial = task.machine.wind_all(tried.plan);
+        if (tried.trial == nullptr) {
+            tried.trial = task.machine.wind_all(tried.plan);
+        }
         const std::size_t refused = tried.trial->refused.size();
         if (refused == 0) {
             return planned(std::move(tried));

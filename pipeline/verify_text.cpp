@@ -46,6 +46,11 @@ void put_pins_of(const BlockList& program, const std::string& file, Setup& setup
     }
 }
 
+bool is_of_other_job(const BlockList& program, const Job& job) {
+    return program.head && !program.head->job_digest.empty() &&
+           program.head->job_digest != job_digest(job);
+}
+
 // The plan's motion, block by block.
 Check program_check(const Machine& machine, const BlockList& program,
                     const std::vector<PlannedMotion>& motion, std::optional<std::size_t>& wrong) {
@@ -91,6 +96,7 @@ VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs, const RunCont
     if (inputs.tie_on_mm) {
         outcome.blocks.tie_on_mm = inputs.tie_on_mm;
     }
+    outcome.other_job = is_of_other_job(outcome.blocks, outcome.setup.job);
     put_pins_of(outcome.blocks, name, outcome.setup);
     const VerifyPlan plan = plan_of(inputs, outcome.setup.machine);
     const TextChecks texts = check_text(outcome.setup, text, name, outcome.blocks, plan);

@@ -38,6 +38,7 @@ struct VerifyOutcome {
     BlockList blocks;
     Verification verification;  ///< its first wrong block is that of "program" where this fails
     Coverage coverage;          ///< by the laid fibre
+    bool other_job = false;     ///< the program's head names another job than the setup's
     std::vector<Check> checks;  ///< those of the text (TextChecks), then the verification's
     double verifying_s = 0.0;   ///< winding again and the checks
 

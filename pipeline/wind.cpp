@@ -19,6 +19,7 @@
 #include "mesh/revolution/revolution.h"
 #include "pipeline/before_planning.h"
 #include "pipeline/check_controller.h"
+#include "pipeline/code_digest.h"
 #include "pipeline/more_room.h"
 #include "pipeline/part_words.h"
 #include "pipeline/plan_layer.h"
@@ -160,7 +161,7 @@ private:
         header_.mandrel = first.setup.mandrel.file;
         header_.mandrel_digest = options_.mandrel_digest.empty() ? mesh_digest(first.setup.mandrel)
                                                                  : options_.mandrel_digest;
-        header_.job_digest = "sha256 " + sha256_hex(job_text(first.setup.job));
+        header_.job_digest = job_digest(first.setup.job);
         watch_.stage("import");
     }
 

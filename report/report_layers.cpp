@@ -218,6 +218,8 @@ const char* name_of(WhatIf::Rule rule) {
             return "bridging tolerance";
         case WhatIf::Rule::Extension:
             return "extension";
+        case WhatIf::Rule::Pins:
+            return "pins";
     }
     return "";
 }

@@ -24,6 +24,7 @@ std::string verify_json(const VerifyOutcome& outcome, double reading_s) {
           {"mean_layers", report_number(coverage.mean_layers)},
           {"max_layers", coverage.max_layers}}},
         {"checks", checks_report(outcome.checks)},
+        {"other_job", outcome.other_job},
         {"ok", outcome.passed()},
         {"timing_s", {{"import", reading_s}, {"verify", outcome.verifying_s}}}};
     return json_text(report);
@@ -38,6 +39,10 @@ void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
     out << "covered " << percent(outcome.coverage.fraction) << " of the wall, "
         << fixed(outcome.coverage.mean_layers, 2) << " layers on average, at most "
         << outcome.coverage.max_layers << '\n';
+    if (outcome.other_job) {
+        out << "remark: the program was written for another job than the one given here; where "
+               "checks fail, give by --job and --set what it was wound with\n";
+    }
     print_checks(out, outcome.checks);
     if (verification.first_wrong_block) {
         out << "first wrong: " << block_words(outcome.blocks, *verification.first_wrong_block)

@@ -94,8 +94,28 @@ void print_elbow(std::ostream& out, const LaidElbow& laid, const LayerJob& job, 
     }
 }
 
-// Bare wall by reason, the largest first, and what looser rules would reach; briefly that one
-// alone.
+// "with a friction of 0.30 instead of 0.20"
+std::string words_of(const WhatIf& what_if, const WoundLayer& layer) {
+    const Job& job = layer.setup.job;
+    const auto looser = [&](const char* a, double now, const char* unit) {
+        return std::string("with ") + a + " " + name_of(what_if.rule) + " of " +
+               fixed(what_if.factor * now, 2) + unit + " instead of " + fixed(now, 2) + unit;
+    };
+    switch (what_if.rule) {
+        case WhatIf::Rule::Friction:
+            return looser("a", layer.setup.friction.holds(), "");
+        case WhatIf::Rule::Bridging:
+            return looser("a", job.tow.bridging_tolerance_mm, " mm");
+        case WhatIf::Rule::Extension:
+            return looser("an", job.mandrel.extension_mm, " mm");
+        case WhatIf::Rule::Pins:
+            return "with turns on pins (\"turn\": \"pins\")";
+    }
+    return {};
+}
+
+// Bare wall by reason, the largest first, and what looser rules would reach; briefly the first of
+// each, of these if it is much.
 void print_bare_wall(std::ostream& out, const WoundLayer& layer, Detail detail) {
     std::map<std::string, double> area_mm2;
     for (const Uncovered& bare : layer.plan.uncovered) {
@@ -110,27 +130,23 @@ void print_bare_wall(std::ostream& out, const WoundLayer& layer, Detail detail) 
     for (const auto& [reason, mm2] : reasons) {
         out << "  bare: " << fixed(mm2 / 100.0, 2) << " cm2: " << reason << '\n';
     }
-    if (detail == Detail::Brief) {
-        return;
-    }
-    const Job& job = layer.setup.job;
     const std::vector<double>& reach = layer.plan.reach_of_fibres;
-    const auto fibres = static_cast<std::size_t>(job.fibres);
-    if (reach.size() > fibres) {
+    const auto fibres = static_cast<std::size_t>(layer.setup.job.fibres);
+    if (detail == Detail::Full && reach.size() > fibres) {
         out << "  with \"fibres\": " << fibres + 1 << " in the job courses would reach "
             << percent(reach[fibres]) << " of the wall instead of " << percent(reach[fibres - 1])
             << '\n';
     }
-    const std::map<WhatIf::Rule, std::pair<double, const char*>> now = {
-        {WhatIf::Rule::Friction, {layer.setup.friction.holds(), ""}},
-        {WhatIf::Rule::Bridging, {job.tow.bridging_tolerance_mm, " mm"}},
-        {WhatIf::Rule::Extension, {job.mandrel.extension_mm, " mm"}}};
+    constexpr double kMuch = 0.02;  // of the wall
     for (const WhatIf& what_if : layer.plan.what_if) {
-        const auto [value, unit] = now.at(what_if.rule);
-        out << "  with a" << (what_if.rule == WhatIf::Rule::Extension ? "n " : " ")
-            << name_of(what_if.rule) << " of " << fixed(what_if.factor * value, 2) << unit
-            << " instead of " << fixed(value, 2) << unit << " courses would reach "
+        if (detail == Detail::Brief && what_if.reachable < layer.plan.coverage.reachable + kMuch) {
+            return;
+        }
+        out << "  " << words_of(what_if, layer) << " courses would reach "
             << percent(what_if.reachable) << " of the wall\n";
+        if (detail == Detail::Brief) {
+            return;
+        }
     }
 }
 
@@ -208,7 +224,8 @@ void print_cost(std::ostream& out, const Run& run) {
         << fixed(all.most_thickness_mm, 2) << " mm\n"
         << "fibre: " << fixed(all.fibre_m, 1) << " m, " << fixed(all.mass_g, 1) << " g; scrap "
         << fixed(all.scrap_m, 1) << " m (" << percent(all.scrap_m / all.fibre_m, 1) << ") in turns";
-    if (const double least_m = least_fibre_m(run); least_m > 0.0) {
+    // A plan that covers too little takes less than all that is in reach would.
+    if (const double least_m = least_fibre_m(run); least_m > 0.0 && least_m < all.fibre_m) {
         out << "; no choice of the courses found takes less than " << fixed(least_m, 1) << " m";
     }
     out << '\n';

@@ -55,10 +55,31 @@ std::vector<std::string_view> names_of(const KeyTable<Owner>& table) {
     return names;
 }
 
+/// The first of the keys that are objects, or lists of them, which has a key of this name: as
+/// mandrel.turn or layers.0.angle; empty where none has.
+template <typename Owner>
+std::string key_below(const KeyTable<Owner>& table, std::string_view name) {
+    const auto has = [name](const SchemaJson& schema) {
+        const auto keys = schema.find("properties");
+        return keys != schema.end() && keys->contains(name);
+    };
+    for (const Key<Owner>& key : table.keys) {
+        const auto items = key.schema.find("items");
+        if (has(key.schema)) {
+            return std::string(key.name) + "." + std::string(name);
+        }
+        if (items != key.schema.end() && has(*items)) {
+            return std::string(key.name) + ".0." + std::string(name);
+        }
+    }
+    return {};
+}
+
 /// What the object leaves out stays as it is. \throws InputError json.*, and what keys throw
 template <typename Owner>
 void read_keys(const KeyTable<Owner>& table, const JsonValue& value, Owner& owner) {
-    const JsonObject object = value.object(names_of(table));
+    const JsonObject object = value.object(
+        names_of(table), [&table](std::string_view name) { return key_below(table, name); });
     for (const Key<Owner>& key : table.keys) {
         if (key.required || (key.needed && key.needed(owner))) {
             key.read(object.required(key.name), owner);

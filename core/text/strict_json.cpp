@@ -185,7 +185,8 @@ bool JsonValue::is_object() const {
     return json(node_).is_object();
 }
 
-JsonObject JsonValue::object(const std::vector<std::string_view>& names) const {
+JsonObject JsonValue::object(const std::vector<std::string_view>& names,
+                             const std::function<std::string(std::string_view)>& elsewhere) const {
     const Json& node = json(node_);
     if (!node.is_object()) {
         fail("json.wrong_type", "is " + kind_of(node) + "; write an object {..}");
@@ -194,11 +195,14 @@ JsonObject JsonValue::object(const std::vector<std::string_view>& names) const {
         if (std::find(names.begin(), names.end(), key) != names.end()) {
             continue;
         }
-        const std::optional<std::string_view> near = nearest_word(key, names);
+        std::string meant = elsewhere ? elsewhere(key) : std::string();
+        if (meant.empty()) {
+            meant = nearest_word(key, names).value_or("");
+        }
         JsonValue(&child, file_, pointer_ + "/" + escaped_token(key))
-            .fail("json.unknown_key",
-                  near ? "unknown key; did you mean \"" + std::string(*near) + "\"?"
-                       : "unknown key; the known ones are " + list_of(names));
+            .fail("json.unknown_key", meant.empty()
+                                          ? "unknown key; the known ones are " + list_of(names)
+                                          : "unknown key; did you mean \"" + meant + "\"?");
     }
     return JsonObject(*this);
 }

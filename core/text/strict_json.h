@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -28,7 +29,11 @@ class JsonValue {
 public:
     /// The value as an object; a key outside `known` is InputError `json.unknown_key`, and the
     /// words suggest the nearest known one.
-    [[nodiscard]] JsonObject object(const std::vector<std::string_view>& known) const;
+    /// \param elsewhere of a key's name: where below this object it would be known, as
+    /// mandrel.turn; empty: nowhere
+    [[nodiscard]] JsonObject object(
+        const std::vector<std::string_view>& known,
+        const std::function<std::string(std::string_view)>& elsewhere = {}) const;
     [[nodiscard]] std::vector<JsonValue> array() const;
     [[nodiscard]] std::string string() const;
     [[nodiscard]] bool boolean() const;

@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "core/text/text_number.h"
 #include "mesh/nearest.h"
+#include "mesh/revolution/revolution.h"
 #include "mesh/segment/rims.h"
 #include "mesh/triangle_soup.h"
 #include "postproc/verify/check_kinds.h"
@@ -22,6 +23,9 @@ namespace {
 // narrowest leg at most, and by so many layers, for which there is time to make them even.
 constexpr double kMostGrowth = 0.04;
 constexpr double kMostLayersOfAStage = 6.0;
+
+// Circuits of a pattern lie in both hands: it lays no less.
+constexpr int kLayersOfAPattern = 2;
 
 // Stages behind those, which fill the last thin places.
 constexpr int kMendingStages = 2;
@@ -46,7 +50,9 @@ int layers_of_a_stage(const Mandrel& bare, double tow_thickness_mm) {
     for (const Rim& rim : bare.rims) {
         layers = std::min(layers, kMostGrowth * rim.radius_mm / tow_thickness_mm);
     }
-    return std::max(1, static_cast<int>(layers));
+    const int whole = static_cast<int>(layers);
+    return whole < kLayersOfAPattern && find_revolution(bare).body ? kLayersOfAPattern
+                                                                   : std::max(1, whole);
 }
 
 // What a job's wall asks for, on its mandrel.

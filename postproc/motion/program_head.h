@@ -36,10 +36,13 @@ struct RapidMove {
 
 /// What the head's comment with the digest of the code begins with.
 inline constexpr std::string_view kCodeDigest = "code digest: ";
+/// And that of the job.
+inline constexpr std::string_view kJobDigest = "job digest: ";
 
 struct ProgramHead {
     bool by_meshwind = false;   ///< a comment says so
-    std::string code_digest{};  ///< as the head has it; empty: it has none
+    std::string job_digest{};   ///< as the head has it; empty: it has none
+    std::string code_digest{};  ///< the same
     bool has_approach = false;  ///< the language has words for the rest; pulses have none
     std::vector<RapidMove> approach{};
     /// Of the stop M0 behind the last rapid move and before the first feed move; 0: there is none.

@@ -64,7 +64,7 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
     append_if(lines, "mandrel: ", header.mandrel);
     append_if(lines, "mandrel digest: ", header.mandrel_digest);
     lines.push_back("machine: " + machine.name);
-    append_if(lines, "job digest: ", header.job_digest);
+    append_if(lines, std::string(kJobDigest), header.job_digest);
     append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
     lines.push_back("time: " + fixed(list.duration_s(), 1) + " s");

@@ -61,8 +61,11 @@ void NcMarks::head(const NcLine& line, std::string_view comment, BlockList& list
     if (line.number <= kLastOfMaker && comment.substr(0, kMadeBy.size()) == kMadeBy) {
         list.head->by_meshwind = true;
     }
-    if (comment.substr(0, kCodeDigest.size()) == kCodeDigest) {
+    if (begins_with(comment, kCodeDigest)) {
         list.head->code_digest = comment.substr(kCodeDigest.size());
+    }
+    if (begins_with(comment, kJobDigest)) {
+        list.head->job_digest = comment.substr(kJobDigest.size());
     }
 }
 

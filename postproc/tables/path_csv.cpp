@@ -1,5 +1,7 @@
 #include "postproc/tables/path_csv.h"
 
+#include <algorithm>
+
 #include "core/interrupt.h"
 #include "core/text/text_number.h"
 
@@ -36,9 +38,12 @@ std::string path_csv(std::span<const Piece> pieces, const EyePath& path) {
 
 void write_path_csv(std::span<const Piece> pieces, const EyePath& path,
                     const std::function<void(std::string_view)>& write) {
+    const bool on_pins =
+        std::any_of(path.begin(), path.end(), [](const EyePoint& eye) { return eye.on_pins; });
     std::string text =
         "course,kind,point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,"
-        "bridge_mm,free_length_mm\n";
+        "bridge_mm,free_length_mm";
+    text += on_pins ? ",held\n" : "\n";
     for (const EyePoint& eye : path) {
         check_interrupt();
         const Piece& piece = pieces[static_cast<std::size_t>(eye.piece)];
@@ -56,6 +61,9 @@ void write_path_csv(std::span<const Piece> pieces, const EyePath& path,
         append_cell(text, piece.slip[i], kRatioDecimals);
         append_cell(text, piece.string.gap_mm[i], kLengthDecimals);
         append_cell(text, eye.free_length_mm, kLengthDecimals);
+        if (on_pins) {
+            text += eye.held ? ",1" : ",0";
+        }
         text += '\n';
         if (text.size() > kWritten_bytes) {
             write(text);

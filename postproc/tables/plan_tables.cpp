@@ -85,6 +85,7 @@ PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
     const std::size_t course = table.column("course");
     const std::size_t point = table.column("point");
     const std::size_t bridge = table.column("bridge_mm");
+    const std::optional<std::size_t> held = table.find("held");
     const std::array position = {table.column("x_mm"), table.column("y_mm"), table.column("z_mm")};
     const std::array normal = {table.column("nx"), table.column("ny"), table.column("nz")};
     const std::array tangent = {table.column("tx"), table.column("ty"), table.column("tz")};
@@ -92,7 +93,8 @@ PlannedFibre read_path_csv(std::string_view text, const std::string& file) {
     while (table.next()) {
         fibre.push_back({table.whole_number(course), table.whole_number(point),
                          table.vector(position), table.vector(normal), table.vector(tangent),
-                         table.number(bridge) > kLifted_mm});
+                         table.number(bridge) > kLifted_mm,
+                         held && table.whole_number(*held) != 0});
     }
     if (fibre.size() < 2) {
         table.fail("plan.empty", "has no landing points; name the folder that the main job wrote");

@@ -282,6 +282,21 @@ TEST(Job, SettingsLieOverTheFile) {
     EXPECT_EQ(job.fibres, 2);
 }
 
+TEST(Job, KeysOfOneSectionAreFoundFromTheTop) {
+    for (const auto& [key, meant] : {std::pair{"turn", "\"mandrel.turn\""},
+                                     {"angle", "\"layers.0.angle\""},
+                                     {"clearance", "\"tolerance.clearance\""}}) {
+        const JobSetting setting{key, "1"};
+        try {
+            (void)parse_job("{}", "job.json", std::span(&setting, 1));
+            ADD_FAILURE() << key;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.code(), "json.unknown_key");
+            EXPECT_NE(std::string(error.what()).find(meant), std::string::npos) << error.what();
+        }
+    }
+}
+
 // A setting is read as strictly as the file.
 TEST(Job, SettingsThatLeadNowhereAreRefused) {
     const auto code_and_place = [](const JobSetting& setting) {

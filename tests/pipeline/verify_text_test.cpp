@@ -37,6 +37,7 @@ const Written& written() {
         w.made = program_of(w.setup, w.plan.pieces);
         ProgramHeader header;
         header.tie_on_mm = w.made.eyes.path.front().landing_mm;
+        header.job_digest = job_digest(job);
         w.inputs.program = {"out/program.ngc",
                             write_with_digest(*w.setup.dialect, w.setup.machine, w.made.blocks,
                                               w.made.layout, header)};
@@ -113,6 +114,18 @@ TEST(VerifyText, WithoutAPlanNothingIsCompared) {
     // One half of a plan is none.
     inputs.path = written().inputs.path;
     EXPECT_EQ(passed(verified(inputs), "program"), std::nullopt);
+}
+
+TEST(VerifyText, AnotherJobThanTheHeadsIsNoted) {
+    EXPECT_FALSE(verified(written().inputs).other_job);
+    meshwind::Setup setup = setup_for(written().setup, written().setup.mandrel, 0);
+    setup.job.mandrel.extension_mm += 1.0;
+    EXPECT_TRUE(verify_text(std::move(setup), written().inputs).other_job);
+    VerifyInputs foreign = written().inputs;
+    std::string& text = foreign.program.text;
+    const std::size_t at = text.find("(job digest");
+    text.erase(at, text.find('\n', at) + 1 - at);
+    EXPECT_FALSE(verified(foreign).other_job);
 }
 
 TEST(VerifyText, OneStepOfOneBlockIsSeenAndNamed) {

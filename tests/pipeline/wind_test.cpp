@@ -339,6 +339,29 @@ TEST(Wind, AWallIsWoundInStagesUntilItIsThick) {
     EXPECT_LE(grown_mm, kPipeRadius_mm + 2.5);
 }
 
+// Of a vessel the first stages touch the openings, where circuits pile up; the last turns back
+// beyond what has piled up there. From opening to opening each, the wall cannot be wound.
+TEST(Wind, AWallOfAVesselStepsAwayFromItsOpenings) {
+    const Mandrel vessel = test::made("vessel",
+                                      {{"radius", 30.0},
+                                       {"cylinder-length", 40.0},
+                                       {"dome-height", 21.0},
+                                       {"opening-radius", 8.0}},
+                                      6.0);
+    Job job = quick_job(LayerKind::Wall);
+    job.tow.width_mm = 8.0;
+    job.layers.front().wall = WallJob{.amount = {.thickness_mm = 1.5}};
+    const meshwind::Run run = wind(vessel, shipped("six_axis"), job);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    ASSERT_EQ(run.layers.size(), 3U);
+    const auto turns_mm = [&](std::size_t layer) {
+        return 30.0 * std::sin(run.layers[layer].plan.pattern()->angle_rad);
+    };
+    EXPECT_NEAR(turns_mm(0), 8.0 + 4.0, 30.0 * rad_from_deg(3.0));
+    EXPECT_GT(turns_mm(2), turns_mm(0) + 8.0);
+    EXPECT_LE(run.walls.front().figures.below_share, kMostBelow);
+}
+
 // The figures of a wall are those of all its stages, and the bound is below what they take.
 TEST(Wind, AWallOfCoversCountsAllItsStages) {
     const auto tee = [](const Job&) {

@@ -72,6 +72,7 @@ class Pins(Turns):
         """The program alone says where the pins stand."""
         program = self.folder / "out/program.ngc"
         self.done("verify", program, "--mandrel", mandrel, "--machine", MACHINE)
+        self.done("verify", program, "--mandrel", mandrel, "--machine", MACHINE, "--plan", self.folder / "out")
         text = re.sub(r"\(pins at rim.*\)\n", "", program.read_text())
         again = self.run_program("verify", self.write("bare.ngc", text), "--mandrel", mandrel, "--machine", MACHINE,
                                  "--json")

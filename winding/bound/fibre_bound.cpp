@@ -53,10 +53,12 @@ struct FibreBoundFinder::State {
     }
 
     FibreBound run() {
-        if (rows_.empty()) {
-            return {};
-        }
         FibreBound bound;
+        bound.forward.assign(task_.members.size(), 0.0);
+        bound.backward.assign(task_.members.size(), 0.0);
+        if (rows_.empty()) {
+            return bound;
+        }
         LinearProgramme::Solution solution;
         for (int round = 0; round < kMostRounds; ++round) {
             solution = programme_->solve();
@@ -310,8 +312,6 @@ private:
     }
 
     void take(const LinearProgramme::Solution& solution, FibreBound& bound) const {
-        bound.forward.assign(task_.members.size(), 0.0);
-        bound.backward.assign(task_.members.size(), 0.0);
         for (const Column& column : columns_) {
             if (column.number < 0 || !column.open) {
                 continue;

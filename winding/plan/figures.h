@@ -44,8 +44,8 @@ struct Uncovered {
 
 /// A rule that keeps wall bare, loosened: what courses would reach then.
 struct WhatIf {
-    enum class Rule { Friction, Bridging, Extension } rule = Rule::Friction;
-    double factor = 1.0;     ///< on the rule's number
+    enum class Rule { Friction, Bridging, Extension, Pins } rule = Rule::Friction;
+    double factor = 1.0;     ///< on the rule's number; 1 of turns on pins in place of friction
     double reachable = 0.0;  ///< share of the wall
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,11 @@ constexpr double kLongest_mm = 1e5;
 constexpr double kMostAngle_rad = rad_from_deg(3.0);
 
 constexpr double kSlope_rad = 1e-4;
+
+// Patterns whose bands, at the angle that closes them, leave gaps are looked for again so often. No
+// tow keeps its width to this share: what another angle changes is more.
+constexpr int kMostTries = 6;
+constexpr double kNoGap = 1e-3;
 
 // Closure in rad: far below what any axis resolves.
 constexpr double kClosed_rad = 1e-12;
@@ -234,6 +240,21 @@ private:
         circuit.mm_per_rad = sparsest_mm();
         circuit.layers =
             options_.lattice ? 1 : std::max(1, static_cast<int>(std::lround(options_.layers)));
+        if (!(dwell ? find_pattern(circuit) : find_and_close(circuit))) {
+            return false;
+        }
+        if (options_.lattice) {
+            lattice_ = laid_lattice(pattern_, circuit, *options_.lattice, options_.wish);
+            if (lattice_->series > 1 && !dwell) {
+                return fail(
+                    "the bands of a rib are set side by side by dwelling at a rim, and the "
+                    "fibre turns by itself at both ends; ask for one series");
+            }
+        }
+        return true;
+    }
+
+    bool find_pattern(const CircuitToClose& circuit) {
         FoundPattern found;
         try {
             const auto find = [&](const PatternWish& wish) {
@@ -248,21 +269,35 @@ private:
             return fail(found.failure);
         }
         pattern_ = *found.pattern;
-        if (!dwell) {
-            if (!close_by_angle(pattern_.turn_rad)) {
+        return true;
+    }
+
+    // Between bands, as they are to lie.
+    [[nodiscard]] double offset_mm() const {
+        return options_.wish.band_offset_mm > 0.0 ? options_.wish.band_offset_mm
+                                                  : options_.tow.width_mm;
+    }
+
+    // Circuits that turn back by themselves close by another angle, at which bands may lie farther
+    // apart: a pattern is then looked for that closes the wall with these.
+    bool find_and_close(CircuitToClose& circuit) {
+        const auto asked = std::tuple(angle_rad_, slip_, pass_);
+        for (int tries = 1;; ++tries) {
+            if (!find_pattern(circuit) || !close_by_angle(pattern_.turn_rad)) {
                 return false;
             }
-            laid_ = pass_;
             circuit.mm_per_rad = sparsest_mm();
-        }
-        if (options_.lattice) {
-            lattice_ = laid_lattice(pattern_, circuit, *options_.lattice, options_.wish);
-            if (lattice_->series > 1 && !dwell) {
-                return fail(
-                    "the bands of a rib are set side by side by dwelling at a rim, and the "
-                    "fibre turns by itself at both ends; ask for one series");
+            const double around_mm = 2.0 * kPi * circuit.mm_per_rad * circuit.layers;
+            const bool closes =
+                static_cast<double>(pattern_.circuits) * offset_mm() >= (1.0 - kNoGap) * around_mm;
+            const bool given = options_.lattice || options_.wish.circuits > 0;
+            if (closes || given || tries == kMostTries) {
+                break;
             }
+            std::tie(angle_rad_, slip_, pass_) = asked;
         }
+        laid_ = pass_;
+        pattern_ = with_bands_of(circuit, pattern_);
         return true;
     }
 

@@ -29,17 +29,6 @@ const char* word_of(BandOrder order) {
     return order == BandOrder::Leading ? "leading" : "lagging";
 }
 
-// Figures of the bands as wide as they are, whatever distance they were asked to have.
-Pattern with_band(Pattern pattern, double band_rad, int layers) {
-    const double deep = static_cast<double>(pattern.circuits) * band_rad / kTurn_rad;
-    pattern.overlap = deep / layers - 1.0;
-    pattern.least_layers = static_cast<std::int64_t>(std::floor(deep + kNothing));
-    pattern.most_layers = static_cast<std::int64_t>(std::ceil(deep - kNothing));
-    const double share = std::max(0.0, deep - static_cast<double>(pattern.least_layers));
-    pattern.ripple = std::sqrt(share * (1.0 - share)) / deep;
-    return pattern;
-}
-
 class Search {
 public:
     Search(const CircuitToClose& circuit, const PatternWish& wish)
@@ -141,7 +130,7 @@ private:
     }
 
     [[nodiscard]] Pattern as_laid(const Pattern& pattern) const {
-        return with_band(pattern, circuit_.band_mm / circuit_.mm_per_rad, circuit_.layers);
+        return with_bands_of(circuit_, pattern);
     }
 
     // Patterns that lack some of the wishes: of each set of wishes that may be given up.
@@ -287,6 +276,17 @@ std::int64_t diamonds_in_row(const std::vector<std::int64_t>& circuit_at, std::s
 }
 
 }  // namespace
+
+Pattern with_bands_of(const CircuitToClose& circuit, Pattern pattern) {
+    const double band_rad = circuit.band_mm / circuit.mm_per_rad;
+    const double deep = static_cast<double>(pattern.circuits) * band_rad / kTurn_rad;
+    pattern.overlap = deep / circuit.layers - 1.0;
+    pattern.least_layers = static_cast<std::int64_t>(std::floor(deep + kNothing));
+    pattern.most_layers = static_cast<std::int64_t>(std::ceil(deep - kNothing));
+    const double share = std::max(0.0, deep - static_cast<double>(pattern.least_layers));
+    pattern.ripple = std::sqrt(share * (1.0 - share)) / deep;
+    return pattern;
+}
 
 FoundPattern find_wished_pattern(const CircuitToClose& circuit, const PatternWish& wish) {
     return Search(circuit, wish).closed_wall();

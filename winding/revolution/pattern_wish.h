@@ -47,6 +47,10 @@ struct FoundPattern {
     std::string failure;               ///< without one: what is not to be had, and what nearly is
 };
 
+/// The pattern with the figures of its bands: of the circuit's, as wide as they are, whatever
+/// distance they were asked to have.
+[[nodiscard]] Pattern with_bands_of(const CircuitToClose& circuit, Pattern pattern);
+
 /// The best pattern by find_patterns() that fulfils the wish. Dwell is the same at both ends where
 /// there are two. Where none fulfils it, the words list up to five that lack as few of the wishes
 /// as can be, the nearest first. \throws InputError as find_patterns()

@@ -19,6 +19,7 @@ const std::vector<std::string> kAll = {"linuxcnc", "fanuc", "siemens", "grbl", "
 ProgramHeader header() {
     return {.version = "test",
             .mandrel = "pipe.stl",
+            .job_digest = "sha256 8899aabbccddeeff",
             .code_digest = "sha256/128 00112233445566778899aabbccddeeff",
             .tie_on_mm = Eigen::Vector3d(70.0, 0.0, -1.5)};
 }
@@ -58,6 +59,7 @@ TEST(ProgramHead, IsReadFromWhatIsWritten) {
         const BlockList list = read(name, text_of(name, test::machine_for(name)));
         ASSERT_TRUE(list.head.has_value());
         EXPECT_TRUE(list.head->by_meshwind);
+        EXPECT_EQ(list.head->job_digest, header().job_digest);
         EXPECT_EQ(list.head->code_digest, header().code_digest);
         EXPECT_TRUE(list.head->path_modes.empty());
         EXPECT_EQ(list.head->has_approach, name != "pulses");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "postproc/tables/plan_tables.h"
+
 namespace meshwind {
 namespace {
 
@@ -50,6 +52,21 @@ TEST(PathCsv, IsOneRowPerStationInWindingOrder) {
               "0.0000000,0.6000000,-0.8000000,0.01250000,-0.00250000,0.20000,0.0000,200.0000\n"
               "1,transition,1,5.0000,-51.2500,0.0000,2.5000,1.0000000,0.0000000,0.0000000,"
               "0.0000000,0.6000000,-0.8000000,0.01250000,-0.00250000,0.20000,0.1250,200.0000\n");
+}
+
+// Where a pin holds the fibre, of a fibre that turns on pins.
+TEST(PathCsv, SaysWherePinsHoldTheFibre) {
+    const std::vector<Piece> pieces{piece_of(PieceKind::Transition, 50.0)};
+    EyePath path(2);
+    path[1].point = 1;
+    for (EyePoint& eye : path) {
+        eye.on_pins = true;
+    }
+    path[1].held = true;
+    const PlannedFibre fibre = read_path_csv(path_csv(pieces, path), "path.csv");
+    ASSERT_EQ(fibre.size(), 2U);
+    EXPECT_FALSE(fibre[0].held);
+    EXPECT_TRUE(fibre[1].held);
 }
 
 TEST(PathCsv, OfNoPiecesIsTheHeader) {

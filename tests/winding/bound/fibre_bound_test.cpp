@@ -98,6 +98,16 @@ TEST(FibreBound, AsksNothingOfPlacesOutOfReachAndTakesOnlyWhatIsAllowed) {
 }
 
 // Twice the layers take twice the fibre, and turns count.
+// As behind stages that piled up all that was asked for: no course, not a crash.
+TEST(FibreBound, IsNothingWhereNothingIsAskedFor) {
+    Problem problem{{course(0, 9, 100.0), course(0, 9, 90.0)}};
+    problem.asked.assign(10, 0);
+    const FibreBound bound = problem.bound();
+    EXPECT_EQ(bound.least_mm, 0.0);
+    EXPECT_EQ(times_laid(bound, 0) + times_laid(bound, 1), 0.0);
+    EXPECT_TRUE(whole_courses(bound, problem.members, 1.0).empty());
+}
+
 TEST(FibreBound, GrowsWithTheLayers) {
     Problem problem{{course(0, 5, 90.0, 0, 0), course(4, 9, 90.0, 0, 0)}};
     problem.members[0].turn_mm = 10.0;

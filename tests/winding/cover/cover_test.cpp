@@ -28,21 +28,27 @@ constexpr double kTable_mm = 60.0;
 // The rules of a plan do not depend on how long it is improved.
 constexpr double kQuick = 0.2;
 
-Plan cover(const Mandrel& mandrel, int candidates, int fibres = 1, double min_free_mm = 40.0,
-           const StageAsk* stage = nullptr) {
+CoverOptions quick_options(const Mandrel& mandrel, int candidates) {
     CoverOptions options;
-    options.fibres = fibres;
-    options.stage = stage;
     options.tow.width_mm = 12.0;
     options.tow.friction = 0.25;
     options.turns.rule.extension_mm = kExtension_mm;
-    options.free_fibre.min_mm = min_free_mm;
+    options.free_fibre.min_mm = 40.0;
     options.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
     options.candidates = candidates;
     options.rounds = 1;
     options.aimed_candidates = candidates / 4;
     options.scarce_candidates = candidates / 4;
     options.context.effort = kQuick;
+    return options;
+}
+
+Plan cover(const Mandrel& mandrel, int candidates, int fibres = 1, double min_free_mm = 40.0,
+           const StageAsk* stage = nullptr) {
+    CoverOptions options = quick_options(mandrel, candidates);
+    options.fibres = fibres;
+    options.stage = stage;
+    options.free_fibre.min_mm = min_free_mm;
     return plan_cover(mandrel, test::obstacles_of(mandrel, kExtension_mm, kTable_mm), options).plan;
 }
 
@@ -126,6 +132,30 @@ TEST(PlanCover, CoversASmallTee) {
 
 // With so long a free fibre one that has gone to the branch cannot come back; others may follow it.
 constexpr double kLongFree_mm = 120.0;
+
+// Where friction turns few courses round on a short extension, pins turn more; no word of pins
+// where they are there already.
+TEST(PlanCover, SaysWhatTurnsOnPinsWouldReach) {
+    constexpr double kShort_mm = 30.0;
+    CoverOptions options = quick_options(tee(), 600);
+    options.tow.friction = 0.1;
+    options.turns.rule.extension_mm = kShort_mm;
+    const RayQuery obstacles = test::obstacles_of(tee(), kShort_mm, kTable_mm);
+    const auto with_pins = [](const Plan& plan) {
+        const auto found =
+            std::find_if(plan.what_if.begin(), plan.what_if.end(),
+                         [](const WhatIf& what) { return what.rule == WhatIf::Rule::Pins; });
+        return found == plan.what_if.end() ? 0.0 : found->reachable;
+    };
+    const Plan by_friction = plan_cover(tee(), obstacles, options).plan;
+    EXPECT_GT(with_pins(by_friction), by_friction.coverage.reachable + 0.05);
+    std::string failure;
+    options.turns.pins = stand_pins(tee().rims, {}, options.tow, kShort_mm, failure);
+    ASSERT_EQ(failure, "");
+    const Plan on_pins = plan_cover(tee(), obstacles, options).plan;
+    EXPECT_EQ(with_pins(on_pins), 0.0);
+    EXPECT_GT(on_pins.coverage.reachable, by_friction.coverage.reachable + 0.05);
+}
 
 TEST(PlanCover, CoversMoreOfASmallTeeWithMoreFibres) {
     const Plan one = cover(tee(), 4000, 1, kLongFree_mm);

@@ -145,6 +145,26 @@ TEST(PatternPlan, HelicesOnAVesselTurnByThemselves) {
     EXPECT_LT(p.plan.worst_slip, 0.1);
 }
 
+// They close by giving way to the angle, and bands at another angle lie farther apart: what is laid
+// closes the wall, and is what the figures say.
+TEST(PatternPlan, HelicesOnAVesselLeaveNoGaps) {
+    const Mandrel vessel = test::made("vessel", kVessel, 5.0);
+    const double radius_mm =
+        find_revolution(vessel)
+            .body->meridian.at(find_revolution(vessel).body->meridian.widest_mm())
+            .radius_mm;
+    for (const double angle_deg : {35.0, 45.0, 55.0, 65.0, 70.0, 75.0}) {
+        SCOPED_TRACE(angle_deg);
+        const Plan plan = planned(vessel, {.angle_rad = rad_from_deg(angle_deg), .tow = kTow}).plan;
+        ASSERT_EQ(plan.failure, "");
+        const LaidPattern& laid = *plan.pattern();
+        const double deep = static_cast<double>(laid.pattern.circuits) * kTow.width_mm /
+                            (2.0 * kPi * radius_mm * std::cos(laid.angle_rad));
+        EXPECT_GE(deep, 1.0 - 1e-3);
+        EXPECT_NEAR(laid.pattern.overlap, deep - 1.0, 1e-6);
+    }
+}
+
 // Azimuth that a pass of the plan has wound at its ends and where it begins, about +Z.
 struct PassAround {
     double begin_rad = 0.0;
