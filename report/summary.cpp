@@ -258,11 +258,17 @@ void print_files(std::ostream& out, const Run& run, const std::filesystem::path&
 void print_summary(std::ostream& out, const Run& run, const std::filesystem::path& folder,
                    Detail detail) {
     print_part(out, run);
+    const Detail of_layers = run.passed() ? detail : Detail::Full;
     for (std::size_t i = 0; i < run.layers.size(); ++i) {
-        if (run.layers.size() > 1) {
-            out << "layer " << i + 1 << ", " << name_of(run.layers[i].job.kind) << ": ";
+        const WoundLayer& layer = run.layers[i];
+        const bool one_of_many = run.layers.size() > 1;
+        if (one_of_many && layer.job.kind == LayerKind::Wall && of_layers == Detail::Brief) {
+            continue;  // a stage of a wall: the table below has a line for each
         }
-        print_layer(out, run.layers[i], run.passed() ? detail : Detail::Full);
+        if (one_of_many) {
+            out << "layer " << i + 1 << ", " << name_of(layer.job.kind) << ": ";
+        }
+        print_layer(out, layer, of_layers);
     }
     if (run.layers.size() > 1) {
         print_laminate(out, run);

@@ -51,6 +51,23 @@ TEST(Summary, SaysNothingOfAMotionThatWasNotAskedFor) {
     EXPECT_FALSE(tells(summary("four_axis.json", RedundancyRule::Optimal, {false}), "motion"));
 }
 
+// The table of layers has a line for each stage.
+TEST(Summary, NamesTheStagesOfAWallOnDemand) {
+    meshwind::Run run;
+    for (int stage = 0; stage < 2; ++stage) {
+        WoundLayer& layer = run.layers.emplace_back();
+        layer.job.kind = LayerKind::Wall;
+        layer.setup.machine = read_machine(MESHWIND_SOURCE_DIR "/machines/six_axis.json");
+        layer.setup.mandrel.whole.points_mm = {{0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}};
+    }
+    for (const Detail detail : {Detail::Brief, Detail::Full}) {
+        std::ostringstream out;
+        print_summary(out, run, "out", detail);
+        EXPECT_EQ(tells(out.str(), "layer 2, wall: "), detail == Detail::Full);
+        EXPECT_TRUE(tells(out.str(), "\n  2 wall "));
+    }
+}
+
 // What failed stands there; what passed is counted, and listed on demand.
 TEST(Summary, TellsWhatFailedAndCountsTheRest) {
     meshwind::Run run;
