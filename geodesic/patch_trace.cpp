@@ -26,9 +26,9 @@ constexpr double kMinStationShare = 1e-5;
 // its length, and long facets get stations that show their curvature.
 constexpr double kMaxStepTurn_rad = 0.2;
 
-// The same where the surface is known, as on CAD faces, and the steps would err most: 1e-4 mm per
-// metre on a cylinder.
-constexpr double kMaxKnownTurn_rad = 0.05;
+// The same where the surface is known, as on CAD faces, and the steps err most: 3e-5 mm per metre
+// on a torus, with 0.05 four times that.
+constexpr double kMaxKnownTurn_rad = 0.03;
 
 // Barycentric coordinate below which a step has left the triangle, and tries to end on the edge.
 constexpr double kOutside = 1e-10;
