@@ -32,8 +32,8 @@ struct BoundTask {
 
 struct FibreBound {
     /// No plan of courses of the library, but for those struck off, takes less fibre, turns
-    /// included: mm. It is that of a dual
-    /// solution whose feasibility is computed here, so it holds however well it was solved.
+    /// included: mm. It is that of a dual solution whose feasibility is computed here, so it holds
+    /// however well it was solved.
     double least_mm = 0.0;
     double solved_mm = 0.0;  ///< the least found, by courses in fractions; 0 where none was
     double turns_mm = 0.0;   ///< of that, fibre in turns

@@ -255,8 +255,7 @@ private:
             tried.push_back(placed(course.member, course.backward));
         }
         for (PlacedCourse& course : those_that_hold(std::move(tried), false)) {
-            const LaidCourse of{course.of_library, course.backward};
-            proven.emplace(of, std::move(course));
+            proven.emplace(LaidCourse{course.of_library, course.backward}, std::move(course));
         }
         std::vector<char> holds;
         for (const LaidCourse& course : courses) {

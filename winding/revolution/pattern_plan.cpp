@@ -279,26 +279,40 @@ private:
     }
 
     // Circuits that turn back by themselves close by another angle, at which bands may lie farther
-    // apart: a pattern is then looked for that closes the wall with these.
+    // apart: a pattern is then looked for that closes the wall with these. Where none is found the
+    // first stands, with its gaps.
     bool find_and_close(CircuitToClose& circuit) {
-        const auto asked = std::tuple(angle_rad_, slip_, pass_);
-        for (int tries = 1;; ++tries) {
+        auto state = std::tie(pattern_, angle_rad_, slip_, pass_);
+        const std::tuple asked(pattern_, angle_rad_, slip_, pass_);
+        auto first = asked;
+        bool closed = false;
+        for (int tries = 1; !closed && tries <= kMostTries; ++tries) {
+            state = asked;
             if (!find_pattern(circuit) || !close_by_angle(pattern_.turn_rad)) {
-                return false;
-            }
-            circuit.mm_per_rad = sparsest_mm();
-            const double around_mm = 2.0 * kPi * circuit.mm_per_rad * circuit.layers;
-            const bool closes =
-                static_cast<double>(pattern_.circuits) * offset_mm() >= (1.0 - kNoGap) * around_mm;
-            const bool given = options_.lattice || options_.wish.circuits > 0;
-            if (closes || given || tries == kMostTries) {
+                if (tries == 1) {
+                    return false;
+                }
+                plan_.failure.clear();
                 break;
             }
-            std::tie(angle_rad_, slip_, pass_) = asked;
+            circuit.mm_per_rad = sparsest_mm();
+            closed = options_.lattice || options_.wish.circuits > 0 || closes(circuit);
+            if (tries == 1) {
+                first = state;
+            }
         }
+        if (!closed) {
+            state = first;
+        }
+        circuit.mm_per_rad = sparsest_mm();
         laid_ = pass_;
         pattern_ = with_bands_of(circuit, pattern_);
         return true;
+    }
+
+    [[nodiscard]] bool closes(const CircuitToClose& circuit) const {
+        const double around_mm = 2.0 * kPi * circuit.mm_per_rad * circuit.layers;
+        return static_cast<double>(pattern_.circuits) * offset_mm() >= (1.0 - kNoGap) * around_mm;
     }
 
     // How much the turn of a circuit changes within kMostAngle_rad, by its slope.

@@ -97,7 +97,6 @@ TEST(FibreBound, AsksNothingOfPlacesOutOfReachAndTakesOnlyWhatIsAllowed) {
     EXPECT_NEAR(problem.bound().least_mm, 40.0, kNear * 40.0);
 }
 
-// Twice the layers take twice the fibre, and turns count.
 // As behind stages that piled up all that was asked for: no course, not a crash.
 TEST(FibreBound, IsNothingWhereNothingIsAskedFor) {
     Problem problem{{course(0, 9, 100.0), course(0, 9, 90.0)}};
@@ -108,6 +107,7 @@ TEST(FibreBound, IsNothingWhereNothingIsAskedFor) {
     EXPECT_TRUE(whole_courses(bound, problem.members, 1.0).empty());
 }
 
+// Twice the layers take twice the fibre, and turns count.
 TEST(FibreBound, GrowsWithTheLayers) {
     Problem problem{{course(0, 5, 90.0, 0, 0), course(4, 9, 90.0, 0, 0)}};
     problem.members[0].turn_mm = 10.0;

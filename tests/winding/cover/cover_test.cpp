@@ -130,9 +130,6 @@ TEST(PlanCover, CoversASmallTee) {
     expect_books_to_balance(tee(), plan);
 }
 
-// With so long a free fibre one that has gone to the branch cannot come back; others may follow it.
-constexpr double kLongFree_mm = 120.0;
-
 // Where friction turns few courses round on a short extension, pins turn more; no word of pins
 // where they are there already.
 TEST(PlanCover, SaysWhatTurnsOnPinsWouldReach) {
@@ -156,6 +153,9 @@ TEST(PlanCover, SaysWhatTurnsOnPinsWouldReach) {
     EXPECT_EQ(with_pins(on_pins), 0.0);
     EXPECT_GT(on_pins.coverage.reachable, by_friction.coverage.reachable + 0.05);
 }
+
+// With so long a free fibre one that has gone to the branch cannot come back; others may follow it.
+constexpr double kLongFree_mm = 120.0;
 
 TEST(PlanCover, CoversMoreOfASmallTeeWithMoreFibres) {
     const Plan one = cover(tee(), 4000, 1, kLongFree_mm);
