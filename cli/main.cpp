@@ -50,6 +50,20 @@ CommandWords command_words(const CLI::App& app) {
     return words;
 }
 
+// Behind the name of a command the parser takes the program's options as well, those of the main
+// job among them: the command would not hear of them.
+void refuse_options_of_wind(const CLI::App& app, const std::string& group_of_every_command) {
+    const std::string command = app.get_subcommands().front()->get_name();
+    for (const CLI::Option* option : app.get_options()) {
+        const bool named = !option->get_positional() && option->count() > 0;
+        if (named && option->get_group() != group_of_every_command) {
+            throw InputError("cli.unknown_option", option->get_name(),
+                             "is an option of the main job and none of '" + command +
+                                 "'; see meshwind " + command + " --help");
+        }
+    }
+}
+
 int run(const std::vector<std::string>& arguments) {
     CLI::App app(
         "Filament winding on triangulated mandrels: mesh and machine in, checked NC code out.\n"
@@ -185,9 +199,12 @@ int run(const std::vector<std::string>& arguments) {
         throw usage_error(command_words(app), arguments, error.what());
     }
     set_thread_count(common.threads);
-    if (!app.get_subcommands().empty() && !wind_options.mandrel.empty()) {
-        throw usage_error(command_words(app), arguments,
-                          "'" + wind_options.mandrel + "' is one argument too many");
+    if (!app.get_subcommands().empty()) {
+        refuse_options_of_wind(app, kEvery);
+        if (!wind_options.mandrel.empty()) {
+            throw usage_error(command_words(app), arguments,
+                              "'" + wind_options.mandrel + "' is one argument too many");
+        }
     }
     if (wind_command->parsed()) {
         return run_wind(named_wind_options, common);

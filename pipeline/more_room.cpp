@@ -24,11 +24,26 @@ int fibres_enough(const std::vector<double>& reach) {
     return static_cast<int>(enough - reach.begin()) + 1;
 }
 
+bool fibres_are_free(const Job& job, const Plan& plan) {
+    return !job.fibres_given && !plan.reach_of_fibres.empty();
+}
+
 }  // namespace
+
+std::optional<Job> more_fibres(const Job& job, const Plan& plan) {
+    const Coverage& coverage = plan.coverage;
+    if (!fibres_are_free(job, plan) ||
+        coverage.joinable.value_or(coverage.reachable) + kWorthIt > coverage.reachable) {
+        return std::nullopt;
+    }
+    Job more = job;
+    more.fibres = std::max(job.fibres, fibres_enough(plan.reach_of_fibres));
+    return more.fibres > job.fibres ? std::optional(std::move(more)) : std::nullopt;
+}
 
 std::optional<Job> more_room(const Job& job, const Plan& plan) {
     Job more = job;
-    const bool fibres_free = !job.fibres_given && !plan.reach_of_fibres.empty();
+    const bool fibres_free = fibres_are_free(job, plan);
     const int enough = fibres_free ? fibres_enough(plan.reach_of_fibres) : 1;
     if (fibres_free) {
         more.fibres = std::max(job.fibres, enough);

@@ -130,6 +130,11 @@ PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer, const Windabi
     return asked.kind == LayerKind::Auto ? plan_best(task) : plan_asked_for(task);
 }
 
+double least_covered(const Coverage& coverage, double bare) {
+    const double joinable = coverage.joinable.value_or(coverage.reachable);
+    return std::max(0.0, std::max(joinable, kCoveredShare * coverage.reachable) - bare);
+}
+
 bool needs_pins_first(const Setup& setup, const LayerJob& layer, const LayerPlanOptions& options) {
     if (!traits_of(setup.job.mandrel.turn).reads_pins) {
         return false;

@@ -14,10 +14,6 @@
 
 namespace meshwind {
 
-/// Share of the wall that a pattern must cover for `auto` to take it, and of what is in reach that
-/// a plan comes near to winding it.
-inline constexpr double kCoveredShare = 0.9;
-
 struct LayerPlanOptions {
     RunContext context{};
     /// What the layers before lie on: hoops lie on its cylinder, elbows keep its line.
@@ -48,6 +44,10 @@ struct PlannedLayer {
 [[nodiscard]] PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer,
                                       const Windability& machine,
                                       const LayerPlanOptions& options = {});
+
+/// Share of the wall that a plan has to cover: all but `bare` of what its fibres can join, or of
+/// kCoveredShare of what courses reach where that is more.
+[[nodiscard]] double least_covered(const Coverage& coverage, double bare);
 
 /// Whether pins have to stand before the layer is planned: where courses cover the part and turn on
 /// them. Those of a pattern follow from it.

@@ -38,6 +38,9 @@ constexpr std::array kBlendsInTows{0.0, 1.0, 2.0, 3.0, 4.0};
 // To the micrometre: a few digits then name them.
 constexpr double kBlendsPerMm = 1000.0;
 
+// Under so much of the wall a larger blend is tried, although the plan can be wound.
+constexpr double kWellCovered = 0.95;
+
 // More fibres and longer extensions are tried so many times at most.
 constexpr int kMostMends = 2;
 
@@ -46,6 +49,12 @@ constexpr int kMostMends = 2;
 constexpr double kCoversMost = 0.75;
 constexpr std::uint64_t kMostSeeds = 3;
 constexpr std::uint64_t kSeedsOfTries = 2;
+
+// By so much of the wall covers with two seeds differ; by .2 % mostly.
+constexpr double kSeedsDiffer = 0.005;
+
+// A plan of more fibres covers so much more of the wall, or it is not worth them.
+constexpr double kWorthAFibre = 0.005;
 
 // What is planned later to join the courses covers no more than this share on top.
 constexpr double kJoinsCover = 0.02;
@@ -377,17 +386,30 @@ bool stands(const Run& run) {
     return run.planned() && run.passed();
 }
 
+// A fibre more is a stop of the machine more.
 bool is_better(const Run& run, const Run& than) {
-    return stands(run) != stands(than) ? stands(run) : covered_share(run) > covered_share(than);
+    if (stands(run) != stands(than)) {
+        return stands(run);
+    }
+    const bool pays = stands(run) && first_plan(run).fibres > first_plan(than).fibres;
+    return covered_share(run) > covered_share(than) + (pays ? kWorthAFibre : 0.0);
 }
 
 // A cover that is wound, covers most of what it can, and fails: courses that the machine refuses
 // in their places, which another choice of courses has elsewhere, leave wall bare or fail
-// themselves.
+// themselves. What fails for bare wall alone does so by chance where little lacks.
 bool fails_by_chance(const Run& run) {
     const Plan& plan = first_plan(run);
-    return plan.planner == Planner::Cover && run.walls.empty() && run.planned() && !run.passed() &&
-           plan.coverage.fraction >= kCoversMost * plan.coverage.reachable;
+    if (plan.planner != Planner::Cover || !run.walls.empty() || !run.planned() || run.passed()) {
+        return false;
+    }
+    const bool covers_alone = std::all_of(
+        run.checks.begin(), run.checks.end(),
+        [](const Check& check) { return check.ok || check.name == check_kind::kCoverage.name; });
+    const double bare = run.layers.front().setup.job.tolerance.bare;
+    return plan.coverage.fraction >= (covers_alone
+                                          ? least_covered(plan.coverage, bare) - kSeedsDiffer
+                                          : kCoversMost * plan.coverage.reachable);
 }
 
 // "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
@@ -452,6 +474,9 @@ public:
 
     [[nodiscard]] bool done() const { return stands(*best_); }
 
+    /// Share of the wall that the best covers.
+    [[nodiscard]] double covered() const { return covered_share(*best_); }
+
     [[nodiscard]] Run best() && {
         const bool cut_short = was_too_bare(*best_);
         if (cut_short) {
@@ -473,8 +498,8 @@ public:
 
 private:
     static std::optional<Job> room_for(const Run& run) {
-        return stands(run) ? std::nullopt
-                           : more_room(run.layers.front().setup.job, first_plan(run));
+        const Job& job = run.layers.front().setup.job;
+        return stands(run) ? more_fibres(job, first_plan(run)) : more_room(job, first_plan(run));
     }
 
     void take(Run&& run) {
@@ -526,12 +551,16 @@ Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
         trials.run(job, Trials::Depth::Full);
     } else {
         // A blend does more than fibres and extensions do, and takes no longer: all of them before.
+        // One that can be wound is the last, where it covers well or no more than a smaller one.
+        double covered_before = 0.0;
         for (const double widths : kBlendsInTows) {
             Job asked = job;
             asked.mandrel.blend_mm =
                 std::round(kBlendsPerMm * widths * job.tow.width_mm) / kBlendsPerMm;
             trials.run(asked, Trials::Depth::WhereItCovers);
-            if (trials.done()) {
+            const double gained =
+                trials.covered() - std::exchange(covered_before, trials.covered());
+            if (trials.done() && (covered_before >= kWellCovered || gained < kSeedsDiffer)) {
                 break;
             }
         }

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "core/counted.h"
 #include "core/text/text_number.h"
 #include "pipeline/pattern_checks.h"
 #include "pipeline/plan_layer.h"
@@ -192,6 +193,13 @@ private:
                                                " cm2 are bare for this: " + largest->first;
     }
 
+    [[nodiscard]] std::string those_joined() const {
+        const std::optional<double>& joinable = layer_.plan.coverage.joinable;
+        return joinable ? ", those that " + counted(layer_.setup.job.fibres, "fibre") +
+                              " can join " + fixed(100.0 * *joinable, 1) + " %"
+                        : std::string();
+    }
+
     // On the face that misses the most.
     [[nodiscard]] CheckPlace barest_place() const {
         const Surface& surface = setup_.mandrel.surface;
@@ -215,14 +223,15 @@ private:
             return;
         }
         const Coverage& coverage = layer_.plan.coverage;
-        const double limit = std::max(0.0, coverage.reachable - layer_.setup.job.tolerance.bare);
+        const double limit = least_covered(coverage, layer_.setup.job.tolerance.bare);
         Check check(check_kind::kCoverage, coverage.fraction >= limit);
         check.numbers = {{"limit", limit}, {"fraction", coverage.fraction}};
         check.place = barest_place();
         if (!check.ok) {
             check.words = "only " + fixed(100.0 * coverage.fraction, 1) +
                           " % of the wall is covered although single courses reach " +
-                          fixed(100.0 * coverage.reachable, 1) + " %" + largest_bare_wall();
+                          fixed(100.0 * coverage.reachable, 1) + " %" + those_joined() +
+                          largest_bare_wall();
         }
         layer_.checks.push_back(check);
     }

@@ -189,6 +189,9 @@ json plan_report(const Plan& plan) {
           {"outcomes", refusals},
           {"rejected_courses", plan.effort.rejected_courses},
           {"rejections", rejections}}}};
+    if (plan.coverage.joinable) {
+        report["coverage"]["joinable"] = report_number(*plan.coverage.joinable);
+    }
     if (plan.coverage.regular_cv) {
         report["coverage"]["regular_cv"] = report_number(*plan.coverage.regular_cv);
     }

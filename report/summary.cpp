@@ -167,6 +167,18 @@ void print_courses(std::ostream& out, const Plan& plan) {
         << " deg to the axis on average\n";
 }
 
+// What courses reach, and what of it the plan's fibres cannot join where that is much.
+std::string reach_words(const WoundLayer& layer) {
+    const Coverage& coverage = layer.plan.coverage;
+    std::string words = "reachable " + percent(coverage.reachable);
+    constexpr double kMuch = 0.005;  // of the wall
+    if (coverage.joinable.value_or(coverage.reachable) + kMuch < coverage.reachable) {
+        words +=
+            ", " + percent(*coverage.joinable) + " by " + counted(layer.setup.job.fibres, "fibre");
+    }
+    return words;
+}
+
 // In the trade's words.
 void print_plan(std::ostream& out, const WoundLayer& layer, Detail detail) {
     const Plan& plan = layer.plan;
@@ -181,7 +193,7 @@ void print_plan(std::ostream& out, const WoundLayer& layer, Detail detail) {
         out << "  no pattern is laid: " << layer.no_pattern << '\n';
     }
     out << "covered: " << percent(plan.coverage.fraction) << " of the wall"
-        << (layer.import ? "" : " (reachable " + percent(plan.coverage.reachable) + ")") << ", "
+        << (layer.import ? "" : " (" + reach_words(layer) + ")") << ", "
         << fixed(plan.coverage.mean_layers, 2) << " layers on average, at most "
         << plan.coverage.max_layers << ", at least " << plan.coverage.p1_layers
         << (layer.import ? " on 99 % of it\n" : " on 99 % of what is reachable\n");

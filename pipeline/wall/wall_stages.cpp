@@ -282,10 +282,15 @@ void WallStages::enter(const Surface& surface, const Plan& plan) {
 
 // A place is in reach where courses pass it in every stage that the thickness takes: one that they
 // no longer pass once the wall has grown cannot come to its thickness. Of a pattern it is what it
-// covers.
+// covers. What the fibres cannot join is out of reach where that is little.
 void WallStages::note_reach(const Plan& plan) {
+    const auto count = [](const std::vector<char>& places) {
+        return static_cast<double>(std::count(places.begin(), places.end(), 1));
+    };
+    const bool joins_most = count(plan.joinable) >= kCoveredShare * count(plan.reached);
+    const std::vector<char>& reach = joins_most ? plan.joinable : plan.reached;
     for (std::size_t i = 0; i < reached_.size() && !laid(); ++i) {
-        const bool now = plan.reached.empty() ? measured_.laid[i] > 0 : plan.reached[i] != 0;
+        const bool now = reach.empty() ? measured_.laid[i] > 0 : reach[i] != 0;
         const bool before = stages_ == 0 || reached_[i] != 0;
         reached_[i] = (now && before) || measured_.laid[i] >= measured_.asked[i] ? 1 : 0;
     }

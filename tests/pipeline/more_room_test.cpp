@@ -59,6 +59,21 @@ TEST(MoreRoom, IsFibresToSpareWhereThePlanNearlyCovers) {
     EXPECT_TRUE(more_room(Job(), plan));
 }
 
+// A plan that stands has them where it cannot join what it reaches.
+TEST(MoreFibres, AreThoseThatJoinMore) {
+    Plan plan = plan_that_reaches({0.6, 0.7, 0.855, 0.86}, 0.9);
+    EXPECT_FALSE(more_fibres(Job(), plan)) << "no cover";
+    plan.coverage.joinable = 0.895;
+    EXPECT_FALSE(more_fibres(Job(), plan)) << "it joins what is in reach";
+    plan.coverage.joinable = 0.6;
+    ASSERT_TRUE(more_fibres(Job(), plan));
+    EXPECT_EQ(more_fibres(Job(), plan)->fibres, 3);
+    EXPECT_FALSE(more_fibres(parse_job(R"({"fibres": 1})", "job"), plan));
+    Job enough;
+    enough.fibres = 3;
+    EXPECT_FALSE(more_fibres(enough, plan));
+}
+
 TEST(MoreRoom, LeavesWhatTheJobGives) {
     const Plan plan = plan_that_reaches({0.6, 0.9}, 0.95);
     const Job all = parse_job(R"({"fibres": 1, "mandrel": {"extension": 100}})", "job");

@@ -31,6 +31,8 @@ class Words(program.ProgramTest):
         out = ("-o", self.folder / "t.stl")
         for arguments, code, words in (
                 (("tee.stl", "--machin", "six_axis.json"), "cli.unknown_option", ["--machine"]),
+                (("trace", "tee.stl", "--start", "0,0,0", "--angle", "45", "--set", "tow.width=4", *out),
+                 "cli.unknown_option", ["--set", "'trace'", "meshwind trace --help"]),
                 (("wnd", "tee.stl"), "cli.unknown_command", ["wnd", '"wind"']),
                 (("inspct",), "cli.unknown_command", ['"inspect"']),
                 (("tee.stl", "inspect"), "cli.extra", ["meshwind inspect tee.stl"]),

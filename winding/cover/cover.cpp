@@ -94,7 +94,9 @@ public:
                  options.turns,
                  options.free_fibre,
                  max_half_length_mm(mandrel.surface)},
-          prover_(rules_, machine) {
+          prover_(rules_, machine),
+          reach_prover_(samples_.size(),
+                        [this](PlacedCourse& course) { return prover_.prove(course); }) {
         rules_.turns.rule.friction = options.tow.friction;
         rules_.turns.rule.band_mm = options.tow.width_mm;
         rules_.angle_rad = options.angle_rad;
@@ -125,10 +127,9 @@ public:
         library_size_ = members_.size();
         allowed_.assign(members_.size(), 1);
         rejection_.assign(members_.size(), Rejection::None);
-        if (stage_.stages_left > 0) {
-            confirm_reach();
-        }
+        library_.reached = prove_reach();
         find_routes();
+        joinable_ = prove_reach();
         choose();
         improve();
         keep_what_winds();
@@ -223,7 +224,7 @@ private:
                 bool& windable = backward ? member.windable_backward : member.windable_forward;
                 windable = windable && on_a_route(nodes_of(member, backward));
             }
-            if (!member.windable_forward && !member.windable_backward) {
+            if (allowed_[i] != 0 && !member.windable_forward && !member.windable_backward) {
                 strike_off(i, Rejection::Apart);
             }
         }
@@ -234,9 +235,8 @@ private:
         courses_ = those_that_hold(std::move(courses_), false);
         std::map<LaidCourse, PlacedCourse> proven;
         const FirstChoice first = choose_first(
-            members_, allowed_, library_.reached, samples_.position_mm, 2 * mandrel_.rims.size(),
-            select_, stage_,
-            [&](std::span<const LaidCourse> courses) { return hold(courses, proven); });
+            members_, allowed_, joinable_, samples_.position_mm, 2 * mandrel_.rims.size(), select_,
+            stage_, [&](std::span<const LaidCourse> courses) { return hold(courses, proven); });
         plan_.least_fibre_mm = first.least_fibre_mm;
         for (const LaidCourse& course : first.courses) {
             courses_.push_back(proven.at(course));
@@ -264,27 +264,23 @@ private:
         return holds;
     }
 
-    // Places that no course which holds passes are not in reach.
-    void confirm_reach() {
+    // What courses reach that hold, per sample; behind the last stage none are chosen.
+    [[nodiscard]] std::vector<char> prove_reach() {
+        if (stage_.stages_left == 0) {
+            return library_.reached;
+        }
         tell("prove", 0.0);
-        for (const auto& [member, rejection] : prove_at_scarce_places(
-                 members_, samples_.size(),
-                 [this](PlacedCourse& course) { return prover_.prove(course); })) {
+        std::vector<char> reached = reach_prover_.prove(std::span(members_).first(library_size_));
+        for (const auto& [member, rejection] : reach_prover_.refused()) {
             strike_off(at(member), rejection);
         }
-        library_.reached.assign(samples_.size(), 0);
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            for (const std::int32_t sample : members_[i].footprint) {
-                library_.reached[at(sample)] |= allowed_[i];
-            }
-        }
+        return reached;
     }
 
     // Not followed yet.
     [[nodiscard]] PlacedCourse placed(std::int32_t member, bool backward) const {
-        PlacedCourse placed{members_[at(member)], {}, backward};
-        placed.of_library = member;
-        return placed;
+        return {
+            .member = members_[at(member)], .path = {}, .backward = backward, .of_library = member};
     }
 
     // The others are refused. \param to_stay their own programs are wound as well
@@ -359,9 +355,9 @@ private:
 
     void fill() {
         for (int round = 0; round < kMostFills; ++round) {
-            const std::vector<std::int32_t> members = fill_thin_places(
-                std::span(members_).first(library_size_), allowed_, library_.reached,
-                layers_of(courses_, samples_.size()), select_, stage_.filled_to);
+            const std::vector<std::int32_t> members =
+                fill_thin_places(std::span(members_).first(library_size_), allowed_, joinable_,
+                                 layers_of(courses_, samples_.size()), select_, stage_.filled_to);
             if (members.empty()) {
                 return;
             }
@@ -525,12 +521,13 @@ private:
         layers_.assign(samples_.size(), 0);
         for (const OrderedCourse& laid : order_) {
             for (const std::int32_t sample : members_[at(laid.course.member)].footprint) {
-                library_.reached[at(sample)] = 1;
+                library_.reached[at(sample)] = joinable_[at(sample)] = 1;
                 ++layers_[at(sample)];
             }
         }
         plan_.coverage = measure_coverage(layers_, library_.reached);
         plan_.coverage.reachable = reached_share(library_.reached);
+        plan_.coverage.joinable = reached_share(joinable_);
         describe_uncovered();
         plan_.face_layers = layers_per_face(mandrel_.surface, samples_, layers_);
         describe_courses(mandrel_.surface, options_.tow.width_mm, options_.angle_rad, plan_);
@@ -540,6 +537,7 @@ private:
     void describe_uncovered() {
         if (options_.stage != nullptr) {
             plan_.reached = library_.reached;
+            plan_.joinable = joinable_;
             return;
         }
         layers_.resize(samples_.size(), 0);
@@ -562,11 +560,13 @@ private:
     LiftedWall lifted_;
     CourseRules rules_;
     CourseProver prover_;
+    ReachProver reach_prover_;
     Library library_;
     std::vector<Member>& members_ = library_.members;  // then the courses of the plan
     std::size_t library_size_ = 0;
     std::optional<AnnealGround> ground_;
     std::vector<char> allowed_;                         // per member
+    std::vector<char> joinable_;                        // per sample: in reach of the fibres
     std::vector<Rejection> rejection_;                  // per member: why it is not allowed
     std::vector<PlacedCourse> courses_;                 // the plan, not in order
     std::vector<FibreRoute> routes_;                    // one for each fibre

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "core/parallel.h"
@@ -22,7 +23,11 @@ constexpr std::size_t kAbound = 8;
 
 // A place is scarce where no more members pass: of those near a limit, as in a sharp crotch, hardly
 // any holds.
-constexpr std::int32_t kScarcePassing = 20;
+constexpr std::size_t kScarcePassing = 20;
+
+// Where more pass so many are tried, spread over all of them, until one holds. In a sharp crotch
+// none of hundreds may.
+constexpr std::size_t kTriedAtPlace = 40;
 
 // An end as near to where a pin takes hold of it is there.
 constexpr double kAtPin_mm = 0.004;
@@ -61,6 +66,38 @@ Rejection follow_to_pins(const CourseRules& rules, Candidate candidate, Member& 
 // Which way a windable member is wound from the first node to the second.
 bool leads_backward(const Member& member, const NodePair& nodes) {
     return !(member.windable_forward && nodes_of(member, false) == nodes);
+}
+
+bool is_windable(const Member& member) {
+    return member.windable_forward || member.windable_backward;
+}
+
+void mark(const Member& member, std::vector<char>& reached) {
+    for (const std::int32_t sample : member.footprint) {
+        reached[at(sample)] = 1;
+    }
+}
+
+// In both directions that are windable yet; the last refusal.
+Rejection prove_both_ways(const std::function<Rejection(PlacedCourse&)>& prove, Member& member) {
+    Rejection last = Rejection::None;
+    PlacedCourse course{member, {}};
+    for (const bool backward : {false, true}) {
+        bool& windable = backward ? member.windable_backward : member.windable_forward;
+        if (!windable) {
+            continue;
+        }
+        course.backward = backward;
+        course.member.windable_forward = !backward;
+        course.member.windable_backward = backward;
+        const Rejection rejection = prove(course);
+        windable = rejection == Rejection::None;
+        last = windable ? last : rejection;
+    }
+    if (is_windable(member)) {
+        member.footprint = std::move(course.member.footprint);
+    }
+    return last;
 }
 
 }  // namespace
@@ -172,39 +209,67 @@ ProvenWays prove_ways(std::span<const Member> members, const Ways& ways,
     return proven;
 }
 
-std::vector<std::pair<std::int32_t, Rejection>> prove_at_scarce_places(
-    std::span<Member> members, std::size_t samples,
-    const std::function<Rejection(PlacedCourse&)>& prove) {
-    std::vector<std::int32_t> passing(samples, 0);
-    for (const Member& member : members) {
-        for (const std::int32_t sample : member.footprint) {
-            ++passing[at(sample)];
+std::vector<char> ReachProver::prove(std::span<Member> members) {
+    tried_.resize(members.size(), 0);
+    refused_.clear();
+    std::vector<std::vector<std::int32_t>> passing(samples_);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        for (const std::int32_t sample : members[i].footprint) {
+            if (is_windable(members[i])) {
+                passing[at(sample)].push_back(static_cast<std::int32_t>(i));
+            }
         }
     }
-    std::vector<Rejection> found(members.size(), Rejection::None);
-    parallel_for(members.size(), 1, [&](std::size_t i, std::size_t) {
-        Member& member = members[i];
-        const bool scarce =
-            std::any_of(member.footprint.begin(), member.footprint.end(),
-                        [&](std::int32_t sample) { return passing[at(sample)] <= kScarcePassing; });
-        for (const bool backward : {false, true}) {
-            bool& windable = backward ? member.windable_backward : member.windable_forward;
-            if (!scarce || !windable) {
+    const auto reached = [&] {
+        std::vector<char> reached(samples_, 0);
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            if (tried_[i] != 0 && is_windable(members[i])) {
+                mark(members[i], reached);
+            }
+        }
+        return reached;
+    };
+    std::set<std::int32_t> scarce;
+    for (const std::vector<std::int32_t>& here : passing) {
+        if (here.size() <= kScarcePassing) {
+            scarce.insert(here.begin(), here.end());
+        }
+    }
+    prove(members, std::vector<std::int32_t>(scarce.begin(), scarce.end()));
+    for (std::size_t attempt = 0; attempt < kTriedAtPlace; ++attempt) {
+        // One for each place, but where one that is tried for another place passes as well.
+        std::vector<char> passed = reached();
+        std::vector<std::int32_t> some;
+        for (std::size_t sample = 0; sample < samples_; ++sample) {
+            const std::vector<std::int32_t>& here = passing[sample];
+            const std::size_t most = std::min(kTriedAtPlace, here.size());
+            if (passed[sample] != 0 || attempt >= most) {
                 continue;
             }
-            PlacedCourse course{member, {}, backward};
-            found[i] = prove(course);
-            windable = found[i] == Rejection::None;
+            const std::int32_t i = here[attempt * here.size() / most];
+            if (tried_[at(i)] == 0) {
+                some.push_back(i);
+                mark(members[at(i)], passed);
+            }
         }
+        prove(members, some);
+    }
+    return reached();
+}
+
+void ReachProver::prove(std::span<Member> members, std::span<const std::int32_t> some) {
+    std::vector<Rejection> found(some.size(), Rejection::None);
+    parallel_for(some.size(), 1, [&](std::size_t k, std::size_t) {
+        const std::size_t i = at(some[k]);
+        found[k] = tried_[i] == 0 ? prove_both_ways(prove_, members[i]) : Rejection::None;
     });
-    std::vector<std::pair<std::int32_t, Rejection>> refused;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        if (found[i] != Rejection::None && !members[i].windable_forward &&
-            !members[i].windable_backward) {
-            refused.emplace_back(static_cast<std::int32_t>(i), found[i]);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        const std::size_t i = at(some[k]);
+        tried_[i] = 1;
+        if (!is_windable(members[i])) {
+            refused_.emplace_back(some[k], found[k]);
         }
     }
-    return refused;
 }
 
 std::vector<LaidCourse> spare_links(std::span<const Member> members, const Ways& ways,

@@ -63,12 +63,32 @@ struct ProvenWays {
                                     const std::function<Rejection(PlacedCourse&)>& prove,
                                     const std::function<void(double share)>& progress);
 
-/// Proves the members that pass a place which few members pass, and notes for each direction that
-/// does not hold that it is not windable. \return those that hold neither way \param samples their
-/// number
-[[nodiscard]] std::vector<std::pair<std::int32_t, Rejection>> prove_at_scarce_places(
-    std::span<Member> members, std::size_t samples,
-    const std::function<Rejection(PlacedCourse&)>& prove);
+/// Which places are reached by members that hold: for each place with few members in reach all of
+/// them are proven, else one after the other until one holds, so many at most.
+class ReachProver {
+public:
+    /// \param samples their number \param prove thread-safe
+    ReachProver(std::size_t samples, std::function<Rejection(PlacedCourse&)> prove)
+        : samples_(samples), prove_(std::move(prove)) {}
+
+    /// Members that are proven have the footprint that was found, and are windable in the
+    /// directions that hold. Called again, with directions taken away or more members, it proves
+    /// what that leaves to prove. \return per sample, 1 where a member that holds passes
+    [[nodiscard]] std::vector<char> prove(std::span<Member> members);
+
+    /// Members that the last call found to hold in no direction.
+    [[nodiscard]] std::span<const std::pair<std::int32_t, Rejection>> refused() const {
+        return refused_;
+    }
+
+private:
+    void prove(std::span<Member> members, std::span<const std::int32_t> some);
+
+    std::size_t samples_;
+    std::function<Rejection(PlacedCourse&)> prove_;
+    std::vector<char> tried_;  // per member
+    std::vector<std::pair<std::int32_t, Rejection>> refused_;
+};
 
 /// The courses besides `route.links[stage]` that lead from that stage to the next, the best last:
 /// proven ones, then others.

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -18,36 +19,43 @@ std::size_t at(std::int32_t i) {
 // What samples that are bare for the same reason have in common.
 struct Reason {
     std::int32_t region = -1;
-    bool reached = false;  // by a member of the library
+    bool passed = false;  // by a member of the library
     Rejection rejection = Rejection::None;
     Refusal refusal = Refusal::None;
 
     [[nodiscard]] bool operator<(const Reason& other) const {
-        return std::tie(region, reached, rejection, refusal) <
-               std::tie(other.region, other.reached, other.rejection, other.refusal);
+        return std::tie(region, passed, rejection, refusal) <
+               std::tie(other.region, other.passed, other.rejection, other.refusal);
     }
 };
 
-// Per sample: what became of most members that pass it; None unless more were refused than not.
-std::vector<Rejection> commonest_rejections(std::size_t samples, std::span<const Member> members,
-                                            std::span<const Rejection> rejection) {
-    std::vector<std::array<std::int32_t, kRejections>> tally(samples);
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        for (const std::int32_t sample : members[i].footprint) {
+// Per sample that members pass: what became of most of them. Where one of them holds it is None
+// unless more were refused than not; where none of those tried does, the others do not count.
+std::vector<std::optional<Rejection>> commonest_rejections(const Library& library,
+                                                           std::span<const Rejection> rejection) {
+    std::vector<std::array<std::int32_t, kRejections>> tally(library.reached.size());
+    for (std::size_t i = 0; i < library.members.size(); ++i) {
+        for (const std::int32_t sample : library.members[i].footprint) {
             ++tally[at(sample)][static_cast<std::size_t>(rejection[i])];
         }
     }
-    std::vector<Rejection> commonest;
-    for (const auto& counts : tally) {
+    std::vector<std::optional<Rejection>> commonest(tally.size());
+    for (std::size_t i = 0; i < tally.size(); ++i) {
+        const auto& counts = tally[i];
         const auto most = std::max_element(counts.begin() + 1, counts.end()) - counts.begin();
         const std::int32_t refused = std::accumulate(counts.begin() + 1, counts.end(), 0);
-        commonest.push_back(counts[0] >= refused ? Rejection::None : static_cast<Rejection>(most));
+        const std::int32_t others = library.reached[i] != 0 ? counts[0] : 0;
+        if (refused > others) {
+            commonest[i] = static_cast<Rejection>(most);
+        } else if (counts[0] > 0) {
+            commonest[i] = Rejection::None;
+        }
     }
     return commonest;
 }
 
 std::string rule_of(const Reason& reason) {
-    if (!reason.reached) {
+    if (!reason.passed) {
         return reason.refusal == Refusal::None ? "no candidate was tried here"
                                                : name_of(reason.refusal);
     }
@@ -69,11 +77,11 @@ std::string so_with(const Reason& reason, int courses) {
 std::vector<Uncovered> uncovered_wall(const Surface& surface, const CoverageSamples& samples,
                                       const Library& library, std::span<const Rejection> rejection,
                                       std::span<const std::int32_t> layers) {
-    const auto commonest = commonest_rejections(samples.size(), library.members, rejection);
+    const auto commonest = commonest_rejections(library, rejection);
     const auto reason_of = [&](std::size_t sample) {
         const std::int32_t region = surface.region[at(samples.at[sample].face)];
-        return library.reached[sample] != 0
-                   ? Reason{region, true, commonest[sample], Refusal::None}
+        return commonest[sample]
+                   ? Reason{region, true, *commonest[sample], Refusal::None}
                    : Reason{region, false, Rejection::None, library.closest_miss[sample]};
     };
     std::map<Reason, double> area_mm2;

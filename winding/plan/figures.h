@@ -13,7 +13,9 @@ namespace meshwind {
 /// How the wall is covered, measured on the coverage samples.
 struct Coverage {
     double fraction = 0.0;   ///< share of the wall under at least one layer
-    double reachable = 0.0;  ///< share that an admissible course of the library passes
+    double reachable = 0.0;  ///< share that courses pass which hold
+    /// Of covers: share that courses pass which hold and which the plan's fibres can join.
+    std::optional<double> joinable{};
     double mean_layers = 0.0;
     int max_layers = 0;
     int p1_layers = 0;  ///< 99 % of the wall in reach has at least so many: the first percentile
@@ -30,6 +32,10 @@ struct FibreUse {
     double factor = 0.0;
     double turn_share = 0.0;  ///< of all fibre, what lies in turns and is cut off
 };
+
+/// Share of the wall that a pattern must cover for `auto` to take it, and of what is in reach that
+/// a plan comes near to winding it.
+inline constexpr double kCoveredShare = 0.9;
 
 /// Share of a wall in reach that may be thinner than asked for.
 inline constexpr double kMostBelow = 0.01;

@@ -28,7 +28,8 @@ struct Plan {
         0.0;  ///< largest step between the end of a piece and the start of the next
     Coverage coverage;
     std::vector<Uncovered> uncovered;
-    std::vector<char> reached;  ///< per place of a stage's ask (stage_ask.h): 1 or 0; or empty
+    std::vector<char> reached;   ///< per place of a stage's ask (stage_ask.h): 1 or 0; or empty
+    std::vector<char> joinable;  ///< of that, what the plan's fibres can join; or empty
     std::vector<double> face_layers;   ///< per face of the surface: mean layers
     std::vector<WhatIf> what_if;       ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;     ///< per rim

@@ -10,26 +10,31 @@
 namespace meshwind {
 namespace {
 
-// One face, six samples of 2 mm2: 0 is covered; 1 and 2 are passed by rejected members only; 3 by a
-// rejected and a usable one; 4 and 5 by none.
+// One face, seven samples of 2 mm2: 0 is covered; 1 and 2 are passed by rejected members only; 3 by
+// a rejected and a usable one; 4 and 5 by none; 6 by three, of which the one that was tried does
+// not hold.
 TEST(UncoveredWall, NamesWhatBecameOfMostCourses) {
     Surface surface;
     surface.region = {7};
     CoverageSamples samples;
-    samples.at.assign(6, {0, Eigen::Vector3d::Constant(1.0 / 3.0)});
+    samples.at.assign(7, {0, Eigen::Vector3d::Constant(1.0 / 3.0)});
     samples.area_mm2 = 2.0;
     Library library;
-    library.members.resize(4);
+    library.members.resize(7);
     library.members[0].footprint = {0, 1, 2};
     library.members[1].footprint = {1};
     library.members[2].footprint = {1, 2, 3};
     library.members[3].footprint = {0, 3};
-    library.reached = {1, 1, 1, 1, 0, 0};
-    library.closest_miss = {Refusal::None,  Refusal::None,     Refusal::None,
-                            Refusal::Slips, Refusal::Bridging, Refusal::None};
-    const std::vector<Rejection> rejection{Rejection::HeadHit, Rejection::Slip, Rejection::HeadHit,
-                                           Rejection::None};
-    const std::vector<std::int32_t> layers{1, 0, 0, 0, 0, 0};
+    for (std::size_t i = 4; i < 7; ++i) {
+        library.members[i].footprint = {6};
+    }
+    library.reached = {1, 1, 1, 1, 0, 0, 0};
+    library.closest_miss = {Refusal::None,     Refusal::None, Refusal::None,    Refusal::Slips,
+                            Refusal::Bridging, Refusal::None, Refusal::Bridging};
+    const std::vector<Rejection> rejection{
+        Rejection::HeadHit,    Rejection::Slip, Rejection::HeadHit, Rejection::None,
+        Rejection::FreeLength, Rejection::None, Rejection::None};
+    const std::vector<std::int32_t> layers{1, 0, 0, 0, 0, 0, 0};
     std::map<std::string, double> bare;
     for (const Uncovered& u : uncovered_wall(surface, samples, library, rejection, layers)) {
         EXPECT_EQ(u.region, 7);
@@ -38,6 +43,8 @@ TEST(UncoveredWall, NamesWhatBecameOfMostCourses) {
     const std::map<std::string, double> expected{
         {"the head would come too near (so with 2 courses that would cover it)", 4.0},
         {"a course for it would lay more fibre over covered wall than it gains", 2.0},
+        {name_of(Rejection::FreeLength) + std::string(" (so with 1 course that would cover it)"),
+         2.0},
         {name_of(Refusal::Bridging), 2.0},
         {"no candidate was tried here", 2.0}};
     EXPECT_EQ(bare, expected);
