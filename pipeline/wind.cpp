@@ -421,10 +421,10 @@ std::string tried_words(const Run& run) {
            ", extensions of " + fixed(job.mandrel.extension_mm, 0) + " mm and " +
            (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
                                        : std::string("no blend ")) +
-           percent(covered_share(run), 1) + " of the wall is covered, " +
-           (was_too_bare(run) ? "and nothing is wound"
-                              : "and " + std::to_string(failed) +
-                                    (failed == 1 ? " check fails" : " checks fail"));
+           percent(covered_share(run), 1) + " of the wall " +
+           (was_too_bare(run) ? "can be covered, and nothing is wound"
+                              : "is covered, and " + counted(failed, "check") +
+                                    (failed == 1 ? " fails" : " fail"));
 }
 
 // What the job has to say for the same run.

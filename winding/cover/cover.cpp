@@ -14,7 +14,7 @@
 #include "core/random.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
-#include "winding/cover/anneal.h"
+#include "winding/cover/cover_annealing.h"
 #include "winding/cover/fibre_routes.h"
 #include "winding/cover/grow.h"
 #include "winding/cover/join.h"
@@ -23,7 +23,6 @@
 #include "winding/cover/order_to_follow.h"
 #include "winding/cover/prove.h"
 #include "winding/cover/uncovered.h"
-#include "winding/cover/what_if.h"
 #include "winding/laminate/course_character.h"
 #include "winding/laminate/coverage.h"
 #include "winding/laminate/measure_plan.h"
@@ -31,17 +30,8 @@
 namespace meshwind {
 namespace {
 
-// Proposals of the annealing at an effort of 1, and of each that follows where courses had to be
-// given up.
-constexpr double kProposals = 30'000.0;
-constexpr std::int64_t kMendingProposals = 4'000;
-
 // Routes of so many fibres are looked for, at most.
 constexpr std::size_t kRoutesLookedFor = 9;
-
-// What a fibre too many costs where courses lead on to a stage from which none leads back: then it
-// cannot be mended by joining.
-constexpr double kDearFibre = 6.0;
 
 // So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
 // each, and without one a stage is lost.
@@ -50,18 +40,8 @@ constexpr std::size_t kMostSpares = 200;
 // Where courses reach less of the wall nothing is planned: what comes of it is no part.
 constexpr double kWorthPlanning = 0.5;
 
-// What a layer short of the target costs, of AnnealOptions: in the last stage of a wall, and in
-// those whose thin places are filled later.
-constexpr double kLastBare = 2.0;
-constexpr double kEarlyBare = 0.3;
-
 // What does not hold of the courses that fill thin places makes room for others so many times.
 constexpr int kMostFills = 10;
-
-// Courses that come of the bound are moved, but not thrown about, and keep short turns: values of
-// AnnealOptions. Its own are for a wanted winding angle, which takes other courses.
-constexpr double kStartedHot = 0.02;
-constexpr double kStartedTurnShare = 6.0;
 
 // Attempts that refuse as many courses as before, or more, before no others are put there; none are
 // before the last attempts either.
@@ -127,16 +107,24 @@ public:
         library_size_ = members_.size();
         allowed_.assign(members_.size(), 1);
         rejection_.assign(members_.size(), Rejection::None);
+        const double sketched = reached_share(library_.reached);
         library_.reached = prove_reach();
+        for (WhatIf& what_if : plan_.what_if) {  // asked of sketches
+            what_if.reachable -= sketched - reached_share(library_.reached);
+        }
         find_routes();
         joinable_ = prove_reach();
+        plan_.coverage.fraction = reached_share(joinable_);
+        if (!covers_enough()) {
+            return too_bare("the courses that the fibres can join reach only ");
+        }
         choose();
         improve();
         keep_what_winds();
+        layers_ = layers_of(courses_, samples_.size());
+        plan_.coverage = measure_coverage(layers_);
         if (!covers_enough()) {
-            return fail("courses cover only " + fixed(100.0 * plan_.coverage.fraction, 1) +
-                        " % of the wall where " + fixed(100.0 * plan_.coverage.reachable, 1) +
-                        " % is in reach");
+            return too_bare("courses cover only ");
         }
         make_it_hold();
         if (order_.empty()) {
@@ -299,26 +287,16 @@ private:
     }
 
     void anneal_proven(bool mending) {
-        AnnealOptions annealing;
+        AnnealOptions annealing = annealing_of({.last_stage = last_stage(),
+                                                .angle_wanted = options_.angle_rad.has_value(),
+                                                .spare_fibres = fibres_to_spare(),
+                                                .mending = mending,
+                                                .effort = options_.context.effort});
         annealing.select = select_;
         annealing.select.targets = stage_.weighed.layers;
         annealing.beyond_layers = stage_.beyond_layers;
-        const double bare = last_stage() ? kLastBare : kEarlyBare;
-        annealing.bare_hot *= bare;
-        annealing.bare_cold *= bare;
-        if (!options_.angle_rad) {
-            annealing.hot = kStartedHot;
-            annealing.turn_share = kStartedTurnShare;
-        }
         annealing.fibres = fibres();
-        annealing.fibre_share = fibres_to_spare() ? kDearFibre : annealing.fibre_share;
         annealing.seed = seed_of(Stream::Annealing, options_.context.seed) + (++annealings_ << 32U);
-        annealing.proposals =
-            mending ? kMendingProposals : std::llround(options_.context.effort * kProposals);
-        if (mending) {
-            annealing.hot = annealing.cold;
-            annealing.bare_hot = annealing.bare_cold;
-        }
         annealing.progress = [this](double share) { tell("anneal", share); };
         annealing.way = [this](const NodePair& nodes) { return on_a_route(nodes); };
         annealing.verify = [this, mending](PlacedCourse& course) {
@@ -441,17 +419,15 @@ private:
             static_cast<int>(followed.courses.size() - order_.size());
     }
 
-    // Whether the courses cover enough to be wound.
-    bool covers_enough() {
-        std::vector<std::int32_t> layers = layers_of(courses_, samples_.size());
-        Coverage coverage = measure_coverage(layers);
-        coverage.reachable = reached_share(library_.reached);
-        if (coverage.fraction >= options_.least_covered * coverage.reachable) {
-            return true;
-        }
-        layers_ = std::move(layers);
-        plan_.coverage = coverage;
-        return false;
+    // Enough to be wound.
+    [[nodiscard]] bool covers_enough() const {
+        return plan_.coverage.fraction >= options_.least_covered * reached_share(library_.reached);
+    }
+
+    TriedPlan too_bare(const std::string& words) {
+        plan_.coverage.reachable = reached_share(library_.reached);
+        return fail(words + percent(plan_.coverage.fraction, 1) + " of the wall where " +
+                    percent(plan_.coverage.reachable, 1) + " is in reach");
     }
 
     // Joins the courses, winds the whole, and plans again without the courses that the machine

@@ -1,4 +1,4 @@
-/// Bare wall with the reason that keeps it bare.
+/// Why wall is bare, and what looser rules would bring.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "winding/cover/grow.h"
+#include "winding/plan/plan.h"
 
 namespace meshwind {
 
@@ -18,5 +19,11 @@ namespace meshwind {
                                                     const Library& library,
                                                     std::span<const Rejection> rejection,
                                                     std::span<const std::int32_t> layers);
+
+/// What courses would reach if one rule were looser, for all rules that are worth a word, the most
+/// useful first.
+[[nodiscard]] std::vector<WhatIf> ask_what_if(const CourseRules& rules,
+                                              const CoverageSamples& samples,
+                                              const Library& library, std::uint64_t seed);
 
 }  // namespace meshwind
