@@ -53,14 +53,16 @@ CommandWords command_words(const CLI::App& app) {
 // Behind the name of a command the parser takes the program's options as well, those of the main
 // job among them: the command would not hear of them.
 void refuse_options_of_wind(const CLI::App& app, const std::string& group_of_every_command) {
-    const std::string command = app.get_subcommands().front()->get_name();
-    for (const CLI::Option* option : app.get_options()) {
-        const bool named = !option->get_positional() && option->count() > 0;
-        if (named && option->get_group() != group_of_every_command) {
-            throw InputError("cli.unknown_option", option->get_name(),
-                             "is an option of the main job and none of '" + command +
-                                 "'; see meshwind " + command + " --help");
-        }
+    const std::vector<const CLI::Option*> options = app.get_options();
+    const auto ignored = std::find_if(options.begin(), options.end(), [&](const auto* option) {
+        return !option->get_positional() && option->count() > 0 &&
+               option->get_group() != group_of_every_command;
+    });
+    if (ignored != options.end()) {
+        const std::string command = app.get_subcommands().front()->get_name();
+        throw InputError("cli.unknown_option", (*ignored)->get_name(),
+                         "belongs to the main job, '" + command +
+                             "' does not read it here; see meshwind " + command + " --help");
     }
 }
 
