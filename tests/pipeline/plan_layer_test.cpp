@@ -319,5 +319,16 @@ TEST(PlanLayer, SeedsDrawSamplesAndNothingElseOfAPattern) {
     }
 }
 
+TEST(LeastCovered, IsWhatTheFibresJoinButNotLittleOfTheReach) {
+    Coverage coverage;
+    coverage.reachable = 0.98;
+    EXPECT_DOUBLE_EQ(least_covered(coverage, 0.01), 0.97);
+    coverage.joinable = 0.95;
+    EXPECT_DOUBLE_EQ(least_covered(coverage, 0.01), 0.94);
+    coverage.joinable = 0.5;
+    EXPECT_DOUBLE_EQ(least_covered(coverage, 0.01), 0.9 * 0.98 - 0.01);
+    EXPECT_EQ(least_covered(coverage, 1.0), 0.0);
+}
+
 }  // namespace
 }  // namespace meshwind

@@ -166,6 +166,20 @@ TEST(WallStages, CountAsReachedWhatEachStageReaches) {
     EXPECT_TRUE(stages.done());  // the last one brought nothing
 }
 
+// But where the fibres join hardly anything of what is in reach.
+TEST(WallStages, CountAsReachedWhatTheFibresJoin) {
+    for (const auto& [joined, expected] : {std::pair(0.95, 0.95), {0.5, 1.0}}) {
+        WallStages stages = stages_of({.amount = {.layers = 8.0}});
+        const std::size_t places = stages.next().measured.at.size();
+        Plan plan;
+        plan.reached.assign(places, 1);
+        plan.joinable.assign(places, 0);
+        std::fill_n(plan.joinable.begin(), static_cast<std::size_t>(joined * double(places)), 1);
+        stages.enter(pipe().surface, plan);
+        EXPECT_NEAR(stages.figures().reachable, expected, 0.02);
+    }
+}
+
 TEST(WallStages, RefuseWhatIsNotThere) {
     const auto refusal = [](const WallJob& wall) {
         return test::refusal_of([&] { require_wall(pipe(), wall_job(wall), 0, "job.json"); });

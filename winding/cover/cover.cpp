@@ -109,21 +109,23 @@ public:
         rejection_.assign(members_.size(), Rejection::None);
         const double sketched = reached_share(library_.reached);
         library_.reached = prove_reach();
-        for (WhatIf& what_if : plan_.what_if) {  // asked of sketches
+        // The answers are what sketches reach: what they bring is told beside what holds.
+        for (WhatIf& what_if : plan_.what_if) {
             what_if.reachable -= sketched - reached_share(library_.reached);
         }
         find_routes();
         joinable_ = prove_reach();
-        plan_.coverage.fraction = reached_share(joinable_);
-        if (!covers_enough()) {
+        if (const double share = reached_share(joinable_); !is_enough(share)) {
+            plan_.coverage.fraction = share;
             return too_bare("the courses that the fibres can join reach only ");
         }
         choose();
         improve();
         keep_what_winds();
-        layers_ = layers_of(courses_, samples_.size());
-        plan_.coverage = measure_coverage(layers_);
-        if (!covers_enough()) {
+        if (std::vector<std::int32_t> layers = layers_of(courses_, samples_.size());
+            !is_enough(measure_coverage(layers).fraction)) {
+            layers_ = std::move(layers);
+            plan_.coverage = measure_coverage(layers_);
             return too_bare("courses cover only ");
         }
         make_it_hold();
@@ -212,7 +214,7 @@ private:
                 bool& windable = backward ? member.windable_backward : member.windable_forward;
                 windable = windable && on_a_route(nodes_of(member, backward));
             }
-            if (allowed_[i] != 0 && !member.windable_forward && !member.windable_backward) {
+            if (allowed_[i] != 0 && !is_windable(member)) {
                 strike_off(i, Rejection::Apart);
             }
         }
@@ -419,13 +421,14 @@ private:
             static_cast<int>(followed.courses.size() - order_.size());
     }
 
-    // Enough to be wound.
-    [[nodiscard]] bool covers_enough() const {
-        return plan_.coverage.fraction >= options_.least_covered * reached_share(library_.reached);
+    // Whether a plan that covers so much is wound.
+    [[nodiscard]] bool is_enough(double share) const {
+        return share >= options_.least_covered * reached_share(library_.reached);
     }
 
     TriedPlan too_bare(const std::string& words) {
         plan_.coverage.reachable = reached_share(library_.reached);
+        plan_.coverage.joinable = reached_share(joinable_);
         return fail(words + percent(plan_.coverage.fraction, 1) + " of the wall where " +
                     percent(plan_.coverage.reachable, 1) + " is in reach");
     }

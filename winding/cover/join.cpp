@@ -87,7 +87,7 @@ bool CourseJoiner::take_proven(const JoinTask& task, std::span<const LaidCourse>
         }
         Member& member = task.members[number];
         (laid[i].backward ? member.windable_backward : member.windable_forward) = false;
-        if (!member.windable_forward && !member.windable_backward && task.allowed[number] != 0) {
+        if (!is_windable(member) && task.allowed[number] != 0) {
             task.strike_off(number, found[i]);
         }
     }

@@ -274,7 +274,7 @@ Refusal judge(const CourseRules& rules, const Candidate& candidate,
     }
     course.windable_forward = is_windable(rules, followed, false);
     course.windable_backward = is_windable(rules, followed, true);
-    if (!course.windable_forward && !course.windable_backward) {
+    if (!is_windable(course)) {
         return Refusal::NotWindable;
     }
     course.footprint = rules.footprints.footprint(followed.path, scratch);
@@ -332,7 +332,7 @@ Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
     course.windable_forward =
         is_windable(rules, sketch.path, taut_string(sketch.path), kSketchStep_mm);
     course.windable_backward = is_windable(rules, back, taut_string(back), kSketchStep_mm);
-    if (!course.windable_forward && !course.windable_backward) {
+    if (!is_windable(course)) {
         return Refusal::NotWindable;
     }
     course.footprint = rules.footprints.footprint(sketch.path, scratch);

@@ -68,10 +68,6 @@ bool leads_backward(const Member& member, const NodePair& nodes) {
     return !(member.windable_forward && nodes_of(member, false) == nodes);
 }
 
-bool is_windable(const Member& member) {
-    return member.windable_forward || member.windable_backward;
-}
-
 void mark(const Member& member, std::vector<char>& reached) {
     for (const std::int32_t sample : member.footprint) {
         reached[at(sample)] = 1;
@@ -88,8 +84,6 @@ Rejection prove_both_ways(const std::function<Rejection(PlacedCourse&)>& prove, 
             continue;
         }
         course.backward = backward;
-        course.member.windable_forward = !backward;
-        course.member.windable_backward = backward;
         const Rejection rejection = prove(course);
         windable = rejection == Rejection::None;
         last = windable ? last : rejection;
@@ -212,33 +206,29 @@ ProvenWays prove_ways(std::span<const Member> members, const Ways& ways,
 std::vector<char> ReachProver::prove(std::span<Member> members) {
     tried_.resize(members.size(), 0);
     refused_.clear();
+    std::vector<char> reached(samples_, 0);
     std::vector<std::vector<std::int32_t>> passing(samples_);
     for (std::size_t i = 0; i < members.size(); ++i) {
+        if (!is_windable(members[i])) {
+            continue;
+        }
         for (const std::int32_t sample : members[i].footprint) {
-            if (is_windable(members[i])) {
-                passing[at(sample)].push_back(static_cast<std::int32_t>(i));
-            }
+            passing[at(sample)].push_back(static_cast<std::int32_t>(i));
+        }
+        if (tried_[i] != 0) {
+            mark(members[i], reached);
         }
     }
-    const auto reached = [&] {
-        std::vector<char> reached(samples_, 0);
-        for (std::size_t i = 0; i < members.size(); ++i) {
-            if (tried_[i] != 0 && is_windable(members[i])) {
-                mark(members[i], reached);
-            }
-        }
-        return reached;
-    };
     std::set<std::int32_t> scarce;
     for (const std::vector<std::int32_t>& here : passing) {
         if (here.size() <= kScarcePassing) {
             scarce.insert(here.begin(), here.end());
         }
     }
-    prove(members, std::vector<std::int32_t>(scarce.begin(), scarce.end()));
+    try_out(members, std::vector<std::int32_t>(scarce.begin(), scarce.end()), reached);
     for (std::size_t attempt = 0; attempt < kTriedAtPlace; ++attempt) {
         // One for each place, but where one that is tried for another place passes as well.
-        std::vector<char> passed = reached();
+        std::vector<char> passed = reached;
         std::vector<std::int32_t> some;
         for (std::size_t sample = 0; sample < samples_; ++sample) {
             const std::vector<std::int32_t>& here = passing[sample];
@@ -252,12 +242,13 @@ std::vector<char> ReachProver::prove(std::span<Member> members) {
                 mark(members[at(i)], passed);
             }
         }
-        prove(members, some);
+        try_out(members, some, reached);
     }
-    return reached();
+    return reached;
 }
 
-void ReachProver::prove(std::span<Member> members, std::span<const std::int32_t> some) {
+void ReachProver::try_out(std::span<Member> members, std::span<const std::int32_t> some,
+                          std::vector<char>& reached) {
     std::vector<Rejection> found(some.size(), Rejection::None);
     parallel_for(some.size(), 1, [&](std::size_t k, std::size_t) {
         const std::size_t i = at(some[k]);
@@ -266,7 +257,9 @@ void ReachProver::prove(std::span<Member> members, std::span<const std::int32_t>
     for (std::size_t k = 0; k < some.size(); ++k) {
         const std::size_t i = at(some[k]);
         tried_[i] = 1;
-        if (!is_windable(members[i])) {
+        if (is_windable(members[i])) {
+            mark(members[i], reached);
+        } else {
             refused_.emplace_back(some[k], found[k]);
         }
     }

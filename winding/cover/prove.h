@@ -63,8 +63,8 @@ struct ProvenWays {
                                     const std::function<Rejection(PlacedCourse&)>& prove,
                                     const std::function<void(double share)>& progress);
 
-/// Which places are reached by members that hold: for each place with few members in reach all of
-/// them are proven, else one after the other until one holds, so many at most.
+/// Which places are reached by members that hold: at a place that few members pass all of
+/// them are proven, elsewhere one after the other until one holds, so many at most.
 class ReachProver {
 public:
     /// \param samples their number \param prove thread-safe
@@ -82,7 +82,8 @@ public:
     }
 
 private:
-    void prove(std::span<Member> members, std::span<const std::int32_t> some);
+    void try_out(std::span<Member> members, std::span<const std::int32_t> some,
+                 std::vector<char>& reached);
 
     std::size_t samples_;
     std::function<Rejection(PlacedCourse&)> prove_;

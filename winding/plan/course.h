@@ -35,6 +35,11 @@ struct Member {
     std::vector<std::int32_t> footprint;  ///< coverage samples
 };
 
+/// In one direction at least.
+[[nodiscard]] inline bool is_windable(const Member& member) {
+    return member.windable_forward || member.windable_backward;
+}
+
 /// A candidate as the walk over the facets sees it: a first opinion, many times as fast as judge().
 struct Sketch {
     Member course;     ///< windable neither way until that is looked into

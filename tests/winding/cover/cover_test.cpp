@@ -226,11 +226,13 @@ TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
             .plan;
     const std::string reason = name_of(Rejection::AxisTravel);
     EXPECT_NE(plan.failure.find(reason), std::string::npos) << plan.failure;
-    const auto by_the_machine = static_cast<double>(
-        plan.effort.rejections[static_cast<std::size_t>(Rejection::AxisTravel)]);
-    EXPECT_GT(by_the_machine, 0.99 * static_cast<double>(plan.effort.rejected_courses))
-        << "a few sketches do not hold before it is asked";
-    EXPECT_GT(plan.effort.rejected_courses, 0);
+    const auto refused = [&](Rejection why) {
+        return plan.effort.rejections[static_cast<std::size_t>(why)];
+    };
+    // A few sketches do not hold before the machine is asked.
+    EXPECT_EQ(refused(Rejection::AxisTravel) + refused(Rejection::Path),
+              plan.effort.rejected_courses);
+    EXPECT_GT(refused(Rejection::AxisTravel), 100 * refused(Rejection::Path));
     EXPECT_TRUE(plan.pieces.empty());
     double bare_mm2 = 0.0;
     for (const Uncovered& u : plan.uncovered) {
@@ -251,6 +253,7 @@ CoverOptions few_courses() {
     options.rounds = 1;
     options.aimed_candidates = 500;
     options.scarce_candidates = 500;
+    options.context.effort = kQuick;
     return options;
 }
 
@@ -281,6 +284,24 @@ void expect_no_course_steeper(const Plan& plan, double limit, Rejection reason) 
             EXPECT_LE(steepness(piece), limit);
         }
     }
+}
+
+// Before anything is chosen, and when what was chosen is not laid as planned by its own program.
+TEST(PlanCover, IsGivenUpWhereItCannotCoverEnough) {
+    CoverOptions options = few_courses();
+    options.least_covered = 0.5;
+    test::AnyMachine machine;
+    machine.alone_rule = [](std::span<const Piece>) { return Rejection::Laydown; };
+    const Plan lost = cover_cylinder(options, &machine);
+    EXPECT_NE(lost.failure.find("courses cover only"), std::string::npos) << lost.failure;
+    EXPECT_LT(lost.coverage.fraction, 0.5);
+    EXPECT_GT(lost.coverage.reachable, 0.9);
+    EXPECT_TRUE(lost.pieces.empty());
+    options.least_covered = 1.1;
+    const Plan none = cover_cylinder(options);
+    EXPECT_NE(none.failure.find("can join reach only"), std::string::npos) << none.failure;
+    EXPECT_EQ(none.effort.proposals, 0);
+    EXPECT_GT(none.coverage.fraction, 0.9);
 }
 
 TEST(PlanCover, KeepsOnlyCoursesWhoseOwnProgramHolds) {
