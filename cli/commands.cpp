@@ -31,6 +31,7 @@
 #include "pipeline/check_controller.h"
 #include "pipeline/load_inputs.h"
 #include "pipeline/run_names.h"
+#include "pipeline/trials/trials.h"
 #include "pipeline/verify_text.h"
 #include "pipeline/wind.h"
 #include "postproc/nc/dialect.h"

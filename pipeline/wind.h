@@ -74,17 +74,7 @@ struct Run {
 [[nodiscard]] Run wind(Mandrel mandrel, const Machine& machine, const Job& job,
                        const WindOptions& options = {});
 
-/// The job's mandrel, read with the blend that the job has.
+/// The job's mandrel, read with the blend that the job has: for tries (trials/trials.h).
 using MandrelOf = std::function<Mandrel(const Job& job)>;
-
-/// The same, reading the mandrel. Where checks fail, and the plan says that more fibres or longer
-/// extensions would reach more of the wall, and the job does not give them, it is done again with
-/// those. Where the job's blend is yet to be chosen, all is done with no blend and with ever wider
-/// ones. A cover that covers most and fails is planned again with the next seeds. The first run
-/// that passes every check stands, else the one that covers most; tries that cover too little to
-/// pass end before they are wound. What each came to is among the remarks. \throws as wind() and
-/// `mandrel`
-[[nodiscard]] Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
-                       const WindOptions& options = {});
 
 }  // namespace meshwind

@@ -125,8 +125,8 @@ Key<Job::MandrelJob> blend_key() {
     };
     return {"blend",
             "mm, radius of a ball: crotches and steps that it cannot touch are filled up smoothly; "
-            "the part has to be made so. auto: wind tries none, then one to four tow widths, "
-            "and takes the first with which every check passes",
+            "the part has to be made so. auto: none where that does, else the smallest of one to "
+            "four tow widths with which fibre reaches nearly as much as with any",
             or_word(kAutoWord, number_schema(kCutRange)), read, text};
 }
 

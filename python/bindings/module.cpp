@@ -24,6 +24,7 @@
 #include "core/version.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "pipeline/load_inputs.h"
+#include "pipeline/trials/trials.h"
 #include "pipeline/verify_text.h"
 #include "python/bindings/bindings.h"
 #include "report/report_study.h"

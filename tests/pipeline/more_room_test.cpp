@@ -1,5 +1,5 @@
 // What a job is loosened by follows from what the plan says, and from what the job leaves open.
-#include "pipeline/more_room.h"
+#include "pipeline/trials/more_room.h"
 
 #include <gtest/gtest.h>
 

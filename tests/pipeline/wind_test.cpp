@@ -16,6 +16,7 @@
 #include "core/units.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/shapes/make_kinds.h"
+#include "pipeline/trials/trials.h"
 #include "pipeline/verify_text.h"
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
@@ -113,6 +114,31 @@ TEST(Wind, GoesOnWhereABlendCannotBeMade) {
     const auto run = wind(mandrel, shipped("six_axis"), job);
     EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
     EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+}
+
+TEST(Wind, LooksAtBlendsBeforeItWindsOne) {
+    // A tee with too little friction for its branch; blends give a pipe, at last.
+    Job job = quick_job(LayerKind::Cover);
+    job.tow.friction = 0.05;
+    job.mandrel.blend_mm.reset();
+    job.mandrel.extension_given = true;
+    job.fibres_given = true;
+    std::vector<double> asked_mm;
+    const auto mandrel = [&](const Job& asked) {
+        asked_mm.push_back(asked.mandrel.blend_mm.value());
+        if (asked_mm.back() == 0.0) {
+            return build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee");
+        }
+        if (asked_mm.back() < 3.0 * kPipeTow_mm) {
+            throw InputError("mesh.no_blend", "tee", "cannot be blended");
+        }
+        return small_pipe();
+    };
+    const auto run = wind(mandrel, shipped("six_axis"), job, {.context = {.effort = kQuick}});
+    EXPECT_EQ(asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm, 3.0 * kPipeTow_mm,
+                                             3.0 * kPipeTow_mm}));
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 3.0 * kPipeTow_mm);
 }
 
 TEST(Wind, DoesNotWindACoverThatIsTooBare) {

@@ -1,4 +1,4 @@
-#include "pipeline/more_room.h"
+#include "pipeline/trials/more_room.h"
 
 #include <algorithm>
 #include <vector>

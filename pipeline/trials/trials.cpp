@@ -1,0 +1,337 @@
+#include "pipeline/trials/trials.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/counted.h"
+#include "core/error.h"
+#include "core/text/text_number.h"
+#include "pipeline/plan_layer.h"
+#include "pipeline/trials/more_room.h"
+#include "postproc/verify/check_kinds.h"
+
+namespace meshwind {
+namespace {
+
+// Radii of the blends that are looked at where it is yet to be chosen, in tow widths.
+constexpr std::array kBlendsInTows{1.0, 2.0, 3.0, 4.0};
+
+// To the micrometre: a few digits then name them.
+constexpr double kBlendsPerMm = 1000.0;
+
+// Under so much of the wall a larger blend is looked for, although the plan can be wound.
+constexpr double kWellCovered = 0.95;
+
+// With so much in reach of the fibres no larger one is looked for: a hundredth of it stays bare.
+constexpr double kWellInReach = 0.96;
+
+// No plan covers so many times what courses reach: one that has to is never wound.
+constexpr double kNeverEnough = 2.0;
+
+// More fibres and longer extensions are tried so many times at most.
+constexpr int kMostMends = 2;
+
+// A cover of less of what courses reach does not fail by chance. What does is planned with so many
+// seeds at most, and with fewer where other blends, fibres and extensions are tried too.
+constexpr double kCoversMost = 0.75;
+constexpr std::uint64_t kMostSeeds = 3;
+constexpr std::uint64_t kSeedsOfTries = 2;
+
+// By so much of the wall covers with two seeds differ; by .2 % mostly.
+constexpr double kSeedsDiffer = 0.005;
+
+// More fibres or a larger blend cover so much more of the wall, or they are not worth it.
+constexpr double kWorthMore = 0.005;
+
+// Of what courses reach: what fibres can join has to be, or no plan covers kCoveredShare of it.
+// What is planned later to join the courses covers no more than .02 on top.
+constexpr double kLeastReach = kCoveredShare - 0.02;
+
+const Plan& first_plan(const Run& run) {
+    return run.layers.front().plan;
+}
+
+double covered_share(const Run& run) {
+    return first_plan(run).coverage.fraction;
+}
+
+// Share of the wall that fibres could join, as many as the job may take.
+double can_cover(const Run& run) {
+    const std::vector<double>& reach = first_plan(run).reach_of_fibres;
+    const Job& job = run.layers.front().setup.job;
+    if (reach.empty()) {
+        return covered_share(run);
+    }
+    const std::size_t fibres =
+        job.fibres_given ? static_cast<std::size_t>(job.fibres) : reach.size();
+    return reach[std::min(fibres, reach.size()) - 1];
+}
+
+// A cover that was too bare to be wound (WindOptions::least_covered).
+bool was_too_bare(const Run& run) {
+    const Plan& plan = first_plan(run);
+    return plan.planner == Planner::Cover && !plan.failure.empty() && plan.coverage.fraction > 0.0;
+}
+
+bool stands(const Run& run) {
+    return run.planned() && run.passed();
+}
+
+// Each fibre is a stop of the machine, a blend another shape than the file's.
+bool asks_more(const Run& run, const Run& than) {
+    const auto blend_mm = [](const Run& of) {
+        return of.layers.front().setup.job.mandrel.blend_mm.value_or(0.0);
+    };
+    return first_plan(run).fibres > first_plan(than).fibres || blend_mm(run) > blend_mm(than);
+}
+
+bool is_better(const Run& run, const Run& than) {
+    if (stands(run) != stands(than)) {
+        return stands(run);
+    }
+    if (run.planned() != than.planned()) {
+        return run.planned();
+    }
+    const double worth = stands(run) && asks_more(run, than) ? kWorthMore : 0.0;
+    return covered_share(run) > covered_share(than) + worth;
+}
+
+// A cover that is wound, covers most of what it can, and fails: courses that the machine refuses
+// in their places, which another choice of courses has elsewhere, leave wall bare or fail
+// themselves. What fails for bare wall alone does so by chance where little lacks.
+bool fails_by_chance(const Run& run) {
+    const Plan& plan = first_plan(run);
+    if (plan.planner != Planner::Cover || !run.walls.empty() || !run.planned() || run.passed()) {
+        return false;
+    }
+    const bool covers_alone = std::all_of(
+        run.checks.begin(), run.checks.end(),
+        [](const Check& check) { return check.ok || check.name == check_kind::kCoverage.name; });
+    const double bare = run.layers.front().setup.job.tolerance.bare;
+    return plan.coverage.fraction >= (covers_alone
+                                          ? least_covered(plan.coverage, bare) - kSeedsDiffer
+                                          : kCoversMost * plan.coverage.reachable);
+}
+
+// "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
+std::string tried_words(const Run& run) {
+    const Job& job = run.layers.front().setup.job;
+    const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
+                                      [](const Check& check) { return !check.ok; });
+    return "with " + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
+           ", extensions of " + fixed(job.mandrel.extension_mm, 0) + " mm and " +
+           (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
+                                       : std::string("no blend ")) +
+           percent(covered_share(run), 1) + " of the wall " +
+           (was_too_bare(run) ? "can be covered, and nothing is wound"
+                              : "is covered, and " + counted(failed, "check") +
+                                    (failed == 1 ? " fails" : " fail"));
+}
+
+// What the job has to say for the same run.
+std::string settings_words(const Job& job) {
+    std::string words = "--set fibres=" + std::to_string(job.fibres) + " --set mandrel.extension=";
+    append_shortest(words, job.mandrel.extension_mm);
+    if (job.mandrel.blend_mm > 0.0) {
+        words += " --set mandrel.blend=";
+        append_shortest(words, *job.mandrel.blend_mm);
+    }
+    return words;
+}
+
+// Runs of the main job on one file, of which the best stands.
+class Trials {
+public:
+    Trials(const MandrelOf& mandrel, const Machine& machine, const WindOptions& options)
+        : mandrel_(mandrel), machine_(machine), options_(options) {}
+
+    /// Reach: no cover is wound, it is said what of the wall can be covered.
+    enum class Depth { Full, WhereItCovers, Reach };
+
+    /// Once, and where that fails by chance and nothing stands with the next seeds. \throws as
+    /// wind() does for the first job
+    void run(const Job& job, Depth depth) {
+        const std::uint64_t seeds = best_ && done()        ? 1
+                                    : depth == Depth::Full ? kMostSeeds
+                                                           : kSeedsOfTries;
+        by_chance_ = true;
+        for (std::uint64_t k = 0; by_chance_ && k < seeds; ++k) {
+            try {
+                take(once(job, depth, options_.context.seed + k));
+            } catch (const InputError& error) {
+                if (!best_) {
+                    throw;
+                }
+                note_refused(job, error);
+                return;  // of no use for what stands
+            }
+        }
+    }
+
+    /// Without a blend; where that does not do, with the smallest that lets the fibres reach
+    /// most of the wall, or nearly as much as any.
+    void choose_blend(const Job& job) {
+        run(blended(job, 0.0), Depth::WhereItCovers);
+        if (done() && covers_well()) {
+            return;
+        }
+        const bool was_done = done();
+        const double before = was_done ? can_cover(*best_) + kWorthMore : 0.0;
+        double most = before;
+        std::vector<Look> looks;
+        for (const double widths : kBlendsInTows) {
+            Look& look = looks.emplace_back(Look{blended(job, widths), most});
+            if (most < kWellInReach) {
+                look.share = look_at(look.job);
+                most = std::max(most, look.share);
+            }
+            if (done() && !was_done) {
+                return;
+            }
+        }
+        for (const Look& look : looks) {
+            if (look.share > before && look.share >= most - kWorthMore) {
+                run(look.job, Depth::WhereItCovers);
+                if (done()) {
+                    return;
+                }
+            }
+        }
+    }
+
+    // More room for the best run, and for what comes of it.
+    void mend() {
+        next_ = room_for(*best_);
+        for (int mend = 0; mend < kMostMends && next_; ++mend) {
+            run(*std::exchange(next_, std::nullopt), Depth::WhereItCovers);
+        }
+    }
+
+    [[nodiscard]] Run best() && {
+        if (tried_.size() > 1) {
+            options_.context.report_remark(tried_.back());
+            tried_.push_back(
+                "what stands is the job with " + settings_words(best_->layers.front().setup.job) +
+                (best_->seed == options_.context.seed ? ""
+                                                      : " --seed " + std::to_string(best_->seed)));
+            options_.context.report_remark(tried_.back());
+            best_->remarks.insert(best_->remarks.end(), tried_.begin(), tried_.end());
+        }
+        return *std::move(best_);
+    }
+
+private:
+    [[nodiscard]] bool done() const { return stands(*best_); }
+
+    // Patterns cover what they are meant to, lattices little.
+    [[nodiscard]] bool covers_well() const {
+        return first_plan(*best_).planner != Planner::Cover ||
+               covered_share(*best_) >= kWellCovered;
+    }
+
+    static Job blended(Job job, double widths) {
+        job.mandrel.blend_mm = std::round(kBlendsPerMm * widths * job.tow.width_mm) / kBlendsPerMm;
+        return job;
+    }
+
+    // A blend, and what of the wall fibres can join with it.
+    struct Look {
+        Job job;
+        double share = 0.0;
+    };
+
+    // Share of the wall that fibres can join; 0 where it cannot be enough. Where one fibre cannot
+    // do the job gets as many as can.
+    [[nodiscard]] double look_at(Job& job) {
+        try {
+            Run look = once(job, Depth::Reach, options_.context.seed);
+            const Plan& plan = first_plan(look);
+            const double least = kLeastReach * plan.coverage.reachable;
+            double share = 0.0;
+            if (was_too_bare(look) && can_cover(look) >= least) {
+                share = can_cover(look);
+                if (plan.coverage.joinable < least) {
+                    job = more_fibres(job, plan).value_or(job);
+                }
+            }
+            take(std::move(look));
+            return share;
+        } catch (const InputError& error) {
+            note_refused(job, error);
+            return 0.0;
+        }
+    }
+
+    void note_refused(const Job& job, const InputError& error) {
+        tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
+    }
+
+    static std::optional<Job> room_for(const Run& run) {
+        const Job& job = run.layers.front().setup.job;
+        return stands(run) ? more_fibres(job, first_plan(run)) : more_room(job, first_plan(run));
+    }
+
+    void take(Run&& run) {
+        tried_.push_back(tried_words(run) + (run.seed == options_.context.seed
+                                                 ? ""
+                                                 : ", with seed " + std::to_string(run.seed)));
+        next_ = room_for(run);
+        by_chance_ = fails_by_chance(run);
+        if (!best_ || is_better(run, *best_)) {
+            best_ = std::move(run);
+        }
+    }
+
+    [[nodiscard]] Run once(const Job& job, Depth depth, std::uint64_t seed) {
+        if (!tried_.empty()) {
+            options_.context.report_remark(tried_.back());
+        }
+        const auto begun = std::chrono::steady_clock::now();
+        Mandrel read = mandrel_(job);
+        WindOptions options = options_;
+        options.context.remark = [this](const std::string& words) {
+            if (said_.insert(words).second) {
+                options_.context.report_remark(words);
+            }
+        };
+        options.context.seed = seed;
+        options.least_covered = depth == Depth::Full    ? 0.0
+                                : depth == Depth::Reach ? kNeverEnough
+                                                        : kLeastReach;
+        options.reading_s +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        return wind(std::move(read), machine_, job, options);
+    }
+
+    const MandrelOf& mandrel_;
+    const Machine& machine_;
+    const WindOptions& options_;
+    std::optional<Run> best_;
+    std::optional<Job> next_;  // that may mend the last run that was wound
+    bool by_chance_ = false;   // did that fail
+    std::set<std::string> said_;
+    std::vector<std::string> tried_;
+};
+
+}  // namespace
+
+Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
+         const WindOptions& options) {
+    Trials trials(mandrel, machine, options);
+    if (job.mandrel.blend_mm || options.import) {
+        trials.run(job, Trials::Depth::Full);
+    } else {
+        trials.choose_blend(job);
+    }
+    trials.mend();
+    return std::move(trials).best();
+}
+
+}  // namespace meshwind
