@@ -249,7 +249,7 @@ bool plan_and_judge_again(const Shape& shape, std::uint64_t seed) {
     options.free_fibre.clearance_mm = kClearance_mm;
     options.free_fibre.start_mm = 2.0 * mandrel.surface.mean_edge_mm;
     options.context.seed = seed;
-    options.context.effort = 0.2;  // the rules do not depend on it
+    options.context.effort = 0.05;  // the rules do not depend on it
     options.candidates = 3000;
     options.rounds = 1;
     options.aimed_candidates = 1000;
