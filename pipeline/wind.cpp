@@ -1,11 +1,8 @@
 #include "pipeline/wind.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <set>
 #include <utility>
 
 #include "core/counted.h"
@@ -21,7 +18,6 @@
 #include "pipeline/check_controller.h"
 #include "pipeline/code_digest.h"
 #include "pipeline/part_words.h"
-#include "pipeline/plan_layer.h"
 #include "pipeline/run_names.h"
 #include "postproc/verify/check_kinds.h"
 #include "winding/laminate/build_up.h"
