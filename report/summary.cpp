@@ -109,7 +109,7 @@ std::string words_of(const WhatIf& what_if, const WoundLayer& layer) {
         case WhatIf::Rule::Extension:
             return looser("an", job.mandrel.extension_mm, " mm");
         case WhatIf::Rule::Pins:
-            return "with turns on pins (\"turn\": \"pins\")";
+            return "with turns on pins (\"turn\": \"pins\", which do with shorter extensions)";
     }
     return {};
 }
