@@ -50,8 +50,8 @@ constexpr double kSeedsDiffer = 0.005;
 // More fibres or a larger blend cover so much more of the wall, or they are not worth it.
 constexpr double kWorthMore = 0.005;
 
-// Of what courses reach: what fibres can join has to be, or no plan covers kCoveredShare of it.
-// What is planned later to join the courses covers no more than .02 on top.
+// Share of what courses reach that fibres have to be able to join: a plan has to cover
+// kCoveredShare of it, and what is planned later to join the courses covers .02 on top at most.
 constexpr double kLeastReach = kCoveredShare - 0.02;
 
 const Plan& first_plan(const Run& run) {
@@ -215,6 +215,9 @@ public:
     }
 
     [[nodiscard]] Run best() && {
+        if (options_.force && was_too_bare(*best_)) {  // whose program is asked for all the same
+            best_ = once(Job(best_->layers.front().setup.job), Depth::Full, best_->seed);
+        }
         if (tried_.size() > 1) {
             options_.context.report_remark(tried_.back());
             tried_.push_back(

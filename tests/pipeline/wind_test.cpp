@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -21,15 +20,19 @@
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
 #include "postproc/verify/check_kinds.h"
+#include "tests/support/run_checks.h"
 #include "tests/support/small_pipe.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
+using test::check_of;
+using test::failed_checks;
 using test::kPipeLength_mm;
 using test::kPipeRadius_mm;
 using test::kPipeTow_mm;
+using test::quick_job;
 using test::Refused;
 using test::shipped;
 using test::small_pipe;
@@ -40,32 +43,6 @@ constexpr double kOnWall_mm = 0.01;
 // Of covers: what is asked here does not depend on how long they are improved.
 constexpr double kQuick = 0.1;
 
-const Check& check_of(const Run& run, const std::string& name) {
-    for (const Check& check : run.checks) {
-        if (check.name == name) {
-            return check;
-        }
-    }
-    throw std::out_of_range(name);
-}
-
-std::vector<std::string> failed_checks(const Run& run) {
-    std::vector<std::string> failed;
-    for (const Check& check : run.checks) {
-        if (!check.ok) {
-            failed.push_back(check.name);
-        }
-    }
-    return failed;
-}
-
-// Without the search for the motion of least time, which takes as long as all else.
-Job quick_job(LayerKind kind = LayerKind::Helical) {
-    Job job = test::pipe_job(kind);
-    job.redundancy = RedundancyRule::CentralAngle;
-    return job;
-}
-
 Machine with_carriage_to(double end_mm) {
     Machine machine = shipped("six_axis");
     machine.eye_chain[0].min = -end_mm;
@@ -75,70 +52,6 @@ Machine with_carriage_to(double end_mm) {
 
 std::string path_table(const WoundLayer& layer) {
     return path_csv(layer.plan.pieces, layer.programs.front().made.eyes.path);
-}
-
-// A tee, on which no helix can be wound, until the blend is two tow widths wide; from then on a
-// pipe.
-Run wind_with_blend(const std::optional<double>& blend_mm, std::vector<double>& asked_mm) {
-    const auto mandrel = [&](const Job& asked) {
-        asked_mm.push_back(asked.mandrel.blend_mm.value());
-        return asked_mm.back() < 2.0 * kPipeTow_mm
-                   ? build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee")
-                   : small_pipe();
-    };
-    Job job = quick_job();
-    job.mandrel.blend_mm = blend_mm;
-    return wind(mandrel, shipped("six_axis"), job);
-}
-
-TEST(Wind, TriesWiderBlendsUntilEveryCheckPasses) {
-    std::vector<double> asked_mm;
-    const auto run = wind_with_blend(std::nullopt, asked_mm);
-    EXPECT_EQ(asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm}));
-    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
-    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
-    EXPECT_GE(run.remarks.size(), 3U);
-}
-
-TEST(Wind, GoesOnWhereABlendCannotBeMade) {
-    const auto mandrel = [](const Job& asked) {
-        if (asked.mandrel.blend_mm == kPipeTow_mm) {
-            throw InputError("mesh.no_blend", "pipe", "cannot be blended");
-        }
-        return asked.mandrel.blend_mm == 0.0
-                   ? build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee")
-                   : small_pipe();
-    };
-    Job job = quick_job();
-    job.mandrel.blend_mm.reset();
-    const auto run = wind(mandrel, shipped("six_axis"), job);
-    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
-    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
-}
-
-TEST(Wind, LooksAtBlendsBeforeItWindsOne) {
-    // A tee with too little friction for its branch; blends give a pipe, at last.
-    Job job = quick_job(LayerKind::Cover);
-    job.tow.friction = 0.05;
-    job.mandrel.blend_mm.reset();
-    job.mandrel.extension_given = true;
-    job.fibres_given = true;
-    std::vector<double> asked_mm;
-    const auto mandrel = [&](const Job& asked) {
-        asked_mm.push_back(asked.mandrel.blend_mm.value());
-        if (asked_mm.back() == 0.0) {
-            return build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee");
-        }
-        if (asked_mm.back() < 3.0 * kPipeTow_mm) {
-            throw InputError("mesh.no_blend", "tee", "cannot be blended");
-        }
-        return small_pipe();
-    };
-    const auto run = wind(mandrel, shipped("six_axis"), job, {.context = {.effort = kQuick}});
-    EXPECT_EQ(asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm, 3.0 * kPipeTow_mm,
-                                             3.0 * kPipeTow_mm}));
-    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
-    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 3.0 * kPipeTow_mm);
 }
 
 TEST(Wind, DoesNotWindACoverThatIsTooBare) {
@@ -152,35 +65,6 @@ TEST(Wind, DoesNotWindACoverThatIsTooBare) {
     EXPECT_GE(plan.coverage.reachable, plan.coverage.fraction);
     EXPECT_TRUE(plan.pieces.empty());
     EXPECT_TRUE(run.layers.front().programs.empty());
-}
-
-TEST(Wind, PlansACoverThatFailsAgainWithTheNextSeeds) {
-    Job job = quick_job(LayerKind::Cover);
-    job.tolerance.laydown_mm = 0.01;
-    job.tolerance.laydown_angle_deg = 0.001;  // finer than any program keeps
-    job.fibres_given = true;
-    job.mandrel.extension_given = true;
-    job.mandrel.blend_mm = 0.0;
-    int asked = 0;
-    const auto mandrel = [&](const Job&) {
-        ++asked;
-        return small_pipe();
-    };
-    const auto run =
-        wind(mandrel, shipped("six_axis"), job, {.context = {.seed = 7, .effort = kQuick}});
-    EXPECT_EQ(asked, 3);
-    EXPECT_FALSE(check_of(run, "laydown").ok);
-    EXPECT_NEAR(check_of(run, "coverage").numbers.at("limit"),
-                run.layers.front().plan.coverage.reachable - job.tolerance.bare, 1e-12);
-    EXPECT_TRUE(std::any_of(run.remarks.begin(), run.remarks.end(), [](const std::string& words) {
-        return words.find("seed 9") != std::string::npos;
-    }));
-}
-
-TEST(Wind, TakesTheBlendThatTheJobHas) {
-    std::vector<double> asked_mm;
-    EXPECT_FALSE(wind_with_blend(kPipeTow_mm, asked_mm).passed());
-    EXPECT_EQ(asked_mm, std::vector<double>{kPipeTow_mm});
 }
 
 TEST(Wind, OnlyTheMainJobChoosesABlend) {

@@ -35,6 +35,13 @@ inline Job pipe_job(LayerKind kind = LayerKind::Helical) {
     return job;
 }
 
+/// The same without the search for the motion of least time, which takes as long as all else.
+inline Job quick_job(LayerKind kind = LayerKind::Helical) {
+    Job job = pipe_job(kind);
+    job.redundancy = RedundancyRule::CentralAngle;
+    return job;
+}
+
 /// A machine as it is shipped in machines/.
 inline Machine shipped(const std::string& name) {
     return load_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/" + name + ".json");

@@ -1,0 +1,150 @@
+// The main job on a mandrel's file: which tries it makes, and which of them stands.
+#include "pipeline/trials/trials.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "mesh/mandrel/load_mandrel.h"
+#include "mesh/shapes/make_kinds.h"
+#include "tests/support/run_checks.h"
+#include "tests/support/small_pipe.h"
+
+namespace meshwind {
+namespace {
+
+using test::check_of;
+using test::failed_checks;
+using test::kPipeTow_mm;
+using test::quick_job;
+using test::shipped;
+using test::small_pipe;
+
+// Of covers: what is asked here does not depend on how long they are improved.
+constexpr double kQuick = 0.1;
+
+// A tee, on which no helix can be wound, until the blend is two tow widths wide; from then on a
+// pipe.
+Run wind_with_blend(const std::optional<double>& blend_mm, std::vector<double>& asked_mm) {
+    const auto mandrel = [&](const Job& asked) {
+        asked_mm.push_back(asked.mandrel.blend_mm.value());
+        return asked_mm.back() < 2.0 * kPipeTow_mm
+                   ? build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee")
+                   : small_pipe();
+    };
+    Job job = quick_job();
+    job.mandrel.blend_mm = blend_mm;
+    return wind(mandrel, shipped("six_axis"), job);
+}
+
+TEST(Trials, TriesWiderBlendsUntilEveryCheckPasses) {
+    std::vector<double> asked_mm;
+    const auto run = wind_with_blend(std::nullopt, asked_mm);
+    EXPECT_EQ(asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm}));
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+    EXPECT_GE(run.remarks.size(), 3U);
+}
+
+TEST(Trials, GoesOnWhereABlendCannotBeMade) {
+    const auto mandrel = [](const Job& asked) {
+        if (asked.mandrel.blend_mm == kPipeTow_mm) {
+            throw InputError("mesh.no_blend", "pipe", "cannot be blended");
+        }
+        return asked.mandrel.blend_mm == 0.0
+                   ? build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee")
+                   : small_pipe();
+    };
+    Job job = quick_job();
+    job.mandrel.blend_mm.reset();
+    const auto run = wind(mandrel, shipped("six_axis"), job);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+}
+
+// A cover of a tee with too little friction for its branch; blends cannot be made, but the widest
+// give a pipe.
+struct BareTee {
+    Job job = quick_job(LayerKind::Cover);
+    double pipe_from_mm;
+    std::vector<double> asked_mm{};
+
+    explicit BareTee(double pipe_from_mm) : pipe_from_mm(pipe_from_mm) {
+        job.tow.friction = 0.05;
+        job.mandrel.blend_mm.reset();
+        job.mandrel.extension_given = true;
+        job.fibres_given = true;
+    }
+
+    [[nodiscard]] meshwind::Run wound(bool force) {
+        const auto mandrel = [&](const Job& asked) {
+            asked_mm.push_back(asked.mandrel.blend_mm.value());
+            if (asked_mm.back() == 0.0) {
+                return build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee");
+            }
+            if (asked_mm.back() < pipe_from_mm) {
+                throw InputError("mesh.no_blend", "tee", "cannot be blended");
+            }
+            return small_pipe();
+        };
+        return wind(mandrel, shipped("six_axis"), job,
+                    {.context = {.effort = kQuick}, .force = force});
+    }
+};
+
+TEST(Trials, LooksAtBlendsBeforeItWindsOne) {
+    BareTee tee(3.0 * kPipeTow_mm);
+    const meshwind::Run run = tee.wound(false);
+    EXPECT_EQ(tee.asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm,
+                                                 3.0 * kPipeTow_mm, 3.0 * kPipeTow_mm}));
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 3.0 * kPipeTow_mm);
+}
+
+// What is too bare is wound by force alone.
+TEST(Trials, WindsWhatIsTooBareByForce) {
+    for (const bool force : {false, true}) {
+        BareTee tee(1000.0);
+        const meshwind::Run run = tee.wound(force);
+        EXPECT_FALSE(run.passed());
+        EXPECT_EQ(run.planned(), force);
+        EXPECT_EQ(run.usable, force);
+        EXPECT_EQ(tee.asked_mm.size(), force ? 6U : 5U);
+    }
+}
+
+TEST(Trials, PlansACoverThatFailsAgainWithTheNextSeeds) {
+    Job job = quick_job(LayerKind::Cover);
+    job.tolerance.laydown_mm = 0.01;
+    job.tolerance.laydown_angle_deg = 0.001;  // finer than any program keeps
+    job.fibres_given = true;
+    job.mandrel.extension_given = true;
+    job.mandrel.blend_mm = 0.0;
+    int asked = 0;
+    const auto mandrel = [&](const Job&) {
+        ++asked;
+        return small_pipe();
+    };
+    const auto run =
+        wind(mandrel, shipped("six_axis"), job, {.context = {.seed = 7, .effort = kQuick}});
+    EXPECT_EQ(asked, 3);
+    EXPECT_FALSE(check_of(run, "laydown").ok);
+    EXPECT_NEAR(check_of(run, "coverage").numbers.at("limit"),
+                run.layers.front().plan.coverage.reachable - job.tolerance.bare, 1e-12);
+    EXPECT_TRUE(std::any_of(run.remarks.begin(), run.remarks.end(), [](const std::string& words) {
+        return words.find("seed 9") != std::string::npos;
+    }));
+}
+
+TEST(Trials, TakesTheBlendThatTheJobHas) {
+    std::vector<double> asked_mm;
+    EXPECT_FALSE(wind_with_blend(kPipeTow_mm, asked_mm).passed());
+    EXPECT_EQ(asked_mm, std::vector<double>{kPipeTow_mm});
+}
+
+}  // namespace
+}  // namespace meshwind
