@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
 
@@ -44,10 +46,6 @@ constexpr double kIdleShare = 1e-6;
 
 constexpr std::size_t kNoEdge = 3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Barycentric coordinate i, or its rate where `constant` is 0.
 double bary(const Vector2d& uv, std::size_t i, double constant) {

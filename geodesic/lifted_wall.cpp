@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "mesh/smooth/patch.h"
 
@@ -33,10 +34,6 @@ constexpr double kLeastShare = 0.2;
 constexpr double kOver = 2.0;
 
 constexpr std::size_t kChunk = 1024;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 struct Facet {
     Vector3d normal;

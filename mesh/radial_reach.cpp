@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr double kLeastHeight_mm = 1e-3;
 constexpr double kRounding = 1e-12;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::size_t at(std::ptrdiff_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

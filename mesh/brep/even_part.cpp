@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <cstdio>
+#include "core/index.h"
 #include "mesh/edge_table.h"
 #include "mesh/even/even_mesh.h"
 #include "mesh/even/slivers.h"
@@ -40,10 +41,6 @@ constexpr double kLeftOut = 1e-5;
 // them is known exactly all the same.
 constexpr double kMostTurn_rad = 0.7;
 constexpr double kGrading = 0.35;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 LabelledMesh labelled(const TriangleSoup& soup, std::span<const std::int32_t> face) {
     LabelledMesh part{soup, {face.begin(), face.end()}, {}};

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "mesh/edge_table.h"
 #include "mesh/smooth/freeze.h"
 
@@ -20,10 +21,6 @@ using Eigen::Vector3d;
 // Where both sides of a border turn along an edge by the same but for this angle, they are as good
 // as one surface: a fit across is off by a hundredth of a millimetre on edges of 50 mm.
 constexpr double kSameBend_rad = 1e-3;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Equal bits: the vertices have been copied, not computed again.
 struct PlaceHash {

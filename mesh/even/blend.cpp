@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "mesh/edge_table.h"
 #include "mesh/even/even_mesh.h"
@@ -33,15 +34,11 @@ constexpr double kLeastEdge = 0.01;
 // Share of the wall in uneven triangles that a blended wall may have.
 constexpr double kMostNarrow = 5e-3;
 
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 // Faces of the part that are wall, in their order: the faces of its frozen wall.
 std::vector<std::int32_t> wall_faces(const LabelledMesh& part, const std::vector<char>& kept) {
     std::vector<std::int32_t> faces;
     for (std::size_t f = 0; f < part.region.size(); ++f) {
-        if (kept[at_index(part.region[f])] != 0) {
+        if (kept[at(part.region[f])] != 0) {
             faces.push_back(static_cast<std::int32_t>(f));
         }
     }
@@ -62,25 +59,24 @@ void join_over(LabelledMesh& part, const std::vector<char>& kept,
     std::vector<std::int32_t> same(kept.size());
     std::iota(same.begin(), same.end(), 0);
     const auto first_of = [&](std::int32_t region) {
-        while (same[at_index(region)] != region) {
-            region = same[at_index(region)];
+        while (same[at(region)] != region) {
+            region = same[at(region)];
         }
         return region;
     };
     for (std::size_t f = 0; f < part.region.size(); ++f) {
         for (std::size_t e = 0; e < 3; ++e) {
             const std::int32_t g = neighbours[f][e];
-            if (g < 0 || kept[at_index(part.region[f])] == 0 ||
-                kept[at_index(part.region[at_index(g)])] == 0) {
+            if (g < 0 || kept[at(part.region[f])] == 0 || kept[at(part.region[at(g)])] == 0) {
                 continue;
             }
-            if (blended[f] != 0 || blended[at_index(g)] != 0) {
+            if (blended[f] != 0 || blended[at(g)] != 0) {
                 part.feature[f][e] = 0;
             }
             if (part.feature[f][e] == 0) {
                 const std::int32_t one = first_of(part.region[f]);
-                const std::int32_t other = first_of(part.region[at_index(g)]);
-                same[at_index(std::max(one, other))] = std::min(one, other);
+                const std::int32_t other = first_of(part.region[at(g)]);
+                same[at(std::max(one, other))] = std::min(one, other);
             }
         }
     }
@@ -92,9 +88,8 @@ void join_over(LabelledMesh& part, const std::vector<char>& kept,
 double volume_mm3(const TriangleSoup& soup) {
     double volume = 0.0;
     for (const auto& [a, b, c] : soup.faces) {
-        volume += soup.points_mm[at_index(a)].dot(
-                      soup.points_mm[at_index(b)].cross(soup.points_mm[at_index(c)])) /
-                  6.0;
+        volume +=
+            soup.points_mm[at(a)].dot(soup.points_mm[at(b)].cross(soup.points_mm[at(c)])) / 6.0;
     }
     return volume;
 }
@@ -109,13 +104,13 @@ WallSoup wall_soup(const LabelledMesh& part, const std::vector<std::int32_t>& fa
     WallSoup wall;
     std::vector<std::int32_t> number(part.soup.points_mm.size(), -1);
     for (const std::int32_t f : faces) {
-        std::array<std::int32_t, 3> face = part.soup.faces[at_index(f)];
+        std::array<std::int32_t, 3> face = part.soup.faces[at(f)];
         for (std::int32_t& v : face) {
-            std::int32_t& n = number[at_index(v)];
+            std::int32_t& n = number[at(v)];
             if (n < 0) {
                 n = static_cast<std::int32_t>(wall.point.size());
                 wall.point.push_back(v);
-                wall.soup.points_mm.push_back(part.soup.points_mm[at_index(v)]);
+                wall.soup.points_mm.push_back(part.soup.points_mm[at(v)]);
             }
             v = n;
         }
@@ -131,11 +126,11 @@ std::vector<char> free_points(const TriangleSoup& wall, const std::vector<char>&
     for (std::size_t f = 0; f < wall.faces.size(); ++f) {
         for (std::size_t e = 0; e < 3; ++e) {
             if (blended[f] == 0) {
-                free[at_index(wall.faces[f][e])] = 0;
+                free[at(wall.faces[f][e])] = 0;
             }
             if (neighbours[f][e] < 0) {
-                free[at_index(wall.faces[f][e])] = 0;
-                free[at_index(wall.faces[f][(e + 1) % 3])] = 0;
+                free[at(wall.faces[f][e])] = 0;
+                free[at(wall.faces[f][(e + 1) % 3])] = 0;
             }
         }
     }
@@ -150,7 +145,7 @@ LabelledMesh fine_near(const LabelledMesh& part, const std::vector<char>& kept, 
     for (std::size_t f = 0; f < out.size(); ++f) {
         for (const std::int32_t v : wall.face[f]) {
             if (out[f] != 0) {
-                options.most_mm[at_index(v)] = std::min(options.longest_mm, kEdge * radius_mm);
+                options.most_mm[at(v)] = std::min(options.longest_mm, kEdge * radius_mm);
             }
         }
     }
@@ -194,13 +189,13 @@ Blend blend_wall(const LabelledMesh& part, const std::vector<char>& kept, double
     result.volume_mm3 = volume_mm3(filled.soup) - before;
     std::vector<char> blended_of_part(fine.soup.faces.size(), 0);
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        blended_of_part[at_index(faces[i])] = blended[i];
+        blended_of_part[at(faces[i])] = blended[i];
         if (blended[i] != 0) {
             result.area_mm2 += area_mm2(filled.soup.points_mm, filled.soup.faces[i]);
         }
     }
     for (std::size_t v = 0; v < filled.point.size(); ++v) {
-        fine.soup.points_mm[at_index(filled.point[v])] = filled.soup.points_mm[v];
+        fine.soup.points_mm[at(filled.point[v])] = filled.soup.points_mm[v];
     }
     join_over(fine, kept, blended_of_part);
     check_interrupt();

@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "mesh/edge_table.h"
 #include "mesh/even/enclosed_places.h"
@@ -53,20 +54,14 @@ constexpr int kMostFits = 6;
 // Faces are added around vertices where an outline touches itself so many times at most.
 constexpr int kMostMends = 4;
 
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 Vector3d normal_of(const TriangleSoup& soup, const std::array<std::int32_t, 3>& face) {
-    const Vector3d& a = soup.points_mm[at_index(face[0])];
-    return (soup.points_mm[at_index(face[1])] - a)
-        .cross(soup.points_mm[at_index(face[2])] - a)
-        .normalized();
+    const Vector3d& a = soup.points_mm[at(face[0])];
+    return (soup.points_mm[at(face[1])] - a).cross(soup.points_mm[at(face[2])] - a).normalized();
 }
 
 Vector3d middle_of(const TriangleSoup& soup, const std::array<std::int32_t, 3>& face) {
-    return (soup.points_mm[at_index(face[0])] + soup.points_mm[at_index(face[1])] +
-            soup.points_mm[at_index(face[2])]) /
+    return (soup.points_mm[at(face[0])] + soup.points_mm[at(face[1])] +
+            soup.points_mm[at(face[2])]) /
            3.0;
 }
 
@@ -82,9 +77,9 @@ std::vector<BorderEdge> border_of(const Neighbours& neighbours,
                                   const std::set<std::int32_t>& gone) {
     std::vector<BorderEdge> border;
     for (const std::int32_t f : gone) {
-        for (const std::int32_t g : neighbours[at_index(f)]) {
+        for (const std::int32_t g : neighbours[at(f)]) {
             if (g >= 0 && gone.count(g) == 0) {
-                border.push_back({g, shared_edge(neighbours[at_index(g)], f)});
+                border.push_back({g, shared_edge(neighbours[at(g)], f)});
             }
         }
     }
@@ -103,7 +98,7 @@ public:
           around_(part.soup.points_mm.size()) {
         for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
             for (const std::int32_t v : part.soup.faces[f]) {
-                around_[at_index(v)].push_back(static_cast<std::int32_t>(f));
+                around_[at(v)].push_back(static_cast<std::int32_t>(f));
             }
         }
     }
@@ -115,7 +110,7 @@ public:
     void take_off(std::set<std::int32_t> gone, double least_mm, double height_mm,
                   Details& details) {
         const bool alone = std::all_of(gone.begin(), gone.end(), [&](std::int32_t f) {
-            return struck_[at_index(f)] == 0 && !beside_struck(f);
+            return struck_[at(f)] == 0 && !beside_struck(f);
         });
         std::optional<Hole> hole = alone ? hole_of(gone) : std::nullopt;
         if (!hole) {
@@ -155,7 +150,7 @@ public:
         const auto take = [&](std::array<std::int32_t, 3> face, std::int32_t region,
                               const std::array<std::uint8_t, 3>& feature) {
             for (std::int32_t& v : face) {
-                std::int32_t& n = number[at_index(v)];
+                std::int32_t& n = number[at(v)];
                 if (n < 0) {
                     n = static_cast<std::int32_t>(result.soup.points_mm.size());
                     result.soup.points_mm.push_back(point(v));
@@ -182,11 +177,10 @@ public:
                 const std::int32_t g = neighbours[f][e];
                 if (g >= 0) {
                     const auto crease =
-                        static_cast<std::uint8_t>(result.region[at_index(g)] != result.region[f]);
-                    const int back =
-                        shared_edge(neighbours[at_index(g)], static_cast<std::int32_t>(f));
+                        static_cast<std::uint8_t>(result.region[at(g)] != result.region[f]);
+                    const int back = shared_edge(neighbours[at(g)], static_cast<std::int32_t>(f));
                     result.feature[f][e] = crease;
-                    result.feature[at_index(g)][at_index(back)] = crease;
+                    result.feature[at(g)][at(back)] = crease;
                 }
             }
         }
@@ -213,21 +207,20 @@ private:
 
     [[nodiscard]] const Vector3d& point(std::int32_t v) const {
         const std::size_t given = part_.soup.points_mm.size();
-        return at_index(v) < given ? part_.soup.points_mm[at_index(v)]
-                                   : new_points_[at_index(v) - given];
+        return at(v) < given ? part_.soup.points_mm[at(v)] : new_points_[at(v) - given];
     }
 
     [[nodiscard]] bool beside_struck(std::int32_t f) const {
-        const auto& next = neighbours_[at_index(f)];
+        const auto& next = neighbours_[at(f)];
         return std::any_of(next.begin(), next.end(),
-                           [&](std::int32_t g) { return g >= 0 && struck_[at_index(g)] != 0; });
+                           [&](std::int32_t g) { return g >= 0 && struck_[at(g)] != 0; });
     }
 
     [[nodiscard]] std::size_t edge_from(const BorderEdge& e) const {
-        return at_index(part_.soup.faces[at_index(e.face)][at_index(e.edge)]);
+        return at(part_.soup.faces[at(e.face)][at(e.edge)]);
     }
     [[nodiscard]] std::size_t edge_to(const BorderEdge& e) const {
-        return at_index(part_.soup.faces[at_index(e.face)][at_index((e.edge + 1) % 3)]);
+        return at(part_.soup.faces[at(e.face)][at((e.edge + 1) % 3)]);
     }
 
     // Adds the faces around vertices that the outline passes twice. False where that goes on, or
@@ -237,8 +230,7 @@ private:
             std::map<std::size_t, int> passes;
             const std::vector<BorderEdge> border = border_of(neighbours_, gone);
             for (const BorderEdge& e : border) {
-                if (kept_[at_index(part_.region[at_index(e.face)])] == 0 ||
-                    struck_[at_index(e.face)] != 0) {
+                if (kept_[at(part_.region[at(e.face)])] == 0 || struck_[at(e.face)] != 0) {
                     return false;
                 }
                 ++passes[edge_from(e)];
@@ -248,8 +240,7 @@ private:
                 if (times > 1) {
                     simple = false;
                     for (const std::int32_t f : around_[v]) {
-                        if (kept_[at_index(part_.region[at_index(f)])] == 0 ||
-                            struck_[at_index(f)] != 0) {
+                        if (kept_[at(part_.region[at(f)])] == 0 || struck_[at(f)] != 0) {
                             return false;
                         }
                         gone.insert(f);
@@ -271,7 +262,7 @@ private:
         for (const BorderEdge& e : border) {
             const double mm =
                 (part_.soup.points_mm[edge_to(e)] - part_.soup.points_mm[edge_from(e)]).norm();
-            length_mm[part_.region[at_index(e.face)]] += mm;
+            length_mm[part_.region[at(e.face)]] += mm;
             whole += mm;
         }
         for (const auto& [region, mm] : length_mm) {
@@ -305,7 +296,7 @@ private:
         std::set<std::int32_t> ring;
         for (const BorderEdge& e : border) {
             for (const std::int32_t f : around_[edge_from(e)]) {
-                if (gone.count(f) == 0 && struck_[at_index(f)] == 0) {
+                if (gone.count(f) == 0 && struck_[at(f)] == 0) {
                     ring.insert(f);
                 }
             }
@@ -314,13 +305,13 @@ private:
         TriangleSoup soup;
         std::map<std::int32_t, std::int32_t> local;
         for (const std::int32_t f : ring) {
-            std::array<std::int32_t, 3> face = part_.soup.faces[at_index(f)];
+            std::array<std::int32_t, 3> face = part_.soup.faces[at(f)];
             for (std::int32_t& v : face) {
                 const auto [found, fresh] =
                     local.emplace(v, static_cast<std::int32_t>(fill.number.size()));
                 if (fresh) {
                     fill.number.push_back(v);
-                    soup.points_mm.push_back(part_.soup.points_mm[at_index(v)]);
+                    soup.points_mm.push_back(part_.soup.points_mm[at(v)]);
                 }
                 v = found->second;
             }
@@ -366,7 +357,7 @@ private:
             std::vector<RuledFacet> facets;
             for (const std::int32_t f : around) {
                 if (off.count(f) == 0) {
-                    const auto& face = part_.soup.faces[at_index(f)];
+                    const auto& face = part_.soup.faces[at(f)];
                     vertices.insert(face.begin(), face.end());
                     facets.push_back({middle_of(part_.soup, face), normal_of(part_.soup, face),
                                       area_mm2(part_.soup.points_mm, face)});
@@ -375,7 +366,7 @@ private:
             std::vector<Vector3d> points;
             points.reserve(vertices.size());
             for (const std::int32_t v : vertices) {
-                points.push_back(part_.soup.points_mm[at_index(v)]);
+                points.push_back(part_.soup.points_mm[at(v)]);
             }
             const std::optional<RuledShape> shape = fit_ruled_shape(points, facets);
             if (!shape) {
@@ -385,8 +376,8 @@ private:
                 return Ground{*shape, std::move(off)};
             }
             for (const std::int32_t f : around) {
-                for (const std::int32_t v : part_.soup.faces[at_index(f)]) {
-                    if (shape->distance_mm(part_.soup.points_mm[at_index(v)]) >
+                for (const std::int32_t v : part_.soup.faces[at(f)]) {
+                    if (shape->distance_mm(part_.soup.points_mm[at(v)]) >
                         0.5 * shape->residual_mm) {
                         off.insert(f);
                     }
@@ -418,10 +409,10 @@ private:
         for (int ring = 0; ring < kRings; ++ring) {
             std::set<std::int32_t> next;
             for (const std::int32_t v : rim) {
-                for (const std::int32_t f : around_[at_index(v)]) {
-                    if (part_.region[at_index(f)] == hole.region && gone.count(f) == 0 &&
-                        struck_[at_index(f)] == 0 && faces.insert(f).second) {
-                        const auto& face = part_.soup.faces[at_index(f)];
+                for (const std::int32_t f : around_[at(v)]) {
+                    if (part_.region[at(f)] == hole.region && gone.count(f) == 0 &&
+                        struck_[at(f)] == 0 && faces.insert(f).second) {
+                        const auto& face = part_.soup.faces[at(f)];
                         next.insert(face.begin(), face.end());
                     }
                 }
@@ -436,8 +427,8 @@ private:
                                      const std::set<std::int32_t>& gone) const {
         double most = 0.0;
         for (const std::int32_t f : gone) {
-            for (const std::int32_t v : part_.soup.faces[at_index(f)]) {
-                most = std::max(most, ground.distance_mm(part_.soup.points_mm[at_index(v)]));
+            for (const std::int32_t v : part_.soup.faces[at(f)]) {
+                most = std::max(most, ground.distance_mm(part_.soup.points_mm[at(v)]));
             }
         }
         return most;
@@ -448,8 +439,8 @@ private:
         const double reach = diagonal_mm(part_.soup);
         double most = 0.0;
         for (const std::int32_t f : gone) {
-            for (const std::int32_t v : part_.soup.faces[at_index(f)]) {
-                const Vector3d& p = part_.soup.points_mm[at_index(v)];
+            for (const std::int32_t v : part_.soup.faces[at(f)]) {
+                const Vector3d& p = part_.soup.points_mm[at(v)];
                 most = std::max(most, query.closest(p, reach).distance_mm);
             }
         }
@@ -463,11 +454,11 @@ private:
         double flanks = 0.0;
         double all = 0.0;
         for (const std::int32_t f : gone) {
-            const auto& face = part_.soup.faces[at_index(f)];
+            const auto& face = part_.soup.faces[at(f)];
             const ClosestPoint under = query.closest(middle_of(part_.soup, face), reach);
             const double area = area_mm2(part_.soup.points_mm, face);
             all += area;
-            if (normal_of(part_.soup, face).dot(normal_of(fill, fill.faces[at_index(under.face)])) <
+            if (normal_of(part_.soup, face).dot(normal_of(fill, fill.faces[at(under.face)])) <
                 kFlankCosine) {
                 flanks += area;
             }
@@ -479,13 +470,12 @@ private:
     [[nodiscard]] bool turns(const std::vector<BorderEdge>& border, double near_mm) const {
         for (std::size_t i = 0; i < border.size(); ++i) {
             const Vector3d& p = part_.soup.points_mm[edge_from(border[i])];
-            const Vector3d normal =
-                normal_of(part_.soup, part_.soup.faces[at_index(border[i].face)]);
+            const Vector3d normal = normal_of(part_.soup, part_.soup.faces[at(border[i].face)]);
             for (std::size_t j = 0; j < i; ++j) {
                 const bool near =
                     (part_.soup.points_mm[edge_from(border[j])] - p).norm() <= near_mm;
                 if (near &&
-                    normal.dot(normal_of(part_.soup, part_.soup.faces[at_index(border[j].face)])) <
+                    normal.dot(normal_of(part_.soup, part_.soup.faces[at(border[j].face)])) <
                         kAroundCosine) {
                     return true;
                 }
@@ -496,11 +486,11 @@ private:
 
     void strike(const std::set<std::int32_t>& gone, Details& details) {
         for (const std::int32_t f : gone) {
-            struck_[at_index(f)] = 1;
-            std::array<std::int32_t, 3> face = part_.soup.faces[at_index(f)];
+            struck_[at(f)] = 1;
+            std::array<std::int32_t, 3> face = part_.soup.faces[at(f)];
             details.area_mm2 += area_mm2(part_.soup.points_mm, face);
             for (std::int32_t& v : face) {
-                details.removed.points_mm.push_back(part_.soup.points_mm[at_index(v)]);
+                details.removed.points_mm.push_back(part_.soup.points_mm[at(v)]);
                 v = static_cast<std::int32_t>(details.removed.points_mm.size()) - 1;
             }
             details.removed.faces.push_back(face);
@@ -518,7 +508,7 @@ private:
         }
         for (std::array<std::int32_t, 3> face : fill.faces.faces) {
             for (std::int32_t& v : face) {
-                v = number[at_index(v)];
+                v = number[at(v)];
             }
             new_faces_.push_back(face);
             new_region_.push_back(region);
@@ -544,7 +534,7 @@ Details without_details(const LabelledMesh& part, const std::vector<char>& kept,
     Work work(part, kept, ball_mm);
     std::vector<std::int32_t> face;  // of the part, per face of the wall
     for (std::size_t f = 0; f < part.region.size(); ++f) {
-        if (kept[at_index(part.region[f])] != 0) {
+        if (kept[at(part.region[f])] != 0) {
             face.push_back(static_cast<std::int32_t>(f));
         }
     }
@@ -558,7 +548,7 @@ Details without_details(const LabelledMesh& part, const std::vector<char>& kept,
             check_interrupt();
             std::set<std::int32_t> gone;
             for (const std::int32_t f : place) {
-                gone.insert(face[at_index(f)]);
+                gone.insert(face[at(f)]);
             }
             work.take_off(std::move(gone), least_mm, height_mm, details);
         }

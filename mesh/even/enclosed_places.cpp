@@ -6,14 +6,11 @@
 #include <span>
 #include <utility>
 
+#include "core/index.h"
 #include "mesh/edge_table.h"
 
 namespace meshwind {
 namespace {
-
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // The wall's faces split into parts that hang together, each marked or not.
 struct Places {
@@ -47,17 +44,17 @@ Places places_of(const TriangleSoup& wall, std::span<const std::array<std::int32
             for (const std::int32_t g : neighbours[f]) {
                 if (g < 0) {
                     places.at_end.back() = 1;
-                } else if (marked[at_index(g)] == marked[seed] && places.place[at_index(g)] < 0) {
-                    places.place[at_index(g)] = id;
-                    stack.push_back(at_index(g));
+                } else if (marked[at(g)] == marked[seed] && places.place[at(g)] < 0) {
+                    places.place[at(g)] = id;
+                    stack.push_back(at(g));
                 }
             }
         }
     }
     for (std::size_t f = 0; f < marked.size(); ++f) {
         for (const std::int32_t g : neighbours[f]) {
-            if (g >= 0 && places.place[at_index(g)] != places.place[f]) {
-                places.beside[at_index(places.place[f])].insert(places.place[at_index(g)]);
+            if (g >= 0 && places.place[at(g)] != places.place[f]) {
+                places.beside[at(places.place[f])].insert(places.place[at(g)]);
             }
         }
     }
@@ -68,22 +65,22 @@ Places places_of(const TriangleSoup& wall, std::span<const std::array<std::int32
 // place itself, reaches an end or takes too much of the wall.
 std::set<std::int32_t> enclosed_by(const Places& places, std::int32_t place, double most_mm2) {
     std::vector<char> reached(places.marked.size(), 0);
-    reached[at_index(place)] = 1;
+    reached[at(place)] = 1;
     std::vector<std::vector<std::int32_t>> parts;
     std::size_t largest = 0;
     double largest_mm2 = 0.0;
-    for (const std::int32_t seed : places.beside[at_index(place)]) {
-        if (reached[at_index(seed)] != 0) {
+    for (const std::int32_t seed : places.beside[at(place)]) {
+        if (reached[at(seed)] != 0) {
             continue;
         }
-        reached[at_index(seed)] = 1;
+        reached[at(seed)] = 1;
         std::vector<std::int32_t> part{seed};
         double area = 0.0;
         for (std::size_t i = 0; i < part.size(); ++i) {
-            area += places.area_mm2[at_index(part[i])];
-            for (const std::int32_t other : places.beside[at_index(part[i])]) {
-                if (reached[at_index(other)] == 0) {
-                    reached[at_index(other)] = 1;
+            area += places.area_mm2[at(part[i])];
+            for (const std::int32_t other : places.beside[at(part[i])]) {
+                if (reached[at(other)] == 0) {
+                    reached[at(other)] = 1;
                     part.push_back(other);
                 }
             }
@@ -102,8 +99,8 @@ std::set<std::int32_t> enclosed_by(const Places& places, std::int32_t place, dou
     }
     double area = 0.0;
     for (const std::int32_t id : detail) {
-        area += places.area_mm2[at_index(id)];
-        if (places.at_end[at_index(id)] != 0) {
+        area += places.area_mm2[at(id)];
+        if (places.at_end[at(id)] != 0) {
             return {};
         }
     }
@@ -121,7 +118,7 @@ std::vector<std::vector<std::int32_t>> enclosed_places(const TriangleSoup& wall,
     }
     std::vector<std::vector<std::int32_t>> faces(places.marked.size());
     for (std::size_t f = 0; f < places.place.size(); ++f) {
-        faces[at_index(places.place[f])].push_back(static_cast<std::int32_t>(f));
+        faces[at(places.place[f])].push_back(static_cast<std::int32_t>(f));
     }
     const double most_mm2 = most_share * area_mm2(wall);
     std::vector<std::vector<std::int32_t>> found;
@@ -132,7 +129,7 @@ std::vector<std::vector<std::int32_t>> enclosed_places(const TriangleSoup& wall,
         std::vector<std::int32_t> all;
         for (const std::int32_t one :
              enclosed_by(places, static_cast<std::int32_t>(id), most_mm2)) {
-            all.insert(all.end(), faces[at_index(one)].begin(), faces[at_index(one)].end());
+            all.insert(all.end(), faces[at(one)].begin(), faces[at(one)].end());
         }
         if (!all.empty()) {
             std::sort(all.begin(), all.end());

@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "mesh/even/wall_surface.h"
@@ -40,10 +41,6 @@ constexpr double kMostGrowthFaces = 1000.0;
 
 constexpr std::size_t kProjectChunk = 256;
 
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 // Wanted edge length per vertex of the surface: by curvature, growing slowly from short to long.
 std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& options) {
     const std::vector<double> curvature = vertex_curvatures_per_mm(surface);
@@ -62,8 +59,8 @@ std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& opti
     std::vector<std::vector<std::int32_t>> next(size.size());
     for (const auto& face : surface.face) {
         for (std::size_t e = 0; e < 3; ++e) {
-            next[at_index(face[e])].push_back(face[(e + 1) % 3]);
-            next[at_index(face[e])].push_back(face[(e + 2) % 3]);
+            next[at(face[e])].push_back(face[(e + 1) % 3]);
+            next[at(face[e])].push_back(face[(e + 2) % 3]);
         }
     }
     for (std::size_t v = 0; v < size.size(); ++v) {
@@ -72,15 +69,14 @@ std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& opti
     while (!queue.empty()) {
         const auto [reached, v] = queue.top();
         queue.pop();
-        if (reached > size[at_index(v)]) {
+        if (reached > size[at(v)]) {
             continue;
         }
-        for (const std::int32_t w : next[at_index(v)]) {
-            const double way =
-                (surface.position_mm[at_index(w)] - surface.position_mm[at_index(v)]).norm();
+        for (const std::int32_t w : next[at(v)]) {
+            const double way = (surface.position_mm[at(w)] - surface.position_mm[at(v)]).norm();
             const double allowed = reached + options.grading * way;
-            if (allowed < size[at_index(w)]) {
-                size[at_index(w)] = allowed;
+            if (allowed < size[at(w)]) {
+                size[at(w)] = allowed;
                 queue.emplace(allowed, w);
             }
         }
@@ -91,8 +87,7 @@ std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& opti
 double triangles_of(const Surface& surface, const std::vector<double>& size_mm) {
     double count = 0.0;
     for (const auto& v : surface.face) {
-        const double size =
-            (size_mm[at_index(v[0])] + size_mm[at_index(v[1])] + size_mm[at_index(v[2])]) / 3.0;
+        const double size = (size_mm[at(v[0])] + size_mm[at(v[1])] + size_mm[at(v[2])]) / 3.0;
         count += area_mm2(surface.position_mm, v) / (kEquilateral * size * size);
     }
     return count;
@@ -163,7 +158,7 @@ private:
         double size = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
             size += foot.bary[static_cast<Eigen::Index>(c)] *
-                    size_of_surface_[at_index(surface_.face[at_index(foot.face)][c])];
+                    size_of_surface_[at(surface_.face[at(foot.face)][c])];
         }
         return size;
     }
@@ -189,12 +184,12 @@ private:
             if (!work_.is_wall(face)) {
                 continue;
             }
-            const auto& corners = part.soup.faces[at_index(face.idx())];
+            const auto& corners = part.soup.faces[at(face.idx())];
             const auto start = std::find(corners.begin(), corners.end(),
                                          work_.mesh.from_vertex_handle(half).idx());
             const auto e = static_cast<std::int32_t>(start - corners.begin());
-            return {wall_face_[at_index(face.idx())], e,
-                    work_.mesh.from_vertex_handle(half) != from, work_.length(edge)};
+            return {wall_face_[at(face.idx())], e, work_.mesh.from_vertex_handle(half) != from,
+                    work_.length(edge)};
         }
         return {};
     }
@@ -236,14 +231,14 @@ private:
         for (const Vertex v : work_.mesh.vertices()) {
             if (place(v).kind == Place::Kind::Fixed) {
                 for (const Edge first : work_.mesh.ve_range(v)) {
-                    if (work_.is_line(first) && used[at_index(first.idx())] == 0) {
+                    if (work_.is_line(first) && used[at(first.idx())] == 0) {
                         chain_from(part, v, first, used);
                     }
                 }
             }
         }
         for (const Edge edge : work_.mesh.edges()) {  // what is left closes without a corner
-            if (work_.is_line(edge) && used[at_index(edge.idx())] == 0) {
+            if (work_.is_line(edge) && used[at(edge.idx())] == 0) {
                 const Vertex start =
                     work_.mesh.from_vertex_handle(work_.mesh.halfedge_handle(edge, 0));
                 place(start).kind = Place::Kind::Fixed;
@@ -267,13 +262,13 @@ private:
         std::vector<Vertex> vertices{start};
         std::vector<Edge> edges;
         for (Edge edge = first; edge.is_valid();) {
-            used[at_index(edge.idx())] = 1;
+            used[at(edge.idx())] = 1;
             edges.push_back(edge);
             vertices.push_back(other_end(edge, vertices.back()));
             edge = Edge();
             if (place(vertices.back()).kind == Place::Kind::OnLine) {
                 for (const Edge around : work_.mesh.ve_range(vertices.back())) {
-                    if (work_.is_line(around) && used[at_index(around.idx())] == 0) {
+                    if (work_.is_line(around) && used[at(around.idx())] == 0) {
                         edge = around;
                     }
                 }
@@ -313,7 +308,7 @@ private:
         const Halfedge half = work_.mesh.halfedge_handle(edge, 0);
         const Place& a = place(work_.mesh.from_vertex_handle(half));
         const Place& b = place(work_.mesh.to_vertex_handle(half));
-        const Line& on = lines_[at_index(work_.label(edge).line)];
+        const Line& on = lines_[at(work_.label(edge).line)];
         const auto way = [&](const Place& p) {
             if (p.kind == Place::Kind::OnLine) {
                 return p.way_mm;
@@ -346,7 +341,7 @@ private:
             middle.kind = Place::Kind::OnLine;
             middle.line = line;
             middle.way_mm = 0.5 * (from + to);
-            position = lines_[at_index(line)].curve.at(wall_.shape(), middle.way_mm);
+            position = lines_[at(line)].curve.at(wall_.shape(), middle.way_mm);
             middle.size_mm = wanted_mm(edge);
         } else {
             const auto face = work_.mesh.face_handle(half);
@@ -389,12 +384,10 @@ private:
     void flip_for_valence() {
         std::vector<int> gap(work_.mesh.n_vertices());
         for (const Vertex v : work_.mesh.vertices()) {
-            gap[at_index(v.idx())] =
+            gap[at(v.idx())] =
                 static_cast<int>(work_.mesh.valence(v)) - (work_.mesh.is_boundary(v) ? 4 : 6);
         }
-        const auto off = [&](Vertex v, int change) {
-            return std::abs(gap[at_index(v.idx())] + change);
-        };
+        const auto off = [&](Vertex v, int change) { return std::abs(gap[at(v.idx())] + change); };
         for (const Edge edge : work_.mesh.edges()) {
             if (work_.is_line(edge) || work_.mesh.is_boundary(edge)) {
                 continue;
@@ -409,10 +402,10 @@ private:
                     off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0) &&
                 work_.may_flip(edge, kTurnCosine)) {
                 work_.mesh.flip(edge);
-                --gap[at_index(a.idx())];
-                --gap[at_index(b.idx())];
-                ++gap[at_index(c.idx())];
-                ++gap[at_index(d.idx())];
+                --gap[at(a.idx())];
+                --gap[at(b.idx())];
+                ++gap[at(c.idx())];
+                ++gap[at(d.idx())];
             }
         }
     }
@@ -475,7 +468,7 @@ private:
             return;
         }
         const double way = 0.5 * sum;
-        const Vector3d target = lines_[at_index(place(v).line)].curve.at(wall_.shape(), way);
+        const Vector3d target = lines_[at(place(v).line)].curve.at(wall_.shape(), way);
         if (work_.may_move(v, target, kTurnCosine)) {
             work_.move(v, target);
             place(v).way_mm = way;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "mesh/even/ruled_shape.h"
 #include "mesh/even/work_mesh.h"
@@ -60,10 +61,6 @@ constexpr double kFewHalves = 20000.0;
 // Triangles turned afterwards stay within 20 degrees.
 constexpr double kTurnCosine = 0.94;
 
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 struct Facet {
     RuledFacet seen;
     double longest_mm = 0.0;
@@ -117,7 +114,7 @@ private:
         for (const Face face : work_.mesh.faces()) {
             facets_.push_back(work_.is_wall(face) ? facet_of(work_, face) : Facet{});
             if (work_.label(face).shape >= 0) {
-                const WallShape& shape = shapes_[at_index(work_.label(face).shape)];
+                const WallShape& shape = shapes_[at(work_.label(face).shape)];
                 for (const Vertex v : work_.mesh.fv_range(face)) {
                     found_.residual_mm =
                         std::max(found_.residual_mm, shape.distance_mm(work_.at(v)));
@@ -127,7 +124,7 @@ private:
     }
 
     [[nodiscard]] bool is_long(Face face) const {
-        const Facet& facet = facets_[at_index(face.idx())];
+        const Facet& facet = facets_[at(face.idx())];
         return work_.is_wall(face) && work_.label(face).shape < 0 && facet.seen.area_mm2 > 0.0 &&
                facet.longest_mm > edge_mm_ && facet.longest_mm > kLong * facet.height_mm;
     }
@@ -136,23 +133,23 @@ private:
     void group() {
         std::vector<char> used(facets_.size(), 0);
         for (const Face seed : work_.mesh.faces()) {
-            if (used[at_index(seed.idx())] != 0 || !is_long(seed)) {
+            if (used[at(seed.idx())] != 0 || !is_long(seed)) {
                 continue;
             }
             std::vector<Face> row{seed};
-            used[at_index(seed.idx())] = 1;
+            used[at(seed.idx())] = 1;
             for (std::size_t i = 0; i < row.size(); ++i) {
                 for (const Halfedge half : work_.mesh.fh_range(row[i])) {
                     const Edge edge = work_.mesh.edge_handle(half);
                     const Face other =
                         work_.mesh.face_handle(work_.mesh.opposite_halfedge_handle(half));
-                    if (work_.is_line(edge) || !other.is_valid() ||
-                        used[at_index(other.idx())] != 0 || !is_long(other) ||
-                        work_.length(edge) < kAlong * facets_[at_index(row[i].idx())].longest_mm ||
-                        work_.length(edge) < kAlong * facets_[at_index(other.idx())].longest_mm) {
+                    if (work_.is_line(edge) || !other.is_valid() || used[at(other.idx())] != 0 ||
+                        !is_long(other) ||
+                        work_.length(edge) < kAlong * facets_[at(row[i].idx())].longest_mm ||
+                        work_.length(edge) < kAlong * facets_[at(other.idx())].longest_mm) {
                         continue;
                     }
-                    used[at_index(other.idx())] = 1;
+                    used[at(other.idx())] = 1;
                     row.push_back(other);
                 }
             }
@@ -171,8 +168,8 @@ private:
         std::vector<std::int32_t> vertices;
         double widest = 0.0;
         for (const Face face : row) {
-            facets.push_back(facets_[at_index(face.idx())].seen);
-            widest = std::max(widest, facets_[at_index(face.idx())].height_mm);
+            facets.push_back(facets_[at(face.idx())].seen);
+            widest = std::max(widest, facets_[at(face.idx())].height_mm);
             for (const Vertex v : work_.mesh.fv_range(face)) {
                 vertices.push_back(v.idx());
             }
@@ -232,7 +229,7 @@ private:
         for (const unsigned side : {0U, 1U}) {
             const Face face = work_.mesh.face_handle(work_.mesh.halfedge_handle(edge, side));
             if (work_.is_wall(face) && work_.label(face).shape >= 0 &&
-                shapes_[at_index(work_.label(face).shape)].kind != WallShape::Kind::Ball) {
+                shapes_[at(work_.label(face).shape)].kind != WallShape::Kind::Ball) {
                 return work_.label(face).shape;
             }
         }
@@ -251,7 +248,7 @@ private:
         for (const unsigned side : {0U, 1U}) {
             const Face face = work_.mesh.face_handle(work_.mesh.halfedge_handle(edge, side));
             if (!work_.is_wall(face) || work_.label(face).shape < 0 ||
-                shapes_[at_index(work_.label(face).shape)].distance_mm(middle) >
+                shapes_[at(work_.label(face).shape)].distance_mm(middle) >
                     kStraight * work_.length(edge)) {
                 return false;
             }
@@ -300,7 +297,7 @@ private:
             }
             const Edge edge(entry.edge);
             const Vector3d chord = middle_of(edge);
-            const Vector3d foot = shapes_[at_index(shape_of(edge))].nearest(chord);
+            const Vector3d foot = shapes_[at(shape_of(edge))].nearest(chord);
             const bool near =
                 !work_.is_line(edge) && (foot - chord).norm() <= kNearShare * entry.length;
             work_.split(edge, near ? foot : chord);

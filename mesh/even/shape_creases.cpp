@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "mesh/edge_table.h"
 
 namespace meshwind {
@@ -17,10 +18,6 @@ using Eigen::Vector3d;
 // Shapes that meet at less than this (3 degrees) are one surface to fibre and to curves through
 // vertices.
 constexpr double kCreaseRad = 0.05;
-
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 class CreaseMarker {
 public:
@@ -38,11 +35,11 @@ public:
             for (std::size_t e = 0; e < 3; ++e) {
                 const std::int32_t g = beyond(f, e);
                 if (g >= 0 && marked[i][e] == 0 && shapes_.of_face[i] >= 0 &&
-                    shapes_.of_face[at_index(g)] >= 0 &&
-                    shapes_.of_face[i] != shapes_.of_face[at_index(g)] && meets(f, e, g)) {
-                    const int back = shared_edge(neighbours_[at_index(g)], f);
+                    shapes_.of_face[at(g)] >= 0 && shapes_.of_face[i] != shapes_.of_face[at(g)] &&
+                    meets(f, e, g)) {
+                    const int back = shared_edge(neighbours_[at(g)], f);
                     marked[i][e] = 1;
-                    marked[at_index(g)][at_index(back)] = 1;
+                    marked[at(g)][at(back)] = 1;
                     ++count;
                 }
             }
@@ -53,22 +50,22 @@ public:
 
 private:
     [[nodiscard]] const Vector3d& point(std::int32_t face, std::size_t c) const {
-        return part_.soup.points_mm[at_index(part_.soup.faces[at_index(face)][c % 3])];
+        return part_.soup.points_mm[at(part_.soup.faces[at(face)][c % 3])];
     }
     [[nodiscard]] std::int32_t beyond(std::int32_t f, std::size_t e) const {
-        const std::int32_t g = neighbours_[at_index(f)][e];
+        const std::int32_t g = neighbours_[at(f)][e];
         const auto is_wall = [&](std::int32_t face) {
-            return kept_[at_index(part_.region[at_index(face)])] != 0;
+            return kept_[at(part_.region[at(face)])] != 0;
         };
-        return g >= 0 && is_wall(f) && is_wall(g) && part_.feature[at_index(f)][e] == 0 ? g : -1;
+        return g >= 0 && is_wall(f) && is_wall(g) && part_.feature[at(f)][e] == 0 ? g : -1;
     }
     [[nodiscard]] Vector3d shape_normal(std::int32_t f, std::size_t e) const {
-        return shapes_.shapes[at_index(shapes_.of_face[at_index(f)])].normal_at(
+        return shapes_.shapes[at(shapes_.of_face[at(f)])].normal_at(
             0.5 * (point(f, e) + point(f, e + 1)));
     }
 
     [[nodiscard]] bool meets(std::int32_t f, std::size_t e, std::int32_t g) const {
-        const int back = shared_edge(neighbours_[at_index(g)], f);
+        const int back = shared_edge(neighbours_[at(g)], f);
         return shape_normal(f, e).cross(shape_normal(g, static_cast<std::size_t>(back))).norm() >
                std::sin(kCreaseRad);
     }

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "core/angle_gap.h"
+#include "core/index.h"
 #include "mesh/even/ruled_shape.h"
 #include "mesh/even/work_mesh.h"
 #include "mesh/segment/rims.h"
@@ -42,10 +43,6 @@ constexpr double kWidestGap_rad = 2.1;
 // A vertex this near to the plane of the cut, as a share of the radius, lies in it.
 constexpr double kInPlane = 1e-4;
 
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 // The wall's faces and the rims they end at, by the numbers of the part.
 struct Ends {
     std::vector<std::array<std::int32_t, 3>> rim_of_edge;  // per face of the part, -1 elsewhere
@@ -58,7 +55,7 @@ Ends ends_of(const LabelledView& part, const std::vector<char>& kept) {
     ends.rim_of_edge.assign(part.soup.faces.size(), {-1, -1, -1});
     std::size_t next = 0;  // the wall has its faces in the part's order
     for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
-        if (kept[at_index(part.region[f])] != 0) {
+        if (kept[at(part.region[f])] != 0) {
             ends.rim_of_edge[f] = found.of_edge[next++];
         }
     }
@@ -85,7 +82,7 @@ public:
         for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
             if (is_wall(static_cast<std::int32_t>(f))) {
                 for (const std::int32_t v : part.soup.faces[f]) {
-                    faces_at_[at_index(v)].push_back(static_cast<std::int32_t>(f));
+                    faces_at_[at(v)].push_back(static_cast<std::int32_t>(f));
                 }
             }
         }
@@ -103,12 +100,10 @@ public:
     }
 
 private:
-    [[nodiscard]] const Vector3d& at(std::int32_t v) const {
-        return part_.soup.points_mm[at_index(v)];
+    [[nodiscard]] const Vector3d& point_of(std::int32_t v) const {
+        return part_.soup.points_mm[at(v)];
     }
-    [[nodiscard]] bool is_wall(std::int32_t f) const {
-        return kept_[at_index(part_.region[at_index(f)])] != 0;
-    }
+    [[nodiscard]] bool is_wall(std::int32_t f) const { return kept_[at(part_.region[at(f)])] != 0; }
 
     [[nodiscard]] std::vector<std::int32_t> loop_of(const Rim& rim) const {
         std::vector<std::int32_t> loop;
@@ -126,10 +121,10 @@ private:
     }
 
     [[nodiscard]] RuledFacet facet_of(std::int32_t f) const {
-        const auto& [a, b, c] = part_.soup.faces[at_index(f)];
-        const Vector3d area = 0.5 * (at(b) - at(a)).cross(at(c) - at(a));
+        const auto& [a, b, c] = part_.soup.faces[at(f)];
+        const Vector3d area = 0.5 * (point_of(b) - point_of(a)).cross(point_of(c) - point_of(a));
         const double size = area.norm();
-        return {(at(a) + at(b) + at(c)) / 3.0,
+        return {(point_of(a) + point_of(b) + point_of(c)) / 3.0,
                 size > 0.0 ? Vector3d(area / size) : Vector3d::Zero(), size};
     }
 
@@ -138,7 +133,7 @@ private:
                                                        const std::vector<std::int32_t>& loop,
                                                        double reach) const {
         const auto near = [&](std::int32_t v) {
-            const Vector3d arm = at(v) - rim.centre_mm;
+            const Vector3d arm = point_of(v) - rim.centre_mm;
             return rim.axis.dot(arm) > -reach * rim.radius_mm &&
                    arm.norm() < (1.5 + reach) * rim.radius_mm;
         };
@@ -146,16 +141,16 @@ private:
         std::vector<std::int32_t> stack = loop;
         std::vector<std::int32_t> faces;
         for (const std::int32_t v : loop) {
-            reached[at_index(v)] = 1;
+            reached[at(v)] = 1;
         }
         while (!stack.empty()) {
             const std::int32_t v = stack.back();
             stack.pop_back();
-            for (const std::int32_t f : faces_at_[at_index(v)]) {
+            for (const std::int32_t f : faces_at_[at(v)]) {
                 faces.push_back(f);
-                for (const std::int32_t w : part_.soup.faces[at_index(f)]) {
-                    if (reached[at_index(w)] == 0 && near(w)) {
-                        reached[at_index(w)] = 1;
+                for (const std::int32_t w : part_.soup.faces[at(f)]) {
+                    if (reached[at(w)] == 0 && near(w)) {
+                        reached[at(w)] = 1;
                         stack.push_back(w);
                     }
                 }
@@ -214,7 +209,7 @@ private:
             std::vector<RuledFacet> facets;
             for (const std::int32_t f : faces) {
                 facets.push_back(facet_of(f));
-                const auto& corners = part_.soup.faces[at_index(f)];
+                const auto& corners = part_.soup.faces[at(f)];
                 vertices.insert(vertices.end(), corners.begin(), corners.end());
             }
             std::sort(vertices.begin(), vertices.end());
@@ -222,7 +217,7 @@ private:
             std::vector<Vector3d> points;
             points.reserve(vertices.size());
             for (const std::int32_t v : vertices) {
-                points.push_back(at(v));
+                points.push_back(point_of(v));
             }
             const std::optional<RuledShape> shape =
                 points.size() < kFew ? std::nullopt : fit_ruled_shape(points, facets);
@@ -238,9 +233,9 @@ private:
                 return is_leg ? shape : std::nullopt;
             }
             const auto is_off = [&](std::int32_t f) {
-                const auto& c = part_.soup.faces[at_index(f)];
+                const auto& c = part_.soup.faces[at(f)];
                 return std::any_of(c.begin(), c.end(), [&](std::int32_t v) {
-                    return shape->distance_mm(at(v)) > limit;
+                    return shape->distance_mm(point_of(v)) > limit;
                 });
             };
             faces.erase(std::remove_if(faces.begin(), faces.end(), is_off), faces.end());
@@ -255,8 +250,8 @@ private:
         double all = 0.0;
         for (const std::int32_t f : faces) {
             double farthest = 0.0;
-            for (const std::int32_t v : part_.soup.faces[at_index(f)]) {
-                farthest = std::max(farthest, shape.distance_mm(at(v)));
+            for (const std::int32_t v : part_.soup.faces[at(f)]) {
+                farthest = std::max(farthest, shape.distance_mm(point_of(v)));
             }
             off.emplace_back(farthest, facet_of(f).area_mm2);
             all += off.back().second;
@@ -291,7 +286,7 @@ private:
     [[nodiscard]] double farthest_mm(const Cut& cut) const {
         double farthest = -1e300;
         for (const std::int32_t v : cut.loop) {
-            farthest = std::max(farthest, height_mm(cut.leg, at(v)));
+            farthest = std::max(farthest, height_mm(cut.leg, point_of(v)));
         }
         return farthest;
     }
@@ -305,7 +300,7 @@ private:
     // Inside the leg's surface, so that the wall leaves it inward.
     [[nodiscard]] bool is_inside(const Cut& cut, std::int32_t v) const {
         const RuledShape& leg = cut.leg;
-        const Vector3d arm = at(v) - leg.origin_mm;
+        const Vector3d arm = point_of(v) - leg.origin_mm;
         const double z = leg.axis.dot(arm);
         return (arm - z * leg.axis).norm() - leg.radius_mm - leg.growth * z < -cut.tolerance_mm;
     }
@@ -317,8 +312,8 @@ private:
         std::vector<char> reached(faces_at_.size(), 0);
         std::vector<std::int32_t> stack;
         for (const std::int32_t v : cut.loop) {
-            nearest = std::min(nearest, height_mm(cut.leg, at(v)));
-            reached[at_index(v)] = 1;
+            nearest = std::min(nearest, height_mm(cut.leg, point_of(v)));
+            reached[at(v)] = 1;
             if (is_inside(cut, v)) {
                 stack.push_back(v);
             }
@@ -330,13 +325,13 @@ private:
         while (!stack.empty() && farthest - nearest <= kMostDepth * radius) {
             const std::int32_t v = stack.back();
             stack.pop_back();
-            for (const std::int32_t f : faces_at_[at_index(v)]) {
-                for (const std::int32_t w : part_.soup.faces[at_index(f)]) {
-                    if (reached[at_index(w)] != 0) {
+            for (const std::int32_t f : faces_at_[at(v)]) {
+                for (const std::int32_t w : part_.soup.faces[at(f)]) {
+                    if (reached[at(w)] != 0) {
                         continue;
                     }
-                    reached[at_index(w)] = 1;
-                    const double height = height_mm(cut.leg, at(w));
+                    reached[at(w)] = 1;
+                    const double height = height_mm(cut.leg, point_of(w));
                     nearest = std::min(nearest, height);
                     farthest = std::max(farthest, height);
                     if (is_inside(cut, w)) {
@@ -370,16 +365,16 @@ void cut_off(WorkMesh& work, const Cut& cut, std::int32_t end) {
         std::vector<char> reached(work.mesh.n_vertices(), 0);
         for (const std::int32_t v : cut.loop) {
             stack.push_back(WorkMesh::Vertex(v));
-            reached[at_index(v)] = 1;
+            reached[at(v)] = 1;
         }
         while (!stack.empty()) {
             const WorkMesh::Vertex v = stack.back();
             stack.pop_back();
             for (const WorkMesh::Face face : work.mesh.vf_range(v)) {
-                if (!work.is_wall(face) || seen[at_index(face.idx())] != 0) {
+                if (!work.is_wall(face) || seen[at(face.idx())] != 0) {
                     continue;
                 }
-                seen[at_index(face.idx())] = 1;
+                seen[at(face.idx())] = 1;
                 double highest = -1e300;
                 for (const WorkMesh::Vertex w : work.mesh.fv_range(face)) {
                     highest = std::max(highest, height(w));
@@ -389,8 +384,8 @@ void cut_off(WorkMesh& work, const Cut& cut, std::int32_t end) {
                 }
                 faces.push_back(face);
                 for (const WorkMesh::Vertex w : work.mesh.fv_range(face)) {
-                    if (reached[at_index(w.idx())] == 0 && height(w) > tolerance) {
-                        reached[at_index(w.idx())] = 1;
+                    if (reached[at(w.idx())] == 0 && height(w) > tolerance) {
+                        reached[at(w.idx())] = 1;
                         stack.push_back(w);
                     }
                 }

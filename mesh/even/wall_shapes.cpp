@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "mesh/edge_table.h"
 
@@ -73,10 +74,6 @@ constexpr double kAcross = 0.7;
 constexpr double kTurnsRad = 0.01;
 constexpr double kOneSide = 0.65;
 constexpr double kShort = 1.5;
-
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 double angle_rad(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -146,15 +143,15 @@ public:
             }
         }
         std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            const double one = facets_[at_index(a)].area_mm2;
-            const double other = facets_[at_index(b)].area_mm2;
+            const double one = facets_[at(a)].area_mm2;
+            const double other = facets_[at(b)].area_mm2;
             return one != other ? one > other : a < b;
         });
         // A round wall has planes of its own where a row is cut up: they come last.
         for (const bool flat : {false, true}) {
             std::fill(tried_.begin(), tried_.end(), char{0});
             for (const std::int32_t seed : order) {
-                if (found_.of_face[at_index(seed)] < 0 && tried_[at_index(seed)] == 0) {
+                if (found_.of_face[at(seed)] < 0 && tried_[at(seed)] == 0) {
                     check_interrupt();
                     try_seed(seed, flat);
                 }
@@ -171,18 +168,18 @@ private:
     };
 
     [[nodiscard]] const Vector3d& point(std::int32_t face, std::size_t c) const {
-        return part_.soup.points_mm[at_index(part_.soup.faces[at_index(face)][c % 3])];
+        return part_.soup.points_mm[at(part_.soup.faces[at(face)][c % 3])];
     }
     [[nodiscard]] double edge_mm(std::int32_t face, std::size_t e) const {
         return (point(face, e + 1) - point(face, e)).norm();
     }
     [[nodiscard]] bool is_wall(std::int32_t face) const {
-        return kept_[at_index(part_.region[at_index(face)])] != 0;
+        return kept_[at(part_.region[at(face)])] != 0;
     }
     // The wall's face beyond an edge that is no crease, or -1.
     [[nodiscard]] std::int32_t beyond(std::int32_t face, std::size_t e) const {
-        const std::int32_t next = neighbours_[at_index(face)][e];
-        return next >= 0 && part_.feature[at_index(face)][e] == 0 && is_wall(next) ? next : -1;
+        const std::int32_t next = neighbours_[at(face)][e];
+        return next >= 0 && part_.feature[at(face)][e] == 0 && is_wall(next) ? next : -1;
     }
 
     void measure(std::int32_t f) {
@@ -195,7 +192,7 @@ private:
     }
 
     [[nodiscard]] bool tells_normal(std::int32_t f) const {
-        const Facet& facet = facets_[at_index(f)];
+        const Facet& facet = facets_[at(f)];
         return 2.0 * facet.area_mm2 > kTellsNormalShare * size_mm_ * facet.longest_mm;
     }
 
@@ -225,7 +222,7 @@ private:
         if (turn > kMostTurnRad) {
             return false;
         }
-        const Vector3d& own = facets_[at_index(f)].normal;
+        const Vector3d& own = facets_[at(f)].normal;
         const double side = own.dot(normal[0]) < 0.0 ? -1.0 : 1.0;
         return !tells_normal(f) ||
                std::all_of(normal.begin(), normal.end(), [&](const Vector3d& n) {
@@ -248,14 +245,12 @@ private:
             for (std::size_t e = 0; e < 3; ++e) {
                 const std::int32_t g = beyond(f, e);
                 const double length = edge_mm(f, e);
-                if (g >= 0 && found_.of_face[at_index(g)] < 0 &&
-                    length >= kAlong * facets_[at_index(f)].longest_mm &&
-                    length >= kAlong * facets_[at_index(g)].longest_mm) {
+                if (g >= 0 && found_.of_face[at(g)] < 0 &&
+                    length >= kAlong * facets_[at(f)].longest_mm &&
+                    length >= kAlong * facets_[at(g)].longest_mm) {
                     seen += 1.0;
                     next.emplace(
-                        wide ? angle_rad(facets_[at_index(f)].normal, facets_[at_index(g)].normal)
-                             : seen,
-                        g);
+                        wide ? angle_rad(facets_[at(f)].normal, facets_[at(g)].normal) : seen, g);
                 }
             }
         }
@@ -267,8 +262,8 @@ private:
         Faces faces;
         ++round_;
         const auto look = [&](std::int32_t f) {
-            if (found_.of_face[at_index(f)] < 0 && mark_[at_index(f)] != round_) {
-                mark_[at_index(f)] = round_;
+            if (found_.of_face[at(f)] < 0 && mark_[at(f)] != round_) {
+                mark_[at(f)] = round_;
                 if (lies_on(shape, f)) {
                     faces.push_back(f);
                 }
@@ -293,9 +288,9 @@ private:
         std::vector<RuledFacet> facets;
         Vector3d normal = Vector3d::Zero();
         for (const std::int32_t f : faces) {
-            const auto& v = part_.soup.faces[at_index(f)];
+            const auto& v = part_.soup.faces[at(f)];
             vertices.insert(vertices.end(), v.begin(), v.end());
-            const Facet& facet = facets_[at_index(f)];
+            const Facet& facet = facets_[at(f)];
             facets.push_back(
                 {(point(f, 0) + point(f, 1) + point(f, 2)) / 3.0, facet.normal, facet.area_mm2});
             normal += facet.area_mm2 * facet.normal;
@@ -305,7 +300,7 @@ private:
         std::vector<Vector3d> points;
         points.reserve(vertices.size());
         for (const std::int32_t v : vertices) {
-            points.push_back(part_.soup.points_mm[at_index(v)]);
+            points.push_back(part_.soup.points_mm[at(v)]);
         }
         std::optional<WallShape> shape;
         if (kind == WallShape::Kind::Plane) {
@@ -346,7 +341,7 @@ private:
                 return;
             }
             for (const std::int32_t f : group) {
-                tried_[at_index(f)] = 1;
+                tried_[at(f)] = 1;
             }
         }
     }
@@ -371,7 +366,7 @@ private:
             return false;
         }
         for (const std::int32_t f : faces) {
-            found_.of_face[at_index(f)] = static_cast<std::int32_t>(found_.shapes.size());
+            found_.of_face[at(f)] = static_cast<std::int32_t>(found_.shapes.size());
         }
         found_.shapes.push_back(*shape);
         return true;
@@ -390,7 +385,7 @@ private:
     void mark(const Faces& faces) {
         ++round_;
         for (const std::int32_t f : faces) {
-            mark_[at_index(f)] = round_;
+            mark_[at(f)] = round_;
         }
     }
 
@@ -401,10 +396,10 @@ private:
         Faces border;
         for (const std::int32_t f : faces) {
             for (std::size_t e = 0; e < 3; ++e) {
-                const std::int32_t g = neighbours_[at_index(f)][e];
-                const auto& v = part_.soup.faces[at_index(f)];
+                const std::int32_t g = neighbours_[at(f)][e];
+                const auto& v = part_.soup.faces[at(f)];
                 all.push_back(v[e]);
-                if (g < 0 || mark_[at_index(g)] != round_) {
+                if (g < 0 || mark_[at(g)] != round_) {
                     border.push_back(v[e]);
                     border.push_back(v[(e + 1) % 3]);
                 }
@@ -423,10 +418,10 @@ private:
         double area = 0.0;
         double outline = 0.0;
         for (const std::int32_t f : faces) {
-            area += facets_[at_index(f)].area_mm2;
+            area += facets_[at(f)].area_mm2;
             for (std::size_t e = 0; e < 3; ++e) {
-                const std::int32_t g = neighbours_[at_index(f)][e];
-                outline += g >= 0 && mark_[at_index(g)] == round_ ? 0.0 : edge_mm(f, e);
+                const std::int32_t g = neighbours_[at(f)][e];
+                outline += g >= 0 && mark_[at(g)] == round_ ? 0.0 : edge_mm(f, e);
             }
         }
         return area > kCompact * outline * outline && area > kLargePlane * size_mm_ * size_mm_;
@@ -449,10 +444,10 @@ private:
         std::array<double, 2> side{};
         double longest = 0.0;
         for (const std::int32_t f : faces) {
-            area += facets_[at_index(f)].area_mm2;
+            area += facets_[at(f)].area_mm2;
             for (std::size_t e = 0; e < 3; ++e) {
-                const std::int32_t g = neighbours_[at_index(f)][e];
-                if ((g >= 0 && mark_[at_index(g)] == round_) || !is_across(shape, f, e)) {
+                const std::int32_t g = neighbours_[at(f)][e];
+                if ((g >= 0 && mark_[at(g)] == round_) || !is_across(shape, f, e)) {
                     continue;
                 }
                 const double length = edge_mm(f, e);
@@ -461,12 +456,11 @@ private:
                 if (next < 0) {
                     continue;
                 }
-                const double turn =
-                    signed_angle_rad(facets_[at_index(f)].normal, facets_[at_index(next)].normal,
-                                     point(f, e + 1) - point(f, e));
+                const double turn = signed_angle_rad(
+                    facets_[at(f)].normal, facets_[at(next)].normal, point(f, e + 1) - point(f, e));
                 if (std::abs(turn) > kTurnsRad) {
                     side[turn > 0.0 ? 0 : 1] += length;
-                    longest = std::max(longest, 2.0 * facets_[at_index(next)].area_mm2 / length);
+                    longest = std::max(longest, 2.0 * facets_[at(next)].area_mm2 / length);
                 }
             }
         }

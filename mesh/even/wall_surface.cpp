@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/index.h"
 #include "mesh/edge_table.h"
 #include "mesh/smooth/freeze.h"
 
@@ -17,10 +18,6 @@ using Eigen::Vector3d;
 // edge, or it has gone astray on a poor fit.
 constexpr double kMostLift = 0.3;
 
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
-
 double largest_curvature(const Eigen::Matrix3d& shape_operator_per_mm) {
     const double mean = 0.5 * shape_operator_per_mm.trace();
     return std::abs(mean) +
@@ -28,12 +25,12 @@ double largest_curvature(const Eigen::Matrix3d& shape_operator_per_mm) {
 }
 
 double height_mm(const Surface& surface, std::int32_t face) {
-    const auto& v = surface.face[at_index(face)];
+    const auto& v = surface.face[at(face)];
     double longest = 0.0;
     for (std::size_t e = 0; e < 3; ++e) {
-        longest = std::max(longest, (surface.position_mm[at_index(v[(e + 1) % 3])] -
-                                     surface.position_mm[at_index(v[e])])
-                                        .norm());
+        longest = std::max(
+            longest,
+            (surface.position_mm[at(v[(e + 1) % 3])] - surface.position_mm[at(v[e])]).norm());
     }
     return longest > 0.0 ? 2.0 * area_mm2(surface.position_mm, v) / longest : 0.0;
 }
@@ -53,10 +50,9 @@ std::vector<double> vertex_curvatures_per_mm(const Surface& surface) {
     std::vector<std::vector<std::int32_t>> next(own.size());
     for (std::size_t f = 0; f < surface.face.size(); ++f) {
         for (std::size_t c = 0; c < 3; ++c) {
-            const std::size_t v = at_index(surface.face[f][c]);
+            const std::size_t v = at(surface.face[f][c]);
             own[v] = std::max(
-                own[v],
-                largest_curvature(surface.shape_operator_per_mm[at_index(surface.corner[f][c])]));
+                own[v], largest_curvature(surface.shape_operator_per_mm[at(surface.corner[f][c])]));
             next[v].push_back(surface.face[f][(c + 1) % 3]);
         }
     }
@@ -65,7 +61,7 @@ std::vector<double> vertex_curvatures_per_mm(const Surface& surface) {
     for (std::size_t v = 0; v < own.size(); ++v) {
         around.assign(1, own[v]);
         for (const std::int32_t w : next[v]) {
-            around.push_back(own[at_index(w)]);
+            around.push_back(own[at(w)]);
         }
         const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
         std::nth_element(around.begin(), middle, around.end());
@@ -81,7 +77,7 @@ WallProjection::WallProjection(const Surface& surface) : surface_(surface), shap
         std::array<std::int32_t, 3> face{};
         for (std::size_t c = 0; c < 3; ++c) {
             face[c] = static_cast<std::int32_t>(soup.points_mm.size());
-            soup.points_mm.push_back(surface.position_mm[at_index(surface.face[f][c])]);
+            soup.points_mm.push_back(surface.position_mm[at(surface.face[f][c])]);
         }
         soup.faces.push_back(face);
         part_[surface.region[f]].face.push_back(static_cast<std::int32_t>(f));
@@ -96,10 +92,10 @@ WallProjection::Foot WallProjection::nearest(const Vector3d& point, std::int32_t
     const Part& part = part_.at(region);
     const ClosestPoint closest = part.query->closest(point, reach_mm_);
     Foot foot;
-    foot.face = part.face[at_index(std::max(closest.face, 0))];
+    foot.face = part.face[at(std::max(closest.face, 0))];
     foot.bary = closest.bary;
     foot.position_mm = closest.position_mm;
-    const Vector3d lifted = shape_.at(foot.face, Vector2d(foot.bary[1], foot.bary[2]));
+    const Vector3d lifted = shape_.point_at(foot.face, Vector2d(foot.bary[1], foot.bary[2]));
     if ((lifted - foot.position_mm).norm() <= kMostLift * height_mm(surface_, foot.face)) {
         foot.position_mm = lifted;
     }
@@ -120,8 +116,8 @@ Vector3d WallLine::at(const SmoothShape& shape, double way_mm) const {
     share = std::clamp(share, 0.0, 1.0);
     share = step.backward ? 1.0 - share : share;
     const auto e = static_cast<std::size_t>(step.edge);
-    return shape.at(step.face, (1.0 - share) * SmoothShape::corner_uv(e) +
-                                   share * SmoothShape::corner_uv((e + 1) % 3));
+    return shape.point_at(step.face, (1.0 - share) * SmoothShape::corner_uv(e) +
+                                         share * SmoothShape::corner_uv((e + 1) % 3));
 }
 
 }  // namespace meshwind

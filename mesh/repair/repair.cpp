@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "core/text/text_number.h"
 #include "mesh/edge_table.h"
@@ -22,10 +23,6 @@ namespace meshwind {
 namespace {
 
 using Faces = std::vector<std::array<std::int32_t, 3>>;
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 int drop_repeated_indices(Faces& faces) {
     return static_cast<int>(std::erase_if(faces, [](const std::array<std::int32_t, 3>& f) {

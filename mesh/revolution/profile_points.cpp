@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "mesh/segment/spindle_axis.h"
@@ -17,10 +18,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 Vector2d in_half_plane(const Vector3d& p) {
     return {p.head<2>().norm(), p.z()};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
 
@@ -22,10 +24,6 @@ constexpr double kCapRadiusShare = 0.25;
 // Share of the part's area that an end's outline encloses at least: that of a pipe 5000 radii long.
 // What is smaller is a sliver.
 constexpr double kCapAreaShare = 1e-4;
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 // Area of the faces in the plane through the region's median height along its mean normal.
 double planar_area(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,

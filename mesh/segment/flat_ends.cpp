@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/angle_gap.h"
+#include "core/index.h"
 #include "core/units.h"
 #include "mesh/rim.h"
 #include "mesh/segment/feature_edges.h"
@@ -53,10 +54,6 @@ constexpr double kSharpLength = 0.5;  // of an outline with sharp edges
 
 // Seen from the axis, wall and tabs are all around when no wider gap is between them.
 constexpr double kWidestGap_rad = 2.1;
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 struct Patch {
     std::vector<std::int32_t> faces;

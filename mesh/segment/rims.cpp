@@ -7,15 +7,12 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/index.h"
 #include "core/small_linear.h"
 #include "mesh/edge_table.h"
 
 namespace meshwind {
 namespace {
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 struct Loop {
     std::vector<std::int32_t> vertices;

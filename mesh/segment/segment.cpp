@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "mesh/edge_table.h"
 #include "mesh/segment/end_caps.h"
@@ -41,10 +42,6 @@ constexpr double kLongestBorder = 6.0;
 
 // A blind region smaller than this share of the part may be a nook of the wall.
 constexpr double kBoreAreaShare = 0.01;
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 // Regions are bounded by feature edges; each flat end is one with all that stands on it.
 std::vector<std::int32_t> label_faces(const Segmentation& s,

@@ -4,15 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/index.h"
 #include "mesh/triangle_soup.h"
 
 namespace meshwind {
 
 using VertexRow = std::vector<std::int32_t>;
-
-[[nodiscard]] inline std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 /// length / step rounded, but at least `least`.
 [[nodiscard]] std::int32_t steps_of(double length_mm, double step_mm, std::int32_t least);

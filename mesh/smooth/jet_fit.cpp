@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
 
@@ -61,10 +63,6 @@ constexpr std::array<Power, kJetTerms> kPower = {{{1, 0},
                                                   {2, 2},
                                                   {1, 3},
                                                   {0, 4}}};
-
-std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
 
 using Column =
     Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kMaxNeighbours), 1>;

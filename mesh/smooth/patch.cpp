@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
 
@@ -33,10 +35,6 @@ constexpr double kMinEarSine = 0.05;
 // Rates of the barycentric coordinates by u and v.
 constexpr std::array<double, 3> kBaryByU = {-1.0, 1.0, 0.0};
 constexpr std::array<double, 3> kBaryByV = {-1.0, 0.0, 1.0};
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Lift of the facet's point along the frame's third axis, with its derivatives along two directions
 // of the frame.

@@ -200,7 +200,7 @@ private:
                 const Piece& piece = pieces_[at(middles[i].piece)];
                 const std::size_t e = middles[i].edge;
                 position_[known + i] =
-                    shape_.at(piece.parent, 0.5 * (piece.uv[e] + piece.uv[(e + 1) % 3]));
+                    shape_.point_at(piece.parent, 0.5 * (piece.uv[e] + piece.uv[(e + 1) % 3]));
             }
         });
         return middle;

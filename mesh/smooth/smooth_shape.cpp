@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "mesh/smooth/patch.h"
 
 namespace meshwind {
@@ -12,10 +13,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-std::size_t at_index(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 
@@ -28,8 +25,8 @@ SmoothShape::SmoothShape(const Surface& surface)
             if (surface.neighbour[f][e] == kNoFace) {
                 const std::int32_t from = surface.face[f][e];
                 const std::int32_t to = surface.face[f][(e + 1) % 3];
-                out_of[at_index(from)] = into[at_index(to)] =
-                    surface.position_mm[at_index(to)] - surface.position_mm[at_index(from)];
+                out_of[at(from)] = into[at(to)] =
+                    surface.position_mm[at(to)] - surface.position_mm[at(from)];
             }
         }
     }
@@ -47,11 +44,11 @@ SmoothShape::SmoothShape(const Surface& surface)
 // The arc from one vertex of the rim to the next at a share of its way: a cubic whose middle is
 // exact on circles.
 Vector3d SmoothShape::rim_arc(std::int32_t from, std::int32_t to, double share) const {
-    const Vector3d& a = surface_.position_mm[at_index(from)];
-    const Vector3d& b = surface_.position_mm[at_index(to)];
+    const Vector3d& a = surface_.position_mm[at(from)];
+    const Vector3d& b = surface_.position_mm[at(to)];
     const Vector3d chord = b - a;
     const auto rate = [&](std::int32_t vertex) -> Vector3d {
-        const Vector3d& tangent = rim_tangent_[at_index(vertex)];
+        const Vector3d& tangent = rim_tangent_[at(vertex)];
         const double length = chord.norm();
         const double cosine = tangent.dot(chord) / length;
         return cosine > 0.0 ? Vector3d(2.0 * length / (1.0 + cosine) * tangent) : chord;
@@ -61,19 +58,19 @@ Vector3d SmoothShape::rim_arc(std::int32_t from, std::int32_t to, double share) 
     return r * a + s * b + s * r * (r * (rate(from) - chord) - s * (rate(to) - chord));
 }
 
-Vector3d SmoothShape::at(std::int32_t face, const Vector2d& uv) const {
+Vector3d SmoothShape::point_at(std::int32_t face, const Vector2d& uv) const {
     const Patch patch(surface_, face);
     Vector3d place = patch.at(uv).position_mm;
     const std::array<double, 3> bary = {1.0 - uv.x() - uv.y(), uv.x(), uv.y()};
     for (std::size_t e = 0; e < 3; ++e) {
         const std::size_t to = (e + 1) % 3;
         const double sum = bary[e] + bary[to];
-        if (surface_.neighbour[at_index(face)][e] != kNoFace || !(sum > 0.0)) {
+        if (surface_.neighbour[at(face)][e] != kNoFace || !(sum > 0.0)) {
             continue;
         }
         const double share = bary[to] / sum;
         const Vector2d on_edge = (1.0 - share) * corner_uv(e) + share * corner_uv(to);
-        const auto& vertex = surface_.face[at_index(face)];
+        const auto& vertex = surface_.face[at(face)];
         place +=
             sum * sum * (rim_arc(vertex[e], vertex[to], share) - patch.at(on_edge).position_mm);
     }

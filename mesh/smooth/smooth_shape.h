@@ -23,7 +23,7 @@ public:
     /// On the patch of the face, which is moved within the surface to meet the arcs of the rim: by
     /// all of the gap on the rim, by nothing on the other edges.
     /// \param uv barycentric coordinates of the second and the third corner
-    [[nodiscard]] Eigen::Vector3d at(std::int32_t face, const Eigen::Vector2d& uv) const;
+    [[nodiscard]] Eigen::Vector3d point_at(std::int32_t face, const Eigen::Vector2d& uv) const;
 
     /// The parameters of corner i of a face.
     [[nodiscard]] static Eigen::Vector2d corner_uv(std::size_t i) {

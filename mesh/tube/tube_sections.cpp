@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "mesh/tube/centre_line.h"
 
@@ -46,10 +47,6 @@ constexpr double kRidge = 1e-9;
 constexpr std::size_t kLeastSections = 5;
 constexpr std::size_t kMostSections = 1000;
 constexpr std::size_t kChunk = 8;
-
-std::size_t at(std::int32_t index) {
-    return static_cast<std::size_t>(index);
-}
 
 // Shortest ways over the edges from a rim.
 std::vector<double> ways_from(const Rim& rim, const Surface& surface) {

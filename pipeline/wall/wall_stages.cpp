@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/random.h"
 #include "core/text/text_number.h"
 #include "mesh/nearest.h"
@@ -40,10 +41,6 @@ constexpr double kMostPlaces = 0.75;
 
 // A whole number of layers is meant, not one more.
 constexpr double kSameLayers = 1e-9;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 int layers_of_a_stage(const Mandrel& bare, double tow_thickness_mm) {
     double layers = kMostLayersOfAStage;

@@ -11,6 +11,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/interrupt.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
@@ -63,10 +64,6 @@ constexpr double kSameNormal = 1.0 - 1e-9;
 // samples of one: milliseconds.
 constexpr std::size_t kBlocksPerReport = 256;
 constexpr int kSamplesPerLook = 256;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // The eye between two samples: the cubic through four exact positions.
 class EyeCurve {

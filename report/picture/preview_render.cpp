@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 
 namespace meshwind {
@@ -33,10 +34,6 @@ constexpr float kEdgeShade = 0.45F;
 constexpr float kCrown = 0.12F;
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 struct Sample {
     float depth_mm = kNothing;  // toward the viewer

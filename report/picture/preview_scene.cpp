@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/small_linear.h"
 #include "core/units.h"
@@ -46,10 +47,6 @@ constexpr double kSkewed = 0.05;
 constexpr double kBeyondFibre = 0.5;
 
 constexpr int kEndSegments = 96;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // sRGB, 0xRRGGBB, as light.
 Vector3f linear(std::uint32_t rgb) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/index.h"
 #include "mesh/shapes/make_kinds.h"
 #include "tests/support/reference.h"
 #include "tests/support/shapes.h"
@@ -13,10 +14,6 @@ namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Square grid in the plane z = 0, unit cells, all diagonals one way.
 Surface grid(int cells) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/index.h"
 #include "core/linear_programme.h"
 #include "core/parallel.h"
 #include "core/units.h"
@@ -30,10 +31,6 @@ constexpr double kGoodEnough = 0.01;
 
 // A layer that lacks beyond the share allowed costs so many times the fibre that it would be.
 constexpr double kLacks = 50.0;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Like courses are those between the same nodes whose first ends are at angles in one of these
 // steps: they stand in the order of their azimuths.

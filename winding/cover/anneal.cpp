@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/units.h"
@@ -71,10 +72,6 @@ constexpr double kAloneShare = 0.5;
 
 // Layers off the target from which on more make no difference.
 constexpr std::int32_t kMostOff = 64;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 class Annealer {
 public:

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "mesh/nearest.h"
 #include "winding/cover/fit.h"
@@ -14,10 +15,6 @@ constexpr std::size_t kSampleChunk = 256;
 // The image of a wall that is this near to it makes courses that are near enough: they are judged
 // like all others.
 constexpr double kSymmetryBands = 0.1;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

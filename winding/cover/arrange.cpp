@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "core/index.h"
 #include "core/units.h"
 
 namespace meshwind {
@@ -16,10 +17,6 @@ constexpr double kWorth_rad = 6.0 * kPi;
 
 // Gains below this are rounding.
 constexpr double kLeastGain_rad = 1e-9;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 class Arranger {
 public:

@@ -4,16 +4,13 @@
 #include <deque>
 #include <limits>
 
+#include "core/index.h"
 #include "winding/cover/joints.h"
 
 namespace meshwind {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 bool can_wind(const Member& member, bool backward) {
     return backward ? member.windable_backward : member.windable_forward;

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/index.h"
 #include "core/margins.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -47,10 +48,6 @@ constexpr int kMostFills = 10;
 // before the last attempts either.
 constexpr int kMostInVain = 2;
 constexpr int kAttemptsWithoutOthers = 2;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 class CoverPlanner {
 public:

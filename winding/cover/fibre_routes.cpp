@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Routes that are looked into; so many only a mandrel of many rims has.
 constexpr int kMostRoutes = 2000;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/units.h"
@@ -33,10 +34,6 @@ constexpr std::size_t kNearChunk = 32;
 
 // How far a candidate near a member is turned at most.
 constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 class Grower {
 public:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "winding/cover/balance.h"
 #include "winding/laminate/coverage.h"
@@ -15,10 +16,6 @@ constexpr int kMaxJoins = 200;
 
 // Share of the wall for which a further fibre is tied on.
 constexpr double kWorthAFibre = 0.002;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

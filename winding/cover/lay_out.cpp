@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/index.h"
 #include "winding/plan/assemble.h"
 
 namespace meshwind {
@@ -17,10 +18,6 @@ constexpr double kHalfTurnStation_mm = 10.0;
 // and those lie under a round wall: by no more than this share of the height at which the fibre
 // begins, or the wall itself would hide it.
 constexpr double kMostSag = 0.5;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Distance of the stations of a plan, by its thinnest leg.
 double plan_station_mm(const CourseRules& rules) {

@@ -5,14 +5,11 @@
 #include <limits>
 #include <map>
 
+#include "core/index.h"
 #include "core/units.h"
 
 namespace meshwind {
 namespace {
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // More than all turns of a plan together, and less than what a double loses them beside.
 constexpr double kClosed_rad = 1e6;

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "winding/cover/balance.h"
 #include "winding/cover/fit.h"
@@ -34,10 +35,6 @@ constexpr double kAtPin_mm = 0.004;
 
 // A course comes to pins by a few moves, each as far off as the square of the one before.
 constexpr int kMovesToPins = 4;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Follows a course accurately. Where fibre turns on pins, one beside it that ends at pins.
 Rejection follow_to_pins(const CourseRules& rules, Candidate candidate, Member& member,

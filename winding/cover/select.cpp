@@ -4,16 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "winding/bound/fibre_bound.h"
 #include "winding/plan/figures.h"
 
 namespace meshwind {
 namespace {
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // A course that fills less than this share of what it covers is too dear for any wall.
 constexpr double kLeastFill = 0.005;

@@ -10,14 +10,11 @@
 #include <tuple>
 #include <utility>
 
+#include "core/index.h"
 #include "winding/turn/course_turns.h"
 
 namespace meshwind {
 namespace {
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // What samples that are bare for the same reason have in common.
 struct Reason {

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace meshwind {
 namespace {
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 int first_percentile(std::span<const std::int32_t> layers, std::span<const char> reached) {
     std::vector<std::int32_t> counted;

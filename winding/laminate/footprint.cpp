@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 
 namespace meshwind {
@@ -34,10 +35,6 @@ constexpr double kNextSlab = 1.5;
 
 // Of a lane without a sample: further from any face than a band is wide, mm.
 constexpr float kNowhere = 1e9F;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 // Height over a facet of the smooth surface that its corners' normals belong to: of an arc over its
 // longest edge.

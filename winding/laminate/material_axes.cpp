@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/units.h"
 #include "geodesic/trace.h"
 #include "mesh/revolution/revolution.h"
@@ -29,10 +30,6 @@ const double kOnePipe = std::cos(rad_from_deg(30.0));
 
 // A sum of axes that is nearer to square than this (cosine) says nothing about the sense.
 constexpr double kSquare = 0.05;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 std::optional<Vector3d> projected(const Vector3d& axis, const Vector3d& normal) {
     const Vector3d flat = axis - normal * normal.dot(axis);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/small_linear.h"
 #include "winding/laminate/footprint.h"
@@ -19,10 +20,6 @@ constexpr std::size_t kFaceChunk = 256;
 
 // A course that is further along by so many bands is on its next pass, as for footprints.
 constexpr double kNextPass_bands = 2.0;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 Vector3d normal_of(const Surface& surface, std::size_t face) {
     const auto& [a, b, c] = surface.face[face];

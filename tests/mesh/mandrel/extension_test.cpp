@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "core/index.h"
 #include "core/units.h"
 #include "mesh/shapes/make.h"
 #include "mesh/smooth/patch.h"
@@ -21,10 +22,6 @@ using Eigen::Vector3d;
 constexpr double kRadius_mm = 50.0;
 constexpr double kLength_mm = 200.0;
 constexpr double kExtension_mm = 80.0;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 const Mandrel& pipe_mandrel() {
     static const Mandrel kMandrel =

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/index.h"
 #include "mesh/shapes/make_kinds.h"
 #include "tests/support/exact_torus.h"
 #include "tests/support/frozen.h"
@@ -18,10 +19,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-std::size_t at(std::int32_t i) {
-    return static_cast<std::size_t>(i);
-}
 
 struct FitErrors {
     double normal_rad = 0.0;        // rms over the corners
