@@ -18,9 +18,9 @@ endfunction()
 
 # meshwind_unity(TARGET SOURCE ...): several sources are compiled as one text, which takes half the time. No text has a source
 # that defines a name, in its anonymous namespace mostly, and another in which that name stands: each means by its names what
-# it means by itself, and results have the same digits (.ci/run golden). A source with a name of another's header stays by
-# itself. The names are read here, so that CMake has to run again after a change of sources; ./meshwind and ./test.sh see to
-# that.
+# it means by itself, and results have the same digits (.ci/run golden). A source with a name of a header that it does not
+# include stays by itself. The names are read here, so that CMake has to run again after a change of sources; ./meshwind and
+# ./test.sh see to that.
 function(meshwind_unity target)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
     # Variables may be called like another source's constants; only sources by themselves are main files.
@@ -33,12 +33,14 @@ function(meshwind_unity target)
             continue()
         endif()
         meshwind_names_in("${text}" defined used)
-        string(REGEX MATCH "#include \"([^\"]*)\"" own "${text}")
-        set(own "${CMAKE_MATCH_1}")
+        string(REGEX MATCHALL "#include \"[^\"]*" includes "${text}")
+        list(TRANSFORM includes REPLACE "^.*\"" "")
         set(alone OFF)
         foreach(name ${defined})
             get_property(headers GLOBAL PROPERTY MESHWIND_HEADERS_WITH_${name})
-            if(headers AND NOT own IN_LIST headers)
+            set(of_others "${headers}")
+            list(REMOVE_ITEM of_others "" ${includes})
+            if(headers AND of_others STREQUAL headers)
                 set(alone ON)
                 break()
             endif()
@@ -86,6 +88,9 @@ function(meshwind_note_names)
     file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
     foreach(header ${ARGN})
         file(READ ${header} text)
+        if(text MATCHES "\nnamespace meshwind::")  # behind that name
+            continue()
+        endif()
         string(REPLACE "[[nodiscard]] " "" text "${text}")
         meshwind_names_in("${text}" declared used)
         foreach(name ${declared})

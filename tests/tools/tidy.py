@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""tidy.py BUILD_FOLDER JOBS FOLDER...: clang-tidy over the library sources of these folders, several in one run.
+"""tidy.py BUILD_FOLDER JOBS FOLDER...: clang-tidy over the library sources of these folders, many in one run.
 
-Most of the time goes into the headers, Eigen's before all. So sources of one folder and the same flags are read one
-after the other as one text, ten at most, and none beside another that defines the same name.
-Where the compiler complains of such a text nevertheless, its sources are checked one by one. Exit 1 when something is found.
+Most of the time goes into the headers, Eigen's before all. So sources of one library with the same flags are read one
+after the other as one text, none beside another that defines the same name. Where the compiler complains of such a text
+nevertheless, each half is checked by itself. Exit 1 when something is found.
 """
 import concurrent.futures
 import json
@@ -13,7 +13,7 @@ import shlex
 import subprocess
 import sys
 
-BATCH = 10  # sources
+BATCH = 24  # sources at most
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # At the start of a line: a type, or a function or constant behind its type; members of classes have "::" instead.
 DEFINED = re.compile(r"(?:struct|class|enum class|enum) (\w+)|using (\w+) =|(?!using|namespace)[\w:<>,&* ]*[\w>&*] "
@@ -55,14 +55,14 @@ def batches_of(sources):
     batches = []
     for source in sources:
         names = names_in(source)
-        for batch in batches:
-            if len(batch[0]) < BATCH and not batch[1] & names:
-                batch[0].append(source)
-                batch[1].update(names)
+        for batch, known in batches:
+            if len(batch) < BATCH and not known & names:
+                batch.append(source)
+                known |= names
                 break
         else:
-            batches.append(([source], set(names)))
-    return [batch[0] for batch in batches]
+            batches.append(([source], names))
+    return [batch for batch, _ in batches]
 
 
 def tidy(source, flags, folders):
@@ -72,14 +72,18 @@ def tidy(source, flags, folders):
     return run.returncode, run.stdout + (run.stderr if run.returncode else "")
 
 
-def check(number, sources, flags, folders, scratch):
-    if len(sources) > 1:
-        text = scratch / f"{sources[0].parent.name}_{number}.cpp"
-        text.write_text("".join(f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n' for source in sources))
-        code, said = tidy(text, flags, folders)
-        if OF_COMPILER not in said:
-            return [(code, said)]
-    return [tidy(source, flags, folders) for source in sources]
+def check(name, sources, flags, folders, scratch):
+    """(exit code, words) of each run."""
+    if len(sources) == 1:
+        return [tidy(sources[0], flags, folders)]
+    text = scratch / f"{name}.cpp"
+    text.write_text("".join(f'#include "{source}"  // NOLINT(bugprone-suspicious-include)\n' for source in sources))
+    code, said = tidy(text, flags, folders)
+    if OF_COMPILER not in said:
+        return [(code, said)]
+    middle = len(sources) // 2
+    return (check(name + "_1", sources[:middle], flags, folders, scratch) +
+            check(name + "_2", sources[middle:], flags, folders, scratch))
 
 
 def main():
@@ -88,20 +92,20 @@ def main():
     for entry in json.loads((build / "compile_commands.json").read_text()):
         for source in sources_of(pathlib.Path(entry["file"])):
             if ROOT in source.parents and source.relative_to(ROOT).parts[0] in folders:
-                groups.setdefault((source.parent.name, tuple(flags_of(entry))), []).append(source)
+                groups.setdefault((source.relative_to(ROOT).parts[0], tuple(flags_of(entry))), []).append(source)
     if not groups:
         sys.exit("tidy: no sources")
     scratch = build / "tidy"
     scratch.mkdir(exist_ok=True)
-    work = [(batch, flags) for (_, flags), sources in groups.items() for batch in batches_of(sources)]
-    work.sort(key=lambda one: -len(one[0]))
+    work = [(library, batch, flags) for (library, flags), sources in groups.items() for batch in batches_of(sources)]
+    work.sort(key=lambda one: -len(one[1]))
     found = 0
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        runs = [pool.submit(check, number, batch, flags, folders, scratch)
-                for number, (batch, flags) in enumerate(work)]
-        for (batch, _), run in zip(work, runs):
+        runs = [pool.submit(check, f"{library}_{number}", batch, flags, folders, scratch)
+                for number, (library, batch, flags) in enumerate(work)]
+        for (library, batch, _), run in zip(work, runs):
             results = run.result()
-            print(f"{batch[0].parent.name}: {len(batch)} sources in {len(results)} runs", flush=True)
+            print(f"{library}: {len(batch)} sources in {len(results)} runs", flush=True)
             for code, said in results:
                 if code:
                     found = 1
