@@ -245,16 +245,21 @@ Tow planned_tow(const Setup& setup) {
 
 void put_pins(Setup& setup, std::span<const PinRing> rings) {
     std::vector<Pin> pins;
+    double needed_mm = 0.0;
     for (const PinRing& ring : rings) {
+        needed_mm = std::max(needed_mm, pin_extension_mm(ring, setup.job.tow.width_mm));
         const std::vector<Pin> more =
             pins_of(ring, setup.mandrel.rims[static_cast<std::size_t>(ring.rim)]);
         pins.insert(pins.end(), more.begin(), more.end());
     }
-    setup.obstacles =
-        obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm, pins);
+    Job::MandrelJob& job = setup.job.mandrel;
+    if (!job.extension_given && !rings.empty()) {
+        job.extension_mm = std::ceil(needed_mm);
+    }
+    setup.obstacles = obstacles_of(setup.machine, setup.mandrel, job.extension_mm, pins);
     setup.pins.assign(rings.begin(), rings.end());
-    setup.wall = std::make_unique<LaydownWall>(setup.wall->surface(), setup.wall->bridge_reach_mm(),
-                                               std::move(pins));
+    setup.wall = std::make_unique<LaydownWall>(extended_surface(setup.mandrel, job.extension_mm),
+                                               setup.wall->bridge_reach_mm(), std::move(pins));
 }
 
 bool wants_least_time(const Setup& setup) {

@@ -66,7 +66,8 @@ struct Setup {
 /// The tow that is planned with: with less than all friction.
 [[nodiscard]] Tow planned_tow(const Setup& setup);
 
-/// Puts the pins that a plan needs on the mandrel: what can be hit, and what holds the fibre.
+/// Puts the pins that a plan needs on the mandrel: what can be hit, and what holds the fibre. Where
+/// the job gives no extensions they become as short as the pins allow.
 void put_pins(Setup& setup, std::span<const PinRing> rings);
 
 /// Whether the motion of least time is to be found: the job asks for it, and the machine leaves the

@@ -1,6 +1,7 @@
 #include "pipeline/wind_layer.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -84,8 +85,10 @@ private:
     // Puts them on the mandrel; none, with the reason, where fibre cannot turn on pins.
     std::vector<PinStand> stand_pins(std::string& failure) {
         const Job::MandrelJob& job = setup_.job.mandrel;
-        std::vector<PinStand> stands = meshwind::stand_pins(
-            setup_.mandrel.rims, job.pins, planned_tow(setup_), job.extension_mm, failure);
+        const double most_mm =
+            job.extension_given ? job.extension_mm : std::numeric_limits<double>::infinity();
+        std::vector<PinStand> stands = meshwind::stand_pins(setup_.mandrel.rims, job.pins,
+                                                            planned_tow(setup_), most_mm, failure);
         put_pins(layer_.setup, rings_of(stands));
         return stands;
     }

@@ -205,9 +205,22 @@ void print_plan(std::ostream& out, const WoundLayer& layer, Detail detail) {
     }
 }
 
+// Rings that have to be made and put on.
+void print_pins(std::ostream& out, const std::vector<PinRing>& rings) {
+    const char* before = "pins: ";
+    for (const PinRing& ring : rings) {
+        out << before << "at rim " << ring.rim << ' ' << ring.count << " of "
+            << fixed(ring.diameter_mm, 1) << " x " << fixed(ring.height_mm, 1) << " mm, "
+            << fixed(ring.offset_mm, 1) << " mm beyond it";
+        before = "; ";
+    }
+    out << (rings.empty() ? "" : "\n");
+}
+
 void print_layer(std::ostream& out, const WoundLayer& layer, Detail detail) {
     if (layer.plan.failure.empty()) {
         print_plan(out, layer, detail);
+        print_pins(out, layer.plan.pins);
         print_first_motions(out, layer);
         if (detail == Detail::Full && layer.plan.planner == Planner::Cover &&
             layer.job.kind != LayerKind::Wall) {

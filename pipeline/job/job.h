@@ -107,7 +107,8 @@ struct Job {
         double extension_mm = 100.0;      ///< >= 0; room for turns beyond each rim
         bool extension_given = false;     ///< by the job's author; else it may be made longer
         TurnKind turn = TurnKind::Friction;
-        PinWish pins{};  ///< read where the kind of turn does (turn_kinds.h)
+        bool turn_given = false;  ///< by the job's author; else pins may be tried
+        PinWish pins{};           ///< read where the kind of turn does (turn_kinds.h)
     };
     struct TowJob {
         double width_mm = 6.0;       ///< > 0

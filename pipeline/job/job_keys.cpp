@@ -142,7 +142,9 @@ Key<Owner> told(Key<Owner> key, bool Owner::*given) {
 
 Key<Job::MandrelJob> turn_key() {
     static const std::string kMeaning = [] {
-        std::string text = "how the fibre turns there";
+        std::string text =
+            "how the fibre turns there; where it is not given, and friction does not "
+            "do, pins are tried";
         for (const TurnKindTraits& turn : turn_kinds()) {
             if (!turn.meaning.empty()) {
                 text += "; " + std::string(turn.word) + ": " + std::string(turn.meaning);
@@ -183,9 +185,9 @@ const KeyTable<Job::MandrelJob>& mandrel_keys() {
                "part's size, and shorter where a face is curved"),
         told(number("extension", &Owner::extension_mm, kExtensionRange,
                     "mm of room beyond each rim where the fibre turns; where it is not given, and "
-                    "checks fail, longer ones are tried"),
+                    "checks fail, longer ones are tried, and with pins it is what they need"),
              &Owner::extension_given),
-        turn_key(),
+        told(turn_key(), &Owner::turn_given),
         only_if<Owner>([](const Owner& mandrel) { return traits_of(mandrel.turn).reads_pins; },
                        "job.pins_unused",
                        "only \"turn\": \"pins\" reads it; write that, or remove it",

@@ -47,8 +47,10 @@ constexpr std::uint64_t kSeedsOfTries = 2;
 // By so much of the wall covers with two seeds differ; by .2 % mostly.
 constexpr double kSeedsDiffer = 0.005;
 
-// More fibres or a larger blend cover so much more of the wall, or they are not worth it.
+// More fibres or a larger blend cover so much more of the wall, or they are not worth it; pins are
+// made and put on.
 constexpr double kWorthMore = 0.005;
+constexpr double kWorthPins = 0.03;
 
 // Share of what courses reach that fibres have to be able to join: a plan has to cover
 // kCoveredShare of it, and what is planned later to join the courses covers .02 on top at most.
@@ -84,12 +86,27 @@ bool stands(const Run& run) {
     return run.planned() && run.passed();
 }
 
-// Each fibre is a stop of the machine, a blend another shape than the file's.
-bool asks_more(const Run& run, const Run& than) {
-    const auto blend_mm = [](const Run& of) {
-        return of.layers.front().setup.job.mandrel.blend_mm.value_or(0.0);
-    };
-    return first_plan(run).fibres > first_plan(than).fibres || blend_mm(run) > blend_mm(than);
+bool turns_on_pins(const Job& job) {
+    return traits_of(job.mandrel.turn).reads_pins;
+}
+
+bool can_turn_on_pins(const Job& job) {
+    const TurnKindTraits& pins = traits_of(TurnKind::Pins);
+    return pins.why_not == nullptr || pins.why_not(job, false).empty();
+}
+
+// What a run has to cover more than one that asks less: each fibre is a stop of the machine, a
+// blend another shape than the file's.
+double worth_of(const Run& run, const Run& than) {
+    const Job& job = run.layers.front().setup.job;
+    const Job& other = than.layers.front().setup.job;
+    if (turns_on_pins(job) && !turns_on_pins(other)) {
+        return kWorthPins;
+    }
+    const bool asks_more =
+        first_plan(run).fibres > first_plan(than).fibres ||
+        job.mandrel.blend_mm.value_or(0.0) > other.mandrel.blend_mm.value_or(0.0);
+    return asks_more ? kWorthMore : 0.0;
 }
 
 bool is_better(const Run& run, const Run& than) {
@@ -99,7 +116,7 @@ bool is_better(const Run& run, const Run& than) {
     if (run.planned() != than.planned()) {
         return run.planned();
     }
-    const double worth = stands(run) && asks_more(run, than) ? kWorthMore : 0.0;
+    const double worth = stands(run) ? worth_of(run, than) : 0.0;
     return covered_share(run) > covered_share(than) + worth;
 }
 
@@ -126,7 +143,8 @@ std::string tried_words(const Run& run) {
     const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
                                       [](const Check& check) { return !check.ok; });
     return "with " + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
-           ", extensions of " + fixed(job.mandrel.extension_mm, 0) + " mm and " +
+           (turns_on_pins(job) ? ", turns on pins" : "") + ", extensions of " +
+           fixed(job.mandrel.extension_mm, 0) + " mm and " +
            (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
                                        : std::string("no blend ")) +
            percent(covered_share(run), 1) + " of the wall " +
@@ -137,7 +155,11 @@ std::string tried_words(const Run& run) {
 
 // What the job has to say for the same run.
 std::string settings_words(const Job& job) {
-    std::string words = "--set fibres=" + std::to_string(job.fibres) + " --set mandrel.extension=";
+    std::string words = "--set fibres=" + std::to_string(job.fibres);
+    if (turns_on_pins(job)) {
+        words += " --set mandrel.turn=pins";
+    }
+    words += " --set mandrel.extension=";
     append_shortest(words, job.mandrel.extension_mm);
     if (job.mandrel.blend_mm > 0.0) {
         words += " --set mandrel.blend=";
@@ -149,8 +171,12 @@ std::string settings_words(const Job& job) {
 // Runs of the main job on one file, of which the best stands.
 class Trials {
 public:
-    Trials(const MandrelOf& mandrel, const Machine& machine, const WindOptions& options)
-        : mandrel_(mandrel), machine_(machine), options_(options) {}
+    Trials(const MandrelOf& mandrel, const Machine& machine, const Job& job,
+           const WindOptions& options)
+        : mandrel_(mandrel),
+          machine_(machine),
+          options_(options),
+          pins_open_(!options.import && !job.mandrel.turn_given && can_turn_on_pins(job)) {}
 
     /// Reach: no cover is wound, it is said what of the wall can be covered.
     enum class Depth { Full, WhereItCovers, Reach };
@@ -162,7 +188,7 @@ public:
                                     : depth == Depth::Full ? kMostSeeds
                                                            : kSeedsOfTries;
         by_chance_ = true;
-        for (std::uint64_t k = 0; by_chance_ && k < seeds; ++k) {
+        for (std::uint64_t k = 0; by_chance_ && k < seeds && (k == 0 || !pins_first()); ++k) {
             try {
                 take(once(job, depth, options_.context.seed + k));
             } catch (const InputError& error) {
@@ -175,11 +201,20 @@ public:
         }
     }
 
+    /// The job as it stands, but for a blend that is yet to be chosen.
+    void start(const Job& job) {
+        if (job.mandrel.blend_mm || options_.import) {
+            run(job, best_ ? Depth::WhereItCovers : Depth::Full);
+        } else {
+            choose_blend(job);
+        }
+    }
+
     /// Without a blend; where that does not do, with the smallest that lets the fibres reach
     /// most of the wall, or nearly as much as any.
     void choose_blend(const Job& job) {
         run(blended(job, 0.0), Depth::WhereItCovers);
-        if (done() && covers_well()) {
+        if ((done() && covers_well()) || pins_first()) {
             return;
         }
         const bool was_done = done();
@@ -206,11 +241,18 @@ public:
         }
     }
 
-    // More room for the best run, and for what comes of it.
-    void mend() {
-        next_ = room_for(*best_);
-        for (int mend = 0; mend < kMostMends && next_; ++mend) {
-            run(*std::exchange(next_, std::nullopt), Depth::WhereItCovers);
+    // What the job leaves open: more room for the best run, and turns on pins.
+    void mend(const Job& job) {
+        const bool wants_pins = pins_first();
+        if (!wants_pins) {
+            mend_room();
+        }
+        if (may_turn_on_pins()) {
+            turn_on_pins(job);
+        }
+        if (wants_pins && !done()) {
+            start(job);
+            mend_room();
         }
     }
 
@@ -232,6 +274,35 @@ public:
 
 private:
     [[nodiscard]] bool done() const { return stands(*best_); }
+
+    // Fibre turns by friction, fails or covers little, and the job leaves that open. A wall that is
+    // wound takes too long to be wound twice.
+    [[nodiscard]] bool may_turn_on_pins() const {
+        return pins_open_ && first_plan(*best_).planner == Planner::Cover &&
+               !(done() && covers_well()) && (best_->walls.empty() || !best_->planned());
+    }
+
+    // No choice of courses with turns by friction covers most of the wall.
+    [[nodiscard]] bool pins_first() const {
+        return may_turn_on_pins() && can_cover(*best_) < kWellCovered;
+    }
+
+    void turn_on_pins(Job job) {
+        pins_open_ = false;
+        job.mandrel.turn = TurnKind::Pins;
+        start(job);
+        if (turns_on_pins(best_->layers.front().setup.job)) {
+            mend_room();
+        }
+    }
+
+    // More room for the best run, and for what comes of it.
+    void mend_room() {
+        next_ = room_for(*best_);
+        for (int mend = 0; mend < kMostMends && next_; ++mend) {
+            run(*std::exchange(next_, std::nullopt), Depth::WhereItCovers);
+        }
+    }
 
     // Patterns cover what they are meant to, lattices little.
     [[nodiscard]] bool covers_well() const {
@@ -316,6 +387,7 @@ private:
     const MandrelOf& mandrel_;
     const Machine& machine_;
     const WindOptions& options_;
+    bool pins_open_;  // they have not been tried, and may be
     std::optional<Run> best_;
     std::optional<Job> next_;  // that may mend the last run that was wound
     bool by_chance_ = false;   // did that fail
@@ -327,13 +399,9 @@ private:
 
 Run wind(const MandrelOf& mandrel, const Machine& machine, const Job& job,
          const WindOptions& options) {
-    Trials trials(mandrel, machine, options);
-    if (job.mandrel.blend_mm || options.import) {
-        trials.run(job, Trials::Depth::Full);
-    } else {
-        trials.choose_blend(job);
-    }
-    trials.mend();
+    Trials trials(mandrel, machine, job, options);
+    trials.start(job);
+    trials.mend(job);
     return std::move(trials).best();
 }
 

@@ -12,6 +12,8 @@ namespace meshwind {
 /// - Where the plan says that more fibres or longer extensions would reach more of the wall, and
 ///   the job does not give them, with those.
 /// - A cover that covers most and fails is planned with the next seeds.
+/// - Where turns by friction fail or cover little still, and the job leaves the kind of turn open,
+///   the same on pins. They stand where they cover clearly more.
 ///
 /// The first run that passes every check stands, unless another covers much more; else the one that
 /// covers most. Tries that cover too little to pass end before they are wound. What each came to is

@@ -77,6 +77,7 @@ struct BareTee {
         job.tow.friction = 0.05;
         job.mandrel.blend_mm.reset();
         job.mandrel.extension_given = true;
+        job.mandrel.turn_given = true;
         job.fibres_given = true;
     }
 
@@ -117,12 +118,35 @@ TEST(Trials, WindsWhatIsTooBareByForce) {
     }
 }
 
+// Where friction does not do and the job leaves it open, fibre turns on pins, on extensions that
+// are as short as those allow.
+TEST(Trials, TurnsOnPinsWhereFrictionDoesNotDo) {
+    Job job = quick_job(LayerKind::Cover);
+    job.tow.friction = 0.1;
+    job.mandrel.extension_mm = 30.0;
+    job.fibres_given = true;
+    std::vector<TurnKind> asked;
+    const auto mandrel = [&](const Job& tried) {
+        asked.push_back(tried.mandrel.turn);
+        return asked.back() == TurnKind::Pins
+                   ? small_pipe()
+                   : build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee");
+    };
+    const auto run = wind(mandrel, shipped("six_axis"), job, {.context = {.effort = kQuick}});
+    EXPECT_EQ(asked, (std::vector{TurnKind::Friction, TurnKind::Pins}));
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    const meshwind::Setup& setup = run.layers.front().setup;
+    EXPECT_EQ(setup.pins.size(), 2U);
+    EXPECT_LT(setup.job.mandrel.extension_mm, 30.0);
+}
+
 TEST(Trials, PlansACoverThatFailsAgainWithTheNextSeeds) {
     Job job = quick_job(LayerKind::Cover);
     job.tolerance.laydown_mm = 0.01;
     job.tolerance.laydown_angle_deg = 0.001;  // finer than any program keeps
     job.fibres_given = true;
     job.mandrel.extension_given = true;
+    job.mandrel.turn_given = true;
     job.mandrel.blend_mm = 0.0;
     int asked = 0;
     const auto mandrel = [&](const Job&) {

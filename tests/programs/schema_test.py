@@ -62,7 +62,7 @@ class Schemas(program.ProgramTest):
                for word in ("--set", setting)]
         self.assertIn("wish_deg", self.run_cover(self.make(*SMALL_TEE), *job)["plan"]["angles"])
         failed = self.wound(self.make(*TEE), "--effort", "0.1", *TOW, "--set", "tow.friction=0.01", "--set",
-                            "redundancy=central-angle", code=1)
+                            "redundancy=central-angle", "--set", "mandrel.turn=friction", code=1)
         self.assertFalse(failed["ok"])
         # Without a plan there is nothing to write.
         result = self.run_program("wind", self.make(*PIPE), *layers("cover"), "--set", "mandrel.turn=pins", "--set",

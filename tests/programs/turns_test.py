@@ -53,7 +53,8 @@ class Pins(Turns):
                            self.report()["plan"]["failure"])
         # (R / slip)(1 / sin(20 deg) - 1) with 0.2 as the slip: 385 mm, and more with less.
         self.assertGreater(float(needed[1]), 385.0)
-        self.wind(pipe, LAYER, 0, turn="pins")
+        said = self.wind(pipe, LAYER, 0, turn="pins").stdout
+        self.assertRegex(said, r"\npins: at rim 1 \d+ of 2\.0 x \d+\.\d mm, \d+\.\d mm beyond it; at rim 0 ")
         report = self.report()
         plan = report["plan"]
         for name, check in report["checks"].items():

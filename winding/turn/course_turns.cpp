@@ -167,8 +167,7 @@ std::vector<PinStand> stand_pins(std::span<const Rim> rims, const PinWish& wish,
     std::vector<PinStand> stands;
     for (const Rim& rim : rims) {
         stands.push_back(choose_stand(rim, wish, tow, failure));
-        const PinTurnShape& shape = stands.back().shape;
-        const double needed_mm = shape.offset_mm + shape.held_mm + 0.5 * tow.width_mm;
+        const double needed_mm = pin_extension_mm(stands.back().ring, tow.width_mm);
         if (failure.empty() && needed_mm > extension_mm) {
             failure = "the turn on pins takes " + fixed(needed_mm, 1) +
                       " mm of extension where there are " + fixed(extension_mm, 1);

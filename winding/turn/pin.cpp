@@ -59,6 +59,10 @@ double strand_radius_mm(double width_mm, double thickness_mm) {
     return std::sqrt(width_mm * thickness_mm / kPi);
 }
 
+double pin_extension_mm(const PinRing& ring, double band_mm) {
+    return ring.offset_mm + 0.5 * ring.diameter_mm + ring.strand_mm + 0.5 * band_mm;
+}
+
 std::vector<Pin> pins_of(const PinRing& ring, const Rim& rim) {
     const Vector3d x = rim_reference(rim);
     const Vector3d y = rim.axis.cross(x);

@@ -29,6 +29,9 @@ struct Pin {
 /// Radius of the round strand with the cross-section of a tow: sqrt(width thickness / pi).
 [[nodiscard]] double strand_radius_mm(double width_mm, double thickness_mm);
 
+/// Axial length of the extension that the ring needs, and a band about its pins.
+[[nodiscard]] double pin_extension_mm(const PinRing& ring, double band_mm);
+
 [[nodiscard]] std::vector<Pin> pins_of(const PinRing& ring, const Rim& rim);
 
 /// A pin as what can be hit: a closed cylinder from its base, sunk in by its own radius, to its
