@@ -253,13 +253,15 @@ void put_pins(Setup& setup, std::span<const PinRing> rings) {
         pins.insert(pins.end(), more.begin(), more.end());
     }
     Job::MandrelJob& job = setup.job.mandrel;
-    if (!job.extension_given && !rings.empty()) {
+    const bool shortens = !job.extension_given && !rings.empty();
+    if (shortens) {
         job.extension_mm = std::ceil(needed_mm);
     }
     setup.obstacles = obstacles_of(setup.machine, setup.mandrel, job.extension_mm, pins);
     setup.pins.assign(rings.begin(), rings.end());
-    setup.wall = std::make_unique<LaydownWall>(extended_surface(setup.mandrel, job.extension_mm),
-                                               setup.wall->bridge_reach_mm(), std::move(pins));
+    setup.wall = std::make_unique<LaydownWall>(
+        shortens ? extended_surface(setup.mandrel, job.extension_mm) : setup.wall->surface(),
+        setup.wall->bridge_reach_mm(), std::move(pins));
 }
 
 bool wants_least_time(const Setup& setup) {

@@ -178,17 +178,64 @@ public:
           options_(options),
           pins_open_(!options.import && !job.mandrel.turn_given && can_turn_on_pins(job)) {}
 
-    /// Reach: no cover is wound, it is said what of the wall can be covered.
+    /// The job as it stands, without a blend where that is yet to be chosen; then with wider
+    /// blends. \param first seed that is tried, counted from 0 \throws as wind() does for the first
+    /// job
+    void start(const Job& job, std::uint64_t first = 0) {
+        const bool chooses_blend = !job.mandrel.blend_mm && !options_.import;
+        run(chooses_blend ? blended(job, 0.0) : job,
+            chooses_blend || best_ ? Depth::WhereItCovers : Depth::Full, first);
+        if (chooses_blend && !(done() && covers_well()) && !pins_first()) {
+            choose_blend(job);
+        }
+    }
+
+    // What the job leaves open: more room for the best run, and turns on pins. Those come first
+    // where they promise more; where they do not do, what was put off for them comes after all.
+    void mend(const Job& job) {
+        const bool put_off = pins_first();
+        if (!put_off) {
+            mend_room(job);
+        }
+        if (may_turn_on_pins()) {
+            const bool by_chance = by_chance_;
+            turn_on_pins(job);
+            if (put_off && !done()) {
+                by_chance_ = by_chance;
+                start(job, 1);
+                mend_room(job);
+            }
+        }
+    }
+
+    [[nodiscard]] Run best() && {
+        if (options_.force && was_too_bare(*best_)) {  // whose program is asked for all the same
+            best_ = once(Job(best_->layers.front().setup.job), Depth::Full, best_->seed);
+        }
+        if (tried_.size() > 1) {
+            options_.context.report_remark(tried_.back());
+            tried_.push_back(
+                "what stands is the job with " + settings_words(best_->layers.front().setup.job) +
+                (best_->seed == options_.context.seed ? ""
+                                                      : " --seed " + std::to_string(best_->seed)));
+            options_.context.report_remark(tried_.back());
+            best_->remarks.insert(best_->remarks.end(), tried_.begin(), tried_.end());
+        }
+        return *std::move(best_);
+    }
+
+private:
+    // Reach: no cover is wound, it is said what of the wall can be covered.
     enum class Depth { Full, WhereItCovers, Reach };
 
-    /// Once, and where that fails by chance and nothing stands with the next seeds. \throws as
-    /// wind() does for the first job
-    void run(const Job& job, Depth depth) {
+    // Once, and where that fails by chance and nothing stands with the next seeds; from a later
+    // seed on only where what by_chance_ is of did. Throws as wind() does for the first job.
+    void run(const Job& job, Depth depth, std::uint64_t first = 0) {
         const std::uint64_t seeds = best_ && done()        ? 1
                                     : depth == Depth::Full ? kMostSeeds
                                                            : kSeedsOfTries;
-        by_chance_ = true;
-        for (std::uint64_t k = 0; by_chance_ && k < seeds && (k == 0 || !pins_first()); ++k) {
+        by_chance_ = by_chance_ || first == 0;
+        for (std::uint64_t k = first; by_chance_ && k < seeds && (k == 0 || !pins_first()); ++k) {
             try {
                 take(once(job, depth, options_.context.seed + k));
             } catch (const InputError& error) {
@@ -201,22 +248,8 @@ public:
         }
     }
 
-    /// The job as it stands, but for a blend that is yet to be chosen.
-    void start(const Job& job) {
-        if (job.mandrel.blend_mm || options_.import) {
-            run(job, best_ ? Depth::WhereItCovers : Depth::Full);
-        } else {
-            choose_blend(job);
-        }
-    }
-
-    /// Without a blend; where that does not do, with the smallest that lets the fibres reach
-    /// most of the wall, or nearly as much as any.
+    // The smallest blend that lets the fibres reach most of the wall, or nearly as much as any.
     void choose_blend(const Job& job) {
-        run(blended(job, 0.0), Depth::WhereItCovers);
-        if ((done() && covers_well()) || pins_first()) {
-            return;
-        }
         const bool was_done = done();
         const double before = was_done ? can_cover(*best_) + kWorthMore : 0.0;
         double most = before;
@@ -241,38 +274,6 @@ public:
         }
     }
 
-    // What the job leaves open: more room for the best run, and turns on pins.
-    void mend(const Job& job) {
-        const bool wants_pins = pins_first();
-        if (!wants_pins) {
-            mend_room();
-        }
-        if (may_turn_on_pins()) {
-            turn_on_pins(job);
-        }
-        if (wants_pins && !done()) {
-            start(job);
-            mend_room();
-        }
-    }
-
-    [[nodiscard]] Run best() && {
-        if (options_.force && was_too_bare(*best_)) {  // whose program is asked for all the same
-            best_ = once(Job(best_->layers.front().setup.job), Depth::Full, best_->seed);
-        }
-        if (tried_.size() > 1) {
-            options_.context.report_remark(tried_.back());
-            tried_.push_back(
-                "what stands is the job with " + settings_words(best_->layers.front().setup.job) +
-                (best_->seed == options_.context.seed ? ""
-                                                      : " --seed " + std::to_string(best_->seed)));
-            options_.context.report_remark(tried_.back());
-            best_->remarks.insert(best_->remarks.end(), tried_.begin(), tried_.end());
-        }
-        return *std::move(best_);
-    }
-
-private:
     [[nodiscard]] bool done() const { return stands(*best_); }
 
     // Fibre turns by friction, fails or covers little, and the job leaves that open. A wall that is
@@ -291,13 +292,14 @@ private:
         pins_open_ = false;
         job.mandrel.turn = TurnKind::Pins;
         start(job);
-        if (turns_on_pins(best_->layers.front().setup.job)) {
-            mend_room();
-        }
+        mend_room(job);
     }
 
-    // More room for the best run, and for what comes of it.
-    void mend_room() {
+    // More room for the best run, and for what comes of it, where that turns as the job does.
+    void mend_room(const Job& job) {
+        if (best_->layers.front().setup.job.mandrel.turn != job.mandrel.turn) {
+            return;
+        }
         next_ = room_for(*best_);
         for (int mend = 0; mend < kMostMends && next_; ++mend) {
             run(*std::exchange(next_, std::nullopt), Depth::WhereItCovers);

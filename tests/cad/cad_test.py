@@ -110,7 +110,7 @@ class CadTest(program.ProgramTest):
         # Random ones on the torus, on its outer and its inner side: 3e-5 mm per metre with these.
         dice = random.Random(1)
         off_mm2 = length_mm2 = 0.0
-        for _ in range(3):
+        for _ in range(5):
             angle = dice.uniform(0, 2 * math.pi)
             start = [math.sqrt(0.5) * (200 + 50 * math.cos(angle))] * 2 + [50 * math.sin(angle)]
             off_mm, length_mm = self.off_faces_mm(cad("torus"), start, [dice.uniform(-1, 1) for _ in range(3)], 300, 0.2)
@@ -234,7 +234,7 @@ class CadTest(program.ProgramTest):
         whole = cad("vessel").read_bytes()
         dice = random.Random(1)
         refused = 0
-        for number in range(int(os.environ.get("MESHWIND_COUNT", "5"))):
+        for number in range(int(os.environ.get("MESHWIND_COUNT", "8"))):
             damaged = bytearray(whole)
             for _ in range(dice.choice((1, 3, 30))):
                 at, length = dice.randrange(len(damaged)), dice.randrange(1, 40)

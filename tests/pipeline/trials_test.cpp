@@ -154,7 +154,7 @@ TEST(Trials, PlansACoverThatFailsAgainWithTheNextSeeds) {
         return small_pipe();
     };
     const auto run =
-        wind(mandrel, shipped("six_axis"), job, {.context = {.seed = 7, .effort = 0.2 * kQuick}});
+        wind(mandrel, shipped("six_axis"), job, {.context = {.seed = 7, .effort = kQuick}});
     EXPECT_EQ(asked, 3);
     EXPECT_FALSE(check_of(run, "laydown").ok);
     EXPECT_NEAR(check_of(run, "coverage").numbers.at("limit"),

@@ -54,7 +54,10 @@ class Pins(Turns):
         # (R / slip)(1 / sin(20 deg) - 1) with 0.2 as the slip: 385 mm, and more with less.
         self.assertGreater(float(needed[1]), 385.0)
         said = self.wind(pipe, LAYER, 0, turn="pins").stdout
-        self.assertRegex(said, r"\npins: at rim 1 \d+ of 2\.0 x \d+\.\d mm, \d+\.\d mm beyond it; at rim 0 ")
+        rings = re.search(r"\npins: (.*)\n", said)[1].split("; ")
+        for rim, ring in enumerate(sorted(rings)):
+            self.assertRegex(ring, rf"^at rim {rim} \d+ of 2\.0 x \d+\.\d mm, \d+\.\d mm beyond it$")
+        self.assertEqual(len(rings), 2)
         report = self.report()
         plan = report["plan"]
         for name, check in report["checks"].items():

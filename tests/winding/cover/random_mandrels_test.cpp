@@ -309,7 +309,7 @@ TEST(RandomMandrels, TeesKeepEveryRule) {
 }
 
 TEST(RandomMandrels, YsKeepEveryRule) {
-    EXPECT_EQ(plan_and_judge_again(random_lateral, 1), 1);
+    EXPECT_EQ(plan_and_judge_again(random_lateral, 2), 2);
 }
 
 TEST(RandomMandrels, FramesKeepEveryRule) {
