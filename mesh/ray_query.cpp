@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include <embree3/rtcore.h>
@@ -181,6 +183,21 @@ RTCRay ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, d
     return ray;
 }
 
+// The one device of the process: each takes half a MB of address space and threads of its own, and
+// a CAD part of a thousand faces has as many queries at once.
+RTCDevice shared_device() {
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    };
+    static const std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device(
+        rtcNewDevice(nullptr));
+    if (device == nullptr) {
+        throw NumericalError("mesh.ray_device", "",
+                             "the ray tracing library Embree does not start");
+    }
+    return device.get();
+}
+
 }  // namespace
 
 // Distances on a regular grid of nodes around the parts.
@@ -303,7 +320,6 @@ struct RayQuery::Impl {
 
     std::vector<TriangleSoup> parts;
     std::vector<std::vector<Disc>> discs;  // per part and face
-    RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
     // Nearer than `best`, which may be none; else that.
@@ -325,16 +341,13 @@ struct RayQuery::Impl {
         if (scene != nullptr) {
             rtcReleaseScene(scene);
         }
-        if (device != nullptr) {
-            rtcReleaseDevice(device);
-        }
     }
 
     void add(unsigned id, const TriangleSoup& soup) const {
         if (soup.faces.empty()) {
             return;
         }
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* vertex = static_cast<float*>(
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                     3 * sizeof(float), soup.points_mm.size()));
@@ -360,12 +373,7 @@ struct RayQuery::Impl {
 RayQuery::RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm)
     : impl_(std::make_unique<Impl>()) {
     impl_->parts.assign(parts.begin(), parts.end());
-    impl_->device = rtcNewDevice(nullptr);
-    if (impl_->device == nullptr) {
-        throw NumericalError("mesh.ray_device", "",
-                             "the ray tracing library Embree does not start");
-    }
-    impl_->scene = rtcNewScene(impl_->device);
+    impl_->scene = rtcNewScene(shared_device());
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t i = 0; i < impl_->parts.size(); ++i) {
         impl_->add(static_cast<unsigned>(i), impl_->parts[i]);

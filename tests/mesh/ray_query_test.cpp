@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <random>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -404,6 +406,29 @@ TEST(RayQuery, AnswersWithoutTriangles) {
         EXPECT_EQ(rays.closest({0, 0, 0}, 3.0).distance_mm, 3.0);
         EXPECT_TRUE(rays.capsule_clear({0, 0, 0}, {0, 0, 9}, 1.0));
     }
+}
+
+long address_space_mb() {
+    constexpr long kPage_kb = 4;
+    constexpr long kKbPerMb = 1024;
+    long pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * kPage_kb / kKbPerMb;
+}
+
+// Faces of a CAD part have a query each, and its reader works within bounds: with a device of its
+// own each took half a MB of address space.
+TEST(RayQuery, AThousandAtOnceTakeLittleAddressSpace) {
+    TriangleSoup soup;
+    soup.points_mm = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    soup.faces = {{0, 1, 2}};
+    std::vector<RayQuery> queries;
+    queries.emplace_back(std::span(&soup, 1));
+    const long before_mb = address_space_mb();
+    for (int i = 0; i < 1000; ++i) {
+        queries.emplace_back(std::span(&soup, 1));
+    }
+    EXPECT_LT(address_space_mb() - before_mb, 300);  // 140; with their own 600
 }
 
 }  // namespace
