@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/units.h"
 #include "machines/kinematics.h"
 
 namespace meshwind {
@@ -123,26 +124,38 @@ std::array<double, 2> ArmInverse::elbow_angles(double distance_mm) const {
     return {zero + half, zero - half};
 }
 
-// Axes 4, 5 and 6 for what is left when 1 to 3 are undone: a turn about the wrist centre.
-void ArmInverse::wrist_angles(const Isometry3d& turn, Joints joints,
-                              std::span<const double> previous, std::vector<Joints>& found) const {
+// Axis 2, which brings the wrist centre to where it was reached when axis 1 is undone.
+double ArmInverse::upper_arm_angle(double elbow_rad, const Vector3d& reached) const {
+    const Vector3d bent = axis_[2].motion(elbow_rad) * wrist_mm_;
+    return angle_about(axis_[1].direction, axis_[1].across(bent), axis_[1].across(reached));
+}
+
+// Axes 4, 5 and 6 for what is left of a motion when 1 to 3 are undone: a turn about the wrist
+// centre. Either way.
+std::array<ArmInverse::Joints, 2> ArmInverse::wrist_angles(const Isometry3d& motion, Joints joints,
+                                                           std::span<const double> previous) const {
+    const auto turn_of = [&](std::size_t i, double angle_rad) {
+        return Eigen::AngleAxisd(angle_rad, axis_[i].direction).toRotationMatrix();
+    };
+    const Eigen::Matrix3d left_of_arm =
+        (turn_of(0, joints[0]) * turn_of(1, joints[1]) * turn_of(2, joints[2])).transpose() *
+        motion.linear();
     const Vector3d& d4 = axis_[3].direction;
     const Vector3d& d5 = axis_[4].direction;
     const Vector3d& d6 = axis_[5].direction;
-    const Vector3d goal = turn.linear() * d6;  // where axis 6 points: exp(4) exp(5) d6
-    const auto finish = [&](double q4, double q5) {
+    const Vector3d goal = left_of_arm * d6;  // where axis 6 points: exp(4) exp(5) d6
+    const auto finished = [&](double q4, double q5) {
         joints[3] = q4;
         joints[4] = q5;
-        const Eigen::Matrix3d left = Eigen::AngleAxisd(-q5, d5).toRotationMatrix() *
-                                     Eigen::AngleAxisd(-q4, d4).toRotationMatrix() * turn.linear();
+        const Eigen::Matrix3d left = turn_of(4, -q5) * turn_of(3, -q4) * left_of_arm;
         const Vector3d mark = any_normal(d6);
         joints[5] = angle_about(d6, mark, left * mark);
-        found.push_back(joints);
+        return joints;
     };
     if (d4.cross(goal).norm() < kUndefined) {
         const double q4 = previous[3];
-        finish(q4, angle_about(d5, d6, Eigen::AngleAxisd(-q4, d4).toRotationMatrix() * goal));
-        return;
+        const Joints only = finished(q4, angle_about(d5, d6, turn_of(3, -q4) * goal));
+        return {only, only};
     }
     // Axis 4 turned back, axis 6 keeps its component along 4 and its length across, and has the
     // component along 5 that it has at zero. Lengths across, not cosines: near the singular pose
@@ -152,10 +165,12 @@ void ArmInverse::wrist_angles(const Isometry3d& turn, Joints joints,
     const Vector3d side5 = (d5 - d4.dot(d5) * d4).normalized();
     const double share = (d5.dot(d6) - d4.dot(d5) * along) / side5.dot(d5);
     const double rest = std::sqrt(std::max((across - share) * (across + share), 0.0));
-    for (const double side : {1.0, -1.0}) {
+    const auto to_a_side = [&](double side) {
         const Vector3d between = along * d4 + share * side5 + side * rest * d4.cross(side5);
-        finish(angle_about(d4, between, goal), angle_about(d5, d6, between));
-    }
+        return finished(angle_about(d4, between, goal), angle_about(d5, d6, between));
+    };
+    const Joints one = to_a_side(1.0);
+    return {one, to_a_side(-1.0)};
 }
 
 std::vector<ArmInverse::Joints> ArmInverse::solve(const Isometry3d& base_from_mandrel,
@@ -164,17 +179,36 @@ std::vector<ArmInverse::Joints> ArmInverse::solve(const Isometry3d& base_from_ma
     const Vector3d wrist = motion * wrist_mm_;
     std::vector<Joints> found;
     for (const double q1 : shoulder_angles(wrist, previous[0])) {
-        const Isometry3d undone1 = axis_[0].motion(-q1);
-        const Vector3d reached = undone1 * wrist;
+        const Vector3d reached = axis_[0].motion(-q1) * wrist;
         for (const double q3 : elbow_angles(axis_[1].across(reached).norm())) {
-            const Isometry3d elbow = axis_[2].motion(q3);
-            const double q2 = angle_about(axis_[1].direction, axis_[1].across(elbow * wrist_mm_),
-                                          axis_[1].across(reached));
-            const Isometry3d arm = axis_[0].motion(q1) * axis_[1].motion(q2) * elbow;
-            wrist_angles(arm.inverse() * motion, {q1, q2, q3, 0.0, 0.0, 0.0}, previous, found);
+            const double q2 = upper_arm_angle(q3, reached);
+            for (const Joints& way : wrist_angles(motion, {q1, q2, q3, 0.0, 0.0, 0.0}, previous)) {
+                found.push_back(way);
+            }
         }
     }
     return found;
+}
+
+ArmInverse::Joints ArmInverse::solve_near(const Isometry3d& base_from_mandrel,
+                                          std::span<const double> previous) const {
+    const auto away = [&](std::size_t i, double angle_rad) {
+        return std::abs(std::remainder(angle_rad - previous[i], 2.0 * kPi));
+    };
+    const auto nearer = [&](std::size_t i, const std::array<double, 2>& angles_rad) {
+        return away(i, angles_rad[1]) < away(i, angles_rad[0]) ? angles_rad[1] : angles_rad[0];
+    };
+    const auto wrist_away = [&](const Joints& way) {
+        return std::max({away(3, way[3]), away(4, way[4]), away(5, way[5])});
+    };
+    const Isometry3d motion = base_from_mandrel * mandrel_at_zero_.inverse();
+    const Vector3d wrist = motion * wrist_mm_;
+    const double q1 = nearer(0, shoulder_angles(wrist, previous[0]));
+    const Vector3d reached = axis_[0].motion(-q1) * wrist;
+    const double q3 = nearer(2, elbow_angles(axis_[1].across(reached).norm()));
+    const double q2 = upper_arm_angle(q3, reached);
+    const auto ways = wrist_angles(motion, {q1, q2, q3, 0.0, 0.0, 0.0}, previous);
+    return wrist_away(ways[1]) < wrist_away(ways[0]) ? ways[1] : ways[0];
 }
 
 ArmMeasure ArmInverse::measure(std::span<const double> joints) const {

@@ -37,6 +37,11 @@ public:
     [[nodiscard]] std::vector<Joints> solve(const Eigen::Isometry3d& base_from_mandrel,
                                             std::span<const double> previous) const;
 
+    /// Of the solutions the one that branches as the previous joints do: at axes 1, 3 and then the
+    /// wrist the angles nearest to theirs. An eighth of the work.
+    [[nodiscard]] Joints solve_near(const Eigen::Isometry3d& base_from_mandrel,
+                                    std::span<const double> previous) const;
+
     /// Of joints, wherever they come from. \pre at least six
     [[nodiscard]] ArmMeasure measure(std::span<const double> joints) const;
 
@@ -51,8 +56,9 @@ private:
     [[nodiscard]] std::array<double, 2> shoulder_angles(const Eigen::Vector3d& wrist_mm,
                                                         double previous) const;
     [[nodiscard]] std::array<double, 2> elbow_angles(double distance_mm) const;
-    void wrist_angles(const Eigen::Isometry3d& turn, Joints joints,
-                      std::span<const double> previous, std::vector<Joints>& found) const;
+    [[nodiscard]] double upper_arm_angle(double elbow_rad, const Eigen::Vector3d& reached) const;
+    [[nodiscard]] std::array<Joints, 2> wrist_angles(const Eigen::Isometry3d& motion, Joints joints,
+                                                     std::span<const double> previous) const;
 
     std::array<Screw, 6> axis_;
     Eigen::Vector3d wrist_mm_ = Eigen::Vector3d::Zero();  ///< where axes 4, 5 and 6 meet

@@ -9,6 +9,7 @@
 #include "core/small_linear.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "machines/arm_eye_inverse.h"
 #include "machines/arm_inverse.h"
 #include "machines/damped_least_squares.h"
 #include "machines/drawn_starts.h"
@@ -111,6 +112,12 @@ std::string general_words(const Machine& machine) {
     return "general chain: " + words + ": numerical";
 }
 
+std::string arm_words(const ArmEyeInverse& inverse) {
+    return std::string("spindle, arm that holds the eye") +
+           (inverse.on_track() ? ", on a track" : "") +
+           (inverse.closed_form() ? ": closed form" : ": numerical");
+}
+
 struct Judged {
     MachineClass what;
     std::string code;
@@ -128,6 +135,12 @@ double kept_distance_mm(const Machine& machine, const SpindleWristInverse& inver
 Judged judge(const Machine& machine) {
     Judged judged;
     judged.what.spindle = is_spindle(machine);
+    if (const auto arm = ArmEyeInverse::recognise(machine)) {
+        judged.what.arm = true;
+        judged.what.free_turn = true;
+        judged.what.words = arm_words(*arm);
+        return judged;
+    }
     try {
         const SpindleWristInverse inverse(machine);
         judged.what.closed_form = true;
@@ -334,6 +347,9 @@ WristState NumericEyeInverse::solve(const EyeTarget& target, double turn_rad,
 std::unique_ptr<EyeInverse> make_eye_inverse(const Machine& machine) {
     if (machine_class(machine).closed_form) {
         return std::make_unique<SpindleWristInverse>(machine);
+    }
+    if (std::unique_ptr<ArmEyeInverse> arm = ArmEyeInverse::recognise(machine)) {
+        return arm;
     }
     return std::make_unique<NumericEyeInverse>(machine);
 }

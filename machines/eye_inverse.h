@@ -14,7 +14,8 @@ struct MachineClass {
     std::string words;         ///< "spindle, 3 linear axes, head roll and swing: closed form"
     bool spindle = false;      ///< the mandrel turns about the machine's Z axis alone
     bool closed_form = false;  ///< SpindleWristInverse holds
-    bool free_turn = false;    ///< and any turn of the mandrel lets the eye reach any place
+    bool arm = false;          ///< ArmEyeInverse holds
+    bool free_turn = false;    ///< any turn of the mandrel lets the eye reach any place
     /// With a carriage along the spindle alone: the one distance of the eye from the spindle axis,
     /// at which the main job keeps it (EyeRule::Cylinder); else 0.
     double eye_distance_mm = 0.0;
@@ -66,7 +67,7 @@ private:
     double length_mm_ = 1.0;
 };
 
-/// SpindleWristInverse where it holds, else NumericEyeInverse.
+/// SpindleWristInverse or ArmEyeInverse where one holds, else NumericEyeInverse.
 [[nodiscard]] std::unique_ptr<EyeInverse> make_eye_inverse(const Machine& machine);
 
 }  // namespace meshwind

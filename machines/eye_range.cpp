@@ -1,15 +1,21 @@
 #include "machines/eye_range.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <vector>
 
+#include "core/units.h"
+#include "machines/arm_eye_inverse.h"
 #include "machines/eye_inverse.h"
 
 namespace meshwind {
 namespace {
 
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 // Directions are unit vectors: less than this of one is rounding.
 constexpr double kNothing = 1e-9;
@@ -36,11 +42,19 @@ struct Interval {
         }
     }
 
+    void hold(double value) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+
     [[nodiscard]] double nearest_to_zero() const { return std::max({low, -high, 0.0}); }
     [[nodiscard]] double farthest_from_zero() const {
         return std::max(std::abs(low), std::abs(high));
     }
 };
+
+constexpr Interval kNone{std::numeric_limits<double>::infinity(),
+                         -std::numeric_limits<double>::infinity()};
 
 void find_heights(const std::vector<const Axis*>& axes, double zero_mm, EyeRange& range) {
     Interval height{zero_mm, zero_mm};
@@ -88,15 +102,95 @@ void find_distances(const std::vector<const Axis*>& axes, const Vector2d& zero_m
     }
 }
 
+// A robot's reach is looked up in steps of this, from these sides: farther round a mandrel is not
+// turned away from the central angle.
+constexpr double kReachStep_mm = 80.0;
+constexpr std::array<double, 5> kSides_rad = {-kPi / 3.0, -kPi / 6.0, 0.0, kPi / 6.0, kPi / 3.0};
+
+// Farther than its links are long altogether an arm does not reach from its foot.
+double length_mm(const Machine& arm) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < arm.eye_chain.size(); ++i) {
+        const bool last = i + 1 == arm.eye_chain.size();
+        const Vector3d& next = last ? arm.eye.position_mm : arm.eye_chain[i + 1].point_mm;
+        length += (next - arm.eye_chain[i].point_mm).norm();
+    }
+    return length;
+}
+
+// What of a grid an arm without a track reaches, and a step more; machine frame.
+EyeRange range_of_arm(const Machine& machine, const std::optional<double>& at_mm) {
+    const std::unique_ptr<ArmEyeInverse> arm = ArmEyeInverse::recognise(machine);
+    const auto reaches = [&](double from_axis_mm, double z_mm) {
+        return std::any_of(kSides_rad.begin(), kSides_rad.end(), [&](double side_rad) {
+            return arm->reaches(
+                {from_axis_mm * std::cos(side_rad), from_axis_mm * std::sin(side_rad), z_mm});
+        });
+    };
+    const Vector3d& foot = machine.eye_chain.front().point_mm;
+    const double reach_mm = length_mm(machine);
+    const double most_mm = reach_mm + foot.head<2>().norm();
+    Interval height = kNone;
+    Interval height_there = kNone;
+    Interval distance = kNone;
+    for (double z = foot.z() - reach_mm; z <= foot.z() + reach_mm; z += kReachStep_mm) {
+        for (double from_axis = 0.0; from_axis <= most_mm; from_axis += kReachStep_mm) {
+            if (reaches(from_axis, z)) {
+                height.hold(z);
+                distance.hold(from_axis);
+            }
+        }
+        if (at_mm && reaches(*at_mm, z)) {
+            height_there.hold(z);
+        }
+    }
+    if (height_there.low <= height_there.high) {
+        height = height_there;
+    }
+    EyeRange range;
+    range.low_mm = height.low - kReachStep_mm;
+    range.high_mm = height.high + kReachStep_mm;
+    range.nearest_mm = std::max(0.0, distance.low - kReachStep_mm);
+    range.farthest_mm = distance.high + kReachStep_mm;
+    return range;
+}
+
+// Its letters along and across are those of all its axes.
+EyeRange range_of_robot(Machine machine, const std::optional<double>& at_mm) {
+    const bool tracked = machine.eye_chain.front().type == AxisType::Linear;
+    const Axis track = machine.eye_chain.front();
+    if (tracked) {
+        machine.eye_chain.erase(machine.eye_chain.begin());
+    }
+    EyeRange range = range_of_arm(machine, at_mm);
+    Interval height{range.low_mm, range.high_mm};
+    if (tracked) {
+        height.add(track, track.direction.z());
+        range.along += track.letter;
+    }
+    for (const Axis& axis : machine.eye_chain) {
+        range.along += axis.letter;
+        range.across += axis.letter;
+    }
+    const double mount_mm = machine.mount ? machine.mount->origin_mm.z() : 0.0;
+    range.low_mm = height.low - mount_mm;
+    range.high_mm = height.high - mount_mm;
+    return range;
+}
+
 }  // namespace
 
-std::optional<EyeRange> eye_range(const Machine& machine) {
-    if (!machine_class(machine).closed_form) {
+std::optional<EyeRange> eye_range(const Machine& machine, const std::optional<double>& at_mm) {
+    const MachineClass what = machine_class(machine);
+    if (what.arm) {
+        return range_of_robot(machine, at_mm);
+    }
+    if (!what.closed_form) {
         return std::nullopt;
     }
     EyeRange range;
     const std::vector<const Axis*> axes = linear_axes(machine);
-    const Eigen::Vector3d& eye = machine.eye.position_mm;
+    const Vector3d& eye = machine.eye.position_mm;
     const double mount_mm = machine.mount ? machine.mount->origin_mm.z() : 0.0;
     find_heights(axes, eye.z() - mount_mm, range);
     find_distances(axes, eye.head<2>(), range);

@@ -57,6 +57,13 @@ double sign_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& line)
     return direction.dot(line) > 0.0 ? 1.0 : -1.0;
 }
 
+// The mandrel frame at zero is the machine frame, or that moved along Z.
+bool is_along_spindle(const std::optional<MandrelMount>& mount) {
+    return !mount || (mount->origin_mm.head<2>().norm() <= kPointTolerance_mm &&
+                      (mount->x - Eigen::Vector3d::UnitX()).norm() <= kParallel &&
+                      (mount->z - Eigen::Vector3d::UnitZ()).norm() <= kParallel);
+}
+
 double distance_to_axis(const Axis& axis, const Eigen::Vector3d& point_mm) {
     return axis.direction.cross(point_mm - axis.point_mm).norm();
 }
@@ -147,6 +154,18 @@ Eigen::Matrix3Xd eye_moves(const Machine& machine, std::span<const double> q) {
     return moves;
 }
 
+std::optional<double> spindle_sign(const Machine& machine) {
+    if (machine.mandrel_chain.size() != 1 ||
+        machine.mandrel_chain.front().type != AxisType::Rotary) {
+        return std::nullopt;
+    }
+    const Axis& spindle = machine.mandrel_chain.front();
+    const double sign = sign_along(spindle.direction, Eigen::Vector3d::UnitZ());
+    const bool in_place =
+        sign != 0.0 && distance_to_axis(spindle, Eigen::Vector3d::Zero()) <= kPointTolerance_mm;
+    return in_place && is_along_spindle(machine.mount) ? std::optional(sign) : std::nullopt;
+}
+
 SpindleWristInverse::SpindleWristInverse(const Machine& machine)
     : eye_zero_mm_(machine.eye.position_mm) {
     recognise_spindle(machine);
@@ -180,13 +199,11 @@ void SpindleWristInverse::recognise_mount(const Machine& machine) {
     if (!machine.mount) {
         return;
     }
-    const MandrelMount& mount = *machine.mount;
-    if (mount.origin_mm.head<2>().norm() > kPointTolerance_mm ||
-        (mount.x - Eigen::Vector3d::UnitX()).norm() > kParallel ||
-        (mount.z - Eigen::Vector3d::UnitZ()).norm() > kParallel) {
+    if (!is_along_spindle(machine.mount)) {
         unsupported(machine, "the mandrel frame at zero is not the machine frame moved along Z");
     }
-    eye_zero_mm_.z() -= mount.origin_mm.z();  // what is left to move when the eye is at the target
+    eye_zero_mm_.z() -=
+        machine.mount->origin_mm.z();  // what is left to move when the eye is at the target
 }
 
 void SpindleWristInverse::recognise_linear(const Machine& machine) {

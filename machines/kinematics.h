@@ -49,6 +49,11 @@ struct PlacedAxis {
 [[nodiscard]] std::vector<PlacedAxis> placed_axes(const Machine& machine,
                                                   std::span<const double> q);
 
+/// What the joint of a spindle counts for a turn of the mandrel about +Z of the machine, +1 or -1:
+/// where one rotary axis along +-Z through the origin is all that moves the mandrel, mounted
+/// further along the axis or not. Else nothing.
+[[nodiscard]] std::optional<double> spindle_sign(const Machine& machine);
+
 /// Where the eye must be, mandrel frame.
 struct EyeTarget {
     Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();
@@ -91,6 +96,13 @@ public:
     /// `near_rad`. Nothing where the turn is free or the machine has none.
     [[nodiscard]] virtual std::optional<double> forced_turn(const EyeTarget& target,
                                                             double near_rad) const = 0;
+
+    /// Joints with which a path may begin at `target`, where there are ways that lead on from each
+    /// other by no small step; none: any joints will do, all zero say.
+    [[nodiscard]] virtual std::vector<std::vector<double>> starts(const EyeTarget& /*target*/,
+                                                                  double /*turn_rad*/) const {
+        return {};
+    }
 };
 
 /// The class that has a closed form, recognised from the chains: one rotary axis along +-Z through

@@ -30,6 +30,11 @@ constexpr double kDrawn_mm = 2000.0;
 // Rotations count at least like this far from their centre, so that a chain of linear axes alone
 // has a length.
 constexpr double kLeastLength_mm = 100.0;
+// What rounding near a singular pose may leave; what is off by more is out of reach.
+constexpr double kRounding_mm = 1e-3;
+constexpr double kRounding_rad = 1e-6;
+// Joints that are nearer than this branch as the previous ones do.
+constexpr double kSameWay_rad = 0.5;
 // A step of more than this is a flip: as for wrists (kinematics.h).
 constexpr double kFlip_rad = 0.5 * kPi;
 
@@ -107,16 +112,6 @@ struct PoseInverse::Choice {
 PoseInverse::PoseInverse(const Machine& machine)
     : machine_(machine), arm_(ArmInverse::recognise(machine)), length_mm_(length_of(machine)) {}
 
-bool PoseInverse::within_limits(std::span<const double> joints) const {
-    for (std::size_t j = 0; j < machine_.mandrel_chain.size(); ++j) {
-        const Axis& axis = machine_.mandrel_chain[j];
-        if (joints[j] < axis.min || joints[j] > axis.max) {
-            return false;
-        }
-    }
-    return true;
-}
-
 // Whole turns bring each rotary joint near its previous value, within its travel if one does.
 // Then a few Newton steps where rounding near singular poses has left something.
 PoseInverse::Choice PoseInverse::refined(const Isometry3d& pose, std::span<const double> previous,
@@ -155,37 +150,65 @@ PoseInverse::Choice PoseInverse::refined(const Isometry3d& pose, std::span<const
     std::copy(found.x.begin(), found.x.end(), joints.begin());
 
     Choice choice;
+    choice.joints = std::move(joints);
+    bring_near(previous, choice);
+    measure_error(pose, choice);
+    return choice;
+}
+
+void PoseInverse::bring_near(std::span<const double> previous, Choice& choice) const {
     choice.step_rad = 0.0;
-    for (std::size_t j = 0; j < axes; ++j) {
+    choice.within_limits = true;
+    for (std::size_t j = 0; j < machine_.mandrel_chain.size(); ++j) {
         const Axis& axis = machine_.mandrel_chain[j];
-        if (axis.type != AxisType::Rotary) {
-            continue;
-        }
-        const double nearest =
-            joints[j] + 2.0 * kPi * std::round((previous[j] - joints[j]) / (2.0 * kPi));
-        joints[j] = nearest;
-        for (const double turns : {-1.0, 1.0}) {
-            const bool inside = joints[j] >= axis.min && joints[j] <= axis.max;
-            const double other = nearest + turns * 2.0 * kPi;
-            if (!inside && other >= axis.min && other <= axis.max) {
-                joints[j] = other;
+        double& joint = choice.joints[j];
+        if (axis.type == AxisType::Rotary) {
+            const double nearest =
+                joint + 2.0 * kPi * std::round((previous[j] - joint) / (2.0 * kPi));
+            joint = nearest;
+            for (const double turns : {-1.0, 1.0}) {
+                const bool inside = joint >= axis.min && joint <= axis.max;
+                const double other = nearest + turns * 2.0 * kPi;
+                if (!inside && other >= axis.min && other <= axis.max) {
+                    joint = other;
+                }
             }
+            choice.step_rad = std::max(choice.step_rad, std::abs(joint - previous[j]));
         }
-        choice.step_rad = std::max(choice.step_rad, std::abs(joints[j] - previous[j]));
+        choice.within_limits = choice.within_limits && joint >= axis.min && joint <= axis.max;
     }
-    const Isometry3d now = base_from_mandrel(machine_, joints);
+}
+
+void PoseInverse::measure_error(const Isometry3d& pose, Choice& choice) const {
+    const Isometry3d now = base_from_mandrel(machine_, choice.joints);
     choice.residual_mm = (now.translation() - pose.translation()).norm();
     choice.residual_rad = rotation_between(pose.linear(), now.linear()).norm();
-    choice.within_limits = within_limits(joints);
-    choice.joints = std::move(joints);
-    return choice;
+}
+
+// A solution of the closed form near the previous joints; what rounding has left near a singular
+// pose is mended.
+PoseInverse::Choice PoseInverse::settled(const Isometry3d& pose, std::span<const double> previous,
+                                         const ArmInverse::Joints& found) const {
+    Choice choice;
+    choice.joints.assign(previous.begin(), previous.end());
+    std::copy(found.begin(), found.end(), choice.joints.begin());
+    bring_near(previous, choice);
+    measure_error(pose, choice);
+    const bool rounding = choice.residual_mm < kRounding_mm && choice.residual_rad < kRounding_rad;
+    return choice.reached() || !rounding
+               ? choice
+               : refined(pose, previous, {found.begin(), found.end()}, false);
 }
 
 PoseInverse::Choice PoseInverse::solve_arm(const Isometry3d& pose,
                                            std::span<const double> previous) const {
+    const Choice near = settled(pose, previous, arm_->solve_near(pose, previous));
+    if (near.good() && near.step_rad < kSameWay_rad) {
+        return near;
+    }
     Choice best;
     for (const ArmInverse::Joints& found : arm_->solve(pose, previous)) {
-        Choice choice = refined(pose, previous, {found.begin(), found.end()}, false);
+        Choice choice = settled(pose, previous, found);
         if (best.joints.empty() || choice.better_than(best, length_mm_)) {
             best = std::move(choice);
         }
@@ -238,6 +261,39 @@ void PoseInverse::measure(std::span<const double> joints, PoseState& state) cons
     const Eigen::VectorXd values = singular_values(jacobian);
     state.singular = values[values.size() - 1] / values[0];
     state.nearest = Singularity::Other;
+}
+
+std::vector<std::vector<double>> PoseInverse::all(const Isometry3d& base_from_mandrel) const {
+    std::vector<double> middle(machine_.axis_count(), 0.0);
+    for (std::size_t j = 0; j < machine_.mandrel_chain.size(); ++j) {
+        const Axis& axis = machine_.mandrel_chain[j];
+        middle[j] = std::isfinite(axis.min + axis.max) ? 0.5 * (axis.min + axis.max) : 0.0;
+    }
+    std::vector<std::vector<double>> ways;
+    const auto add = [&](Choice choice) {
+        if (choice.good()) {
+            ways.push_back(std::move(choice.joints));
+        }
+    };
+    if (!arm_) {
+        add(solve_numerically(base_from_mandrel, middle));
+        return ways;
+    }
+    for (const ArmInverse::Joints& found : arm_->solve(base_from_mandrel, middle)) {
+        add(settled(base_from_mandrel, middle, found));
+    }
+    return ways;
+}
+
+bool PoseState::better_than(const PoseState& other) const {
+    if (reached != other.reached) {
+        return reached;
+    }
+    if (!reached) {
+        return residual_mm < other.residual_mm;
+    }
+    return within_limits == other.within_limits ? largest_step_rad < other.largest_step_rad
+                                                : within_limits;
 }
 
 PoseState PoseInverse::solve(const Isometry3d& base_from_mandrel, std::span<const double> previous,

@@ -32,6 +32,9 @@ struct PoseState {
     Singularity nearest = Singularity::Other;
     bool flip = false;              ///< some rotary axis had to turn by more than a quarter turn
     double largest_step_rad = 0.0;  ///< of all rotary axes, against the previous joints
+
+    /// Reached comes first, then the limits, then the smaller step.
+    [[nodiscard]] bool better_than(const PoseState& other) const;
 };
 
 /// Inverse of a mandrel chain of any kind.
@@ -54,6 +57,11 @@ public:
     PoseState solve(const Eigen::Isometry3d& base_from_mandrel, std::span<const double> previous,
                     std::span<double> joints) const;
 
+    /// Every way to reach a pose within the limits, rotary joints as near to the middle of their
+    /// travel as whole turns bring them; one at most where there is no closed form.
+    [[nodiscard]] std::vector<std::vector<double>> all(
+        const Eigen::Isometry3d& base_from_mandrel) const;
+
     /// True where the closed form holds.
     [[nodiscard]] bool closed_form() const { return arm_.has_value(); }
 
@@ -65,11 +73,14 @@ private:
 
     [[nodiscard]] Choice solve_arm(const Eigen::Isometry3d& pose,
                                    std::span<const double> previous) const;
+    void bring_near(std::span<const double> previous, Choice& choice) const;
+    void measure_error(const Eigen::Isometry3d& pose, Choice& choice) const;
+    [[nodiscard]] Choice settled(const Eigen::Isometry3d& pose, std::span<const double> previous,
+                                 const ArmInverse::Joints& found) const;
     [[nodiscard]] Choice solve_numerically(const Eigen::Isometry3d& pose,
                                            std::span<const double> previous) const;
     [[nodiscard]] Choice refined(const Eigen::Isometry3d& pose, std::span<const double> previous,
                                  std::vector<double> start, bool keep_limits) const;
-    [[nodiscard]] bool within_limits(std::span<const double> joints) const;
 
     Machine machine_;
     std::optional<ArmInverse> arm_;

@@ -110,7 +110,7 @@ public:
           job_(task.job),
           turn_(traits_of(task.job.mandrel.turn)),
           friction_(most_friction_of(task.job)),
-          eye_(eye_range(task.machine)),
+          eye_(eye_range(task.machine, hoop_eye_mm(widest_mm(task.mandrel)))),
           found_(find_revolution(task.mandrel)) {
         if (eye_ && job_.eye.rule == EyeRule::Cylinder) {
             eye_->farthest_mm = std::min(eye_->farthest_mm, job_.eye.radius_mm);
@@ -328,6 +328,7 @@ private:
         const auto bare = [&](const Vector3d& at) {
             const double radius_mm = radius_of(at);
             return !in_height(at.z()) || radius_mm > eye_->farthest_mm + kSlack_mm ||
+                   radius_mm + machine_.fibre.max_free_length_mm < eye_->nearest_mm - kSlack_mm ||
                    (turns_inside && !eye_gets_around(radius_mm - 0.5 * job_.tow.width_mm));
         };
         double all_mm2 = 0.0;
@@ -428,14 +429,23 @@ private:
                    "the part is " + fixed(2.0 * widest_mm(mandrel_), 1) + " mm wide; " +
                        across_words(needed_mm) + unit_question(mandrel_));
         }
-        refuse("plan.travel", machine_place(),
-               "the eye comes no nearer to the spindle axis than " + fixed(eye_->nearest_mm, 1) +
-                   " mm" + of_axes(eye_->across) + ", and the longest free fibre is " +
-                   fixed(machine_.fibre.max_free_length_mm, 1) + " mm" + unit_question(mandrel_));
+        refuse("plan.travel", machine_place(), nearest_words() + unit_question(mandrel_));
     }
 
-    static std::string of_axes(const std::string& letters) {
-        return letters.empty() ? "" : " (axis " + letters + ")";
+    // "axis Z", "axes A B C"
+    static std::string axes_words(const std::string& letters) {
+        std::string words = letters.size() == 1 ? "axis" : "axes";
+        for (const char letter : letters) {
+            (words += ' ') += letter;
+        }
+        return words;
+    }
+
+    [[nodiscard]] std::string nearest_words() const {
+        return "the eye comes no nearer to the spindle axis than " + fixed(eye_->nearest_mm, 1) +
+               " mm" + (eye_->across.empty() ? "" : " (" + axes_words(eye_->across) + ")") +
+               ", and the longest free fibre is " + fixed(machine_.fibre.max_free_length_mm, 1) +
+               " mm";
     }
 
     [[nodiscard]] std::string along_words(double low_mm, double high_mm) const {
@@ -453,9 +463,9 @@ private:
         std::sort(has.begin(), has.end());
         const FixedPair low = fixed_apart(needs[0], finite(has[0]), 1);
         const FixedPair high = fixed_apart(needs[1], finite(has[1]), 1);
-        return "axis " + eye_->along + " needs " + low.value + " to " + high.value +
-               " mm for the turns at the part's ends, has " + end_words(has[0], low.limit) +
-               " to " + end_words(has[1], high.limit) + " mm";
+        return axes_words(eye_->along) + (one ? " needs " : " need ") + low.value + " to " +
+               high.value + " mm for the turns at the part's ends, " + (one ? "has " : "have ") +
+               end_words(has[0], low.limit) + " to " + end_words(has[1], high.limit) + " mm";
     }
 
     static double finite(double end) { return std::isfinite(end) ? end : 0.0; }
@@ -465,10 +475,15 @@ private:
     }
 
     [[nodiscard]] std::string across_words(double needed_mm) const {
+        if (needed_mm <= eye_->farthest_mm) {
+            return nearest_words();
+        }
         const FixedPair shown = fixed_apart(needed_mm, eye_->farthest_mm, 1);
         return "there the eye needs to be " + shown.value + " mm from the spindle axis; " +
-               (eye_->across.empty() ? "it stands at "
-                                     : "axis " + eye_->across + " brings it to ") +
+               (eye_->across.empty()
+                    ? "it stands at "
+                    : axes_words(eye_->across) + (eye_->across.size() == 1 ? " brings" : " bring") +
+                          " it to ") +
                shown.limit + " mm";
     }
 

@@ -52,12 +52,14 @@ bool swings(const Machine& machine, char link) {
 
 // The head as planning sees it: a ball around the eye that holds every part which turns with a
 // wrist axis, however that turns, and the other parts as capsules on the line away from the
-// spindle, on which the central-angle policy keeps them.
+// spindle, on which the central-angle policy keeps them. Of a robot what its flange carries; its
+// links are far from the eye and are looked at when the motion is known.
 void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFibreRule& rule) {
     const Eigen::Vector3d& eye = machine.eye.position_mm;
     const Eigen::Vector3d outward = -machine.eye.exit;
     rule.head_radius_mm = 0.0;
     rule.arm.clear();
+    const bool robot = machine_class(machine).arm;
     for (const HeadEnvelope::Part& part : envelope.parts) {
         std::vector<Eigen::Vector3d> points = part.triangles.points_mm;
         double thickness = 0.0;
@@ -75,7 +77,11 @@ void describe_head(const Machine& machine, const HeadEnvelope& envelope, FreeFib
             arm.radius_mm =
                 std::max(arm.radius_mm, (point - eye - along * outward).norm() + thickness);
         }
-        if (swings(machine, part.link)) {
+        if (robot) {
+            if (part.link == machine.eye_chain.back().letter) {
+                rule.arm.push_back(arm);
+            }
+        } else if (swings(machine, part.link)) {
             rule.head_radius_mm = std::max(rule.head_radius_mm, reach);
         } else {
             rule.arm.push_back(arm);

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "core/interrupt.h"
 #include "machines/eye_inverse.h"
@@ -17,6 +19,8 @@ constexpr double kNearSingularSine = 0.0175;
 constexpr double kNearAxis_mm = 5.0;
 // Places that are missed by less are rounding of positions of some metres over a thousand turns.
 constexpr double kReached_mm = 1e-6;
+// A way to begin is judged by every so many points of a path.
+constexpr std::size_t kCoarse = 8;
 // Axis::resolution_nano counts these per mm or degree.
 constexpr double kNanoPerUnit = 1e9;
 
@@ -108,11 +112,11 @@ JointPath solve_from(const Machine& machine, const EyeInverse& inverse, const Ey
     return result;
 }
 
-// Points beyond the travel of one axis, and flips.
-std::size_t troubles(const JointPath& path, char letter) {
+// Points beyond the travel of an axis, and flips.
+std::size_t troubles(const JointPath& path, std::optional<char> letter) {
     std::size_t count = 0;
     for (const LimitViolation& violation : path.violations) {
-        count += violation.axis == letter ? violation.last - violation.first + 1 : 0;
+        count += !letter || violation.axis == *letter ? violation.last - violation.first + 1 : 0;
     }
     for (const JointNote& note : path.notes) {
         count += note.kind == JointNoteKind::WristFlip ? 1 : 0;
@@ -120,10 +124,56 @@ std::size_t troubles(const JointPath& path, char letter) {
     return count;
 }
 
-// From all axes at zero. A head roll with end stops that runs into one on the way may start half a
-// turn or a turn further back: the roller is the same.
+// How far the motion stays away from singular poses where it is nearest to one; 1 where no note
+// speaks of it.
+double singular_sine(const JointPath& path) {
+    double least = 1.0;
+    for (const JointNote& note : path.notes) {
+        least =
+            note.kind == JointNoteKind::WristNearSingular ? std::min(least, note.measure) : least;
+    }
+    return least;
+}
+
+// Of the ways to begin the one with the least trouble, then the one farthest from singular poses;
+// every kCoarse-th point tells.
+const std::vector<double>& best_start(const Machine& machine, const EyeInverse& inverse,
+                                      const EyePath& path, std::span<const double> turns_rad,
+                                      std::span<const std::vector<double>> starts) {
+    EyePath coarse;
+    std::vector<double> coarse_turns_rad;
+    for (std::size_t i = 0; i < path.size(); i += kCoarse) {
+        coarse.push_back(path[i]);
+        coarse_turns_rad.push_back(turns_rad[i]);
+    }
+    std::size_t best = 0;
+    std::size_t least = 0;
+    double farthest = 0.0;
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+        const JointPath joints = solve_from(machine, inverse, coarse, coarse_turns_rad, starts[k]);
+        const std::size_t count = troubles(joints, {});
+        const double sine = singular_sine(joints);
+        if (k == 0 || count < least || (count == least && sine > farthest)) {
+            best = k;
+            least = count;
+            farthest = sine;
+        }
+    }
+    return starts[best];
+}
+
+// From all axes at zero, or from where an arm can begin. A head roll with end stops that runs into
+// one on the way may start half a turn or a turn further back: the roller is the same.
 JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
                 std::span<const double> turns_rad) {
+    if (!path.empty()) {
+        const std::vector<std::vector<double>> starts =
+            inverse.starts(target_of(path.front()), turns_rad.front());
+        if (!starts.empty()) {
+            return solve_from(machine, inverse, path, turns_rad,
+                              best_start(machine, inverse, path, turns_rad, starts));
+        }
+    }
     const std::vector<double> zero(machine.axis_count(), 0.0);
     JointPath best = solve_from(machine, inverse, path, turns_rad, zero);
     std::size_t roll = machine.mandrel_chain.size();

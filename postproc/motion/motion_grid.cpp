@@ -69,7 +69,7 @@ public:
         for (std::size_t a = 0; a < axes_; ++a) {
             const Axis& axis = knots.axis(a);
             wraps_.push_back(axis.type == AxisType::Rotary);
-            turns_or_moves_eye_.push_back(!wraps_.back() || a == 0);
+            turns_or_moves_eye_.push_back(knots.moves_eye(a));
             velocity_.push_back(axis.velocity);
             acceleration_.push_back(axis.acceleration);
         }
@@ -175,7 +175,6 @@ private:
 
     void fill(std::size_t k, const Column& before, Column& column) const {
         column.joints.resize(kStates * axes_);
-        const std::vector<double> zero(axes_, 0.0);
         // What is kept has no other state, nor have its neighbours a use for theirs there.
         const bool kept = knots_[k].kept && (k == 0 || knots_[k - 1].kept) &&
                           (k + 1 == knots_.size() || knots_[k + 1].kept);
@@ -185,10 +184,10 @@ private:
                 column.choice[s] = choice(k, s);
                 const std::span<double> row(column.joints.data() + s * axes_, axes_);
                 const bool first = before.joints.empty() || k == 0;
-                knots_.joints(k, column.choice[s],
-                              first ? std::span<const double>(zero)
-                                    : std::span(before.joints.data() + s * axes_, axes_),
-                              row);
+                knots_.joints(
+                    k, column.choice[s],
+                    first ? knots_.start() : std::span(before.joints.data() + s * axes_, axes_),
+                    row);
             }
         });
     }

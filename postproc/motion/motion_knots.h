@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,17 @@ public:
     /// The turn that has the eye at y = 0, x > 0 of the machine, within half a turn of another.
     [[nodiscard]] double central_rad(std::size_t knot, double length_mm, double near_rad) const;
 
+    /// Axes near which those of the first place are: all zero, or with an arm as in the given
+    /// motion.
+    [[nodiscard]] std::span<const double> start() const { return given_joints(0); }
+
+    /// Whether an axis may move the eye: with an arm any may, else a rotary one of the eye's chain
+    /// turns the head alone.
+    [[nodiscard]] bool moves_eye(std::size_t joint) const {
+        return arm_ || joint < task_.machine.mandrel_chain.size() ||
+               axis(joint).type == AxisType::Linear;
+    }
+
     /// Axes at a place, near to others.
     void joints(std::size_t knot, const KnotChoice& choice, std::span<const double> previous,
                 std::span<double> joints) const;
@@ -70,10 +82,17 @@ public:
                                      const KnotChoice& to) const;
 
 private:
+    void find_joints();
+    [[nodiscard]] std::span<const double> given_joints(std::size_t knot) const {
+        return {joints_.data() + (arm_ ? knot : 0) * axis_count(), axis_count()};
+    }
+    [[nodiscard]] bool in_reach(std::size_t knot, const KnotChoice& choice) const;
     [[nodiscard]] bool head_clear(std::size_t station, const KnotChoice& choice) const;
 
     const OptimalMotionTask& task_;
-    SpindleWristInverse inverse_;
+    std::unique_ptr<EyeInverse> inverse_;
+    bool arm_ = false;
+    std::vector<double> joints_;  // of an arm at each place in the given motion; else zero, once
     std::vector<Knot> knots_;
 };
 

@@ -153,7 +153,7 @@ private:
     // The axes at all knots, one after the other.
     void evaluate() {
         joints_.resize(knots_.size() * axes_);
-        std::vector<double> previous(axes_, 0.0);
+        std::vector<double> previous(knots_.start().begin(), knots_.start().end());
         for (std::size_t k = 0; k < knots_.size(); ++k) {
             knots_.joints(k, choices_[k], previous, row(joints_, k));
             std::copy_n(row(joints_, k).begin(), axes_, previous.begin());

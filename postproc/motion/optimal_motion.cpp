@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/units.h"
+#include "machines/eye_inverse.h"
 #include "postproc/motion/joint_path.h"
 #include "postproc/motion/motion_knots.h"
 
@@ -20,6 +21,9 @@ constexpr double kLeastKnot_mm = 1.0;
 
 // Places kept at either end of a stretch: what the accelerations at its first free one need.
 constexpr double kKeptEnds = 3.0;
+
+// Places that are missed by less are reached.
+constexpr double kReached_mm = 1e-6;
 
 // Where a motion is to be mended, what is clear is looked for in such steps to either side.
 constexpr int kSearchSteps = 10;
@@ -121,7 +125,7 @@ std::vector<KnotChoice> clear_choices(const MotionKnots& knots) {
 }  // namespace
 
 MotionKnots::MotionKnots(const OptimalMotionTask& task, std::size_t first, std::size_t last)
-    : task_(task), inverse_(task.machine) {
+    : task_(task), inverse_(make_eye_inverse(task.machine)), arm_(machine_class(task.machine).arm) {
     const EyePath& path = task.path;
     for (std::size_t i = first; i <= last; ++i) {
         if (!knots_.empty()) {
@@ -147,6 +151,21 @@ MotionKnots::MotionKnots(const OptimalMotionTask& task, std::size_t first, std::
                                 at.tangent.cross(at.binormal).normalized(), at.tangent, task_.rule);
         }
     });
+    find_joints();
+}
+
+void MotionKnots::find_joints() {
+    if (!arm_) {
+        joints_.assign(axis_count(), 0.0);
+        return;
+    }
+    EyePath given;
+    std::vector<double> turns_rad;
+    for (std::size_t k = 0; k < size(); ++k) {
+        given.push_back(point(k));
+        turns_rad.push_back(knots_[k].given.turn_rad);
+    }
+    joints_ = solve_joints(task_.machine, given, turns_rad).joints;
 }
 
 double MotionKnots::least_mm(std::size_t knot) const {
@@ -165,7 +184,7 @@ double MotionKnots::central_rad(std::size_t knot, double length_mm, double near_
 void MotionKnots::joints(std::size_t knot, const KnotChoice& choice,
                          std::span<const double> previous, std::span<double> joints) const {
     const EyePoint& at = point(knot);
-    (void)inverse_.solve(
+    (void)inverse_->solve(
         {.eye_mm = eye_mm(knot, choice.length_mm), .tangent = at.tangent, .binormal = at.binormal},
         choice.turn_rad, previous, joints);
 }
@@ -181,9 +200,30 @@ bool MotionKnots::head_clear(std::size_t station, const KnotChoice& choice) cons
                          task_.more_mm[station]);
 }
 
+// Whether an arm reaches the place from near where it is in the given motion.
+bool MotionKnots::in_reach(std::size_t knot, const KnotChoice& choice) const {
+    if (!arm_) {
+        return true;
+    }
+    std::vector<double> joints(axis_count());
+    const EyePoint& at = point(knot);
+    const WristState state = inverse_->solve(
+        {.eye_mm = eye_mm(knot, choice.length_mm), .tangent = at.tangent, .binormal = at.binormal},
+        choice.turn_rad, given_joints(knot), joints);
+    if (state.residual_mm > kReached_mm) {
+        return false;
+    }
+    for (std::size_t a = 0; a < joints.size(); ++a) {
+        if (joints[a] < axis(a).min || joints[a] > axis(a).max) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool MotionKnots::clear(std::size_t knot, const KnotChoice& choice) const {
     return choice.length_mm >= least_mm(knot) && choice.length_mm <= knots_[knot].longest_mm &&
-           head_clear(knots_[knot].station, choice);
+           head_clear(knots_[knot].station, choice) && in_reach(knot, choice);
 }
 
 bool MotionKnots::clear_between(std::size_t knot, const KnotChoice& from,

@@ -1,14 +1,13 @@
 #include "machines/eye_inverse.h"
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/units.h"
-#include "machines/machine_json.h"
+#include "tests/support/machine_draws.h"
 
 namespace meshwind {
 namespace {
@@ -16,41 +15,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-const std::string kSource = MESHWIND_SOURCE_DIR;
-
-Machine shipped(const std::string& name) {
-    return read_machine(kSource + "/machines/" + name + ".json");
-}
-
-class Draw {
-public:
-    explicit Draw(unsigned seed) : engine_(seed) {}
-
-    double between(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine_);
-    }
-
-    Vector3d direction() {
-        Vector3d v;
-        do {
-            v = {between(-1.0, 1.0), between(-1.0, 1.0), between(-1.0, 1.0)};
-        } while (v.norm() < 0.1);
-        return v.normalized();
-    }
-
-    // Within the travel; where it has no end, within some turns.
-    std::vector<double> joints(const Machine& machine) {
-        std::vector<double> q;
-        for (std::size_t j = 0; j < machine.axis_count(); ++j) {
-            const Axis& axis = machine.axis(j);
-            q.push_back(between(std::max(axis.min, -20.0 * kPi), std::min(axis.max, 20.0 * kPi)));
-        }
-        return q;
-    }
-
-private:
-    std::mt19937 engine_;
-};
+using test::Draw;
+using test::machine_file;
 
 // A target that the joints meet: the roller along the binormal, the fibre across it.
 EyeTarget target_at(const Machine& machine, const std::vector<double>& joints, Draw& draw) {
@@ -76,7 +42,7 @@ double twist_rad(const Machine& machine, const std::vector<double>& joints,
 TEST(SpindleWristInverse, RoundTripWithFewerAxes) {
     for (const char* name : {"two_axis", "four_axis", "hobby_grbl"}) {
         SCOPED_TRACE(name);
-        const Machine machine = shipped(name);
+        const Machine machine = machine_file(name);
         const SpindleWristInverse inverse(machine);
         Draw draw(1);
         for (int i = 0; i < 5000; ++i) {
@@ -104,7 +70,7 @@ TEST(SpindleWristInverse, RoundTripWithFewerAxes) {
 // Fibre along X cannot set the roll: it is kept, and the place is met all the same.
 TEST(SpindleWristInverse, SingularHeadWithFewerAxesKeepsItsRoll) {
     for (const char* name : {"four_axis", "hobby_grbl"}) {
-        const Machine machine = shipped(name);
+        const Machine machine = machine_file(name);
         const SpindleWristInverse inverse(machine);
         for (const double off : {0.0, 1e-12, 1e-8}) {
             std::vector<double> q(machine.axis_count(), 0.0);
@@ -123,7 +89,7 @@ TEST(SpindleWristInverse, SingularHeadWithFewerAxesKeepsItsRoll) {
 
 TEST(SpindleWristInverse, TellsHowFarAPlaceIsOutOfReach) {
     // Without the axis along Y: at a turn that is off by d the eye misses by r sin d.
-    const Machine four = shipped("four_axis");
+    const Machine four = machine_file("four_axis");
     const SpindleWristInverse of_four(four);
     Draw draw(2);
     for (int i = 0; i < 1000; ++i) {
@@ -139,7 +105,7 @@ TEST(SpindleWristInverse, TellsHowFarAPlaceIsOutOfReach) {
         EXPECT_NEAR(state.residual_mm, miss_mm(four, q, target), 1e-9);
     }
     // With the carriage alone: by the difference of the distances from the spindle axis.
-    const Machine two = shipped("two_axis");
+    const Machine two = machine_file("two_axis");
     const SpindleWristInverse of_two(two);
     for (const double radius : {40.0, 58.31, 70.5}) {
         const EyeTarget target{.eye_mm = {0.0, radius, 12.0}};
@@ -153,7 +119,7 @@ TEST(SpindleWristInverse, TellsHowFarAPlaceIsOutOfReach) {
 // The eye beside the plane through the axis: two turns bring it to the target, of which the slide's
 // travel allows one.
 TEST(SpindleWristInverse, ForcedTurnOfAnEyeBesideTheAxis) {
-    Machine machine = shipped("four_axis");
+    Machine machine = machine_file("four_axis");
     machine.eye.position_mm = {0.0, 20.0, 0.0};
     machine.eye_chain[2].point_mm = {0.0, 20.0, 0.0};
     const SpindleWristInverse inverse(machine);
@@ -171,7 +137,7 @@ TEST(SpindleWristInverse, ForcedTurnOfAnEyeBesideTheAxis) {
 }
 
 TEST(SpindleWristInverse, MandrelFurtherAlongTheSpindle) {
-    Machine machine = shipped("six_axis");
+    Machine machine = machine_file("six_axis");
     machine.mount = MandrelMount{.origin_mm = {0.0, 0.0, 123.0}};
     const SpindleWristInverse inverse(machine);
     Draw draw(4);
@@ -213,14 +179,14 @@ void expect_numeric_round_trip(const Machine& machine, unsigned seed, int count,
 }
 
 TEST(NumericEyeInverse, RoundTripOfSpindleMachines) {
-    expect_numeric_round_trip(shipped("six_axis"), 1, 1000, 1.0);
+    expect_numeric_round_trip(machine_file("six_axis"), 1, 1000, 1.0);
     // Head swing before head roll: no closed form here.
-    Machine machine = shipped("six_axis");
+    Machine machine = machine_file("six_axis");
     std::swap(machine.eye_chain[3], machine.eye_chain[4]);
     EXPECT_FALSE(machine_class(machine).closed_form);
     expect_numeric_round_trip(machine, 2, 1000, 0.9);
     // A wrist that does not pass through the eye, and an inclined spindle.
-    machine = shipped("six_axis");
+    machine = machine_file("six_axis");
     machine.eye_chain[3].point_mm = {0.0, 15.0, 4.0};
     machine.eye_chain[4].point_mm = {40.0, 15.0, 30.0};
     expect_numeric_round_trip(machine, 3, 1000, 0.95);
@@ -230,13 +196,14 @@ TEST(NumericEyeInverse, RoundTripOfSpindleMachines) {
 
 TEST(NumericEyeInverse, RoundTripOfRobots) {
     expect_numeric_round_trip(
-        read_machine(kSource + "/data/conformance/machine/valid/six_revolute_robot.json"), 5, 1000,
-        0.8);
-    expect_numeric_round_trip(shipped("robot_kr16"), 6, 1000, 0.8);
+        read_machine(std::string(MESHWIND_SOURCE_DIR) +
+                     "/data/conformance/machine/valid/six_revolute_robot.json"),
+        5, 1000, 0.8);
+    expect_numeric_round_trip(machine_file("robot_kr16"), 6, 1000, 0.8);
 }
 
 TEST(NumericEyeInverse, NearSingularPosesAreReached) {
-    Machine machine = shipped("six_axis");
+    Machine machine = machine_file("six_axis");
     std::swap(machine.eye_chain[3], machine.eye_chain[4]);
     const NumericEyeInverse inverse(machine);
     Draw draw(7);
@@ -259,8 +226,8 @@ TEST(NumericEyeInverse, NearSingularPosesAreReached) {
 }
 
 TEST(NumericEyeInverse, TellsWhatIsOutOfReach) {
-    const Machine machine =
-        read_machine(kSource + "/data/conformance/machine/valid/six_revolute_robot.json");
+    const Machine machine = read_machine(std::string(MESHWIND_SOURCE_DIR) +
+                                         "/data/conformance/machine/valid/six_revolute_robot.json");
     const NumericEyeInverse inverse(machine);
     const EyeTarget target{.eye_mm = {0.0, 0.0, 20000.0}};
     std::vector<double> q(machine.axis_count(), 0.0);
@@ -268,7 +235,7 @@ TEST(NumericEyeInverse, TellsWhatIsOutOfReach) {
     EXPECT_GT(state.residual_mm, 15000.0);
     EXPECT_NEAR(state.residual_mm, miss_mm(machine, q, target), 1e-6);
     // Too few axes for a roller: the place is met, the twist is told.
-    Machine few = shipped("four_axis");
+    Machine few = machine_file("four_axis");
     few.mandrel_chain[0].direction = Vector3d(0.6, 0.0, 0.8);
     Draw draw(8);
     for (int i = 0; i < 200; ++i) {
@@ -283,50 +250,52 @@ TEST(NumericEyeInverse, TellsWhatIsOutOfReach) {
 }
 
 TEST(MachineClass, NamesTheShippedMachines) {
-    const auto words = [](const char* name) { return machine_class(shipped(name)).words; };
+    const auto words = [](const char* name) { return machine_class(machine_file(name)).words; };
     EXPECT_EQ(words("six_axis"), "spindle, 3 linear axes, head roll and swing: closed form");
     EXPECT_EQ(words("five_axis"), "spindle, 3 linear axes, head roll: closed form");
     EXPECT_EQ(words("four_axis"), "spindle, 2 linear axes, head roll: closed form");
     EXPECT_EQ(words("hobby_grbl"), "spindle, 1 linear axis, head roll: closed form");
     EXPECT_EQ(words("two_axis"), "spindle, 1 linear axis, head that does not turn: closed form");
+    EXPECT_EQ(words("robot_winder"), "spindle, arm that holds the eye: closed form");
+    EXPECT_EQ(words("robot_track"), "spindle, arm that holds the eye, on a track: closed form");
     EXPECT_EQ(words("robot_kr16"),
               "arm: 6 axes move the mandrel, the eye stands still: closed form for poses of the "
               "mandrel");
-    for (const char* name : {"six_axis", "five_axis", "four_axis"}) {
-        EXPECT_EQ(machine_class(shipped(name)).refusal, "");
-        EXPECT_NO_THROW(require_main_job(shipped(name)));
+    for (const char* name : {"six_axis", "five_axis", "four_axis", "robot_winder", "robot_track"}) {
+        EXPECT_EQ(machine_class(machine_file(name)).refusal, "");
+        EXPECT_NO_THROW(require_main_job(machine_file(name)));
     }
-    Machine sideways = shipped("four_axis");  // carriage and height, no cross feed
+    Machine sideways = machine_file("four_axis");  // carriage and height, no cross feed
     sideways.eye_chain[1].direction = Vector3d::UnitY();
     EXPECT_TRUE(machine_class(sideways).closed_form);
     EXPECT_THROW(require_main_job(sideways), InputError);
-    EXPECT_NE(machine_class(shipped("robot_kr16")).refusal, "");
-    EXPECT_THROW(require_main_job(shipped("robot_kr16")), InputError);
+    EXPECT_NE(machine_class(machine_file("robot_kr16")).refusal, "");
+    EXPECT_THROW(require_main_job(machine_file("robot_kr16")), InputError);
 }
 
 TEST(MachineClass, KnowsTheDistanceThatACarriageAloneKeeps) {
     for (const auto& [name, distance_mm] : {std::pair("two_axis", 58.31), {"hobby_grbl", 60.0}}) {
-        EXPECT_DOUBLE_EQ(machine_class(shipped(name)).eye_distance_mm, distance_mm);
-        EXPECT_EQ(machine_class(shipped(name)).refusal, "");
-        EXPECT_NO_THROW(require_main_job(shipped(name), distance_mm));
-        EXPECT_THROW(require_main_job(shipped(name), distance_mm + 1.0), InputError);
-        EXPECT_THROW(require_main_job(shipped(name)), InputError);
+        EXPECT_DOUBLE_EQ(machine_class(machine_file(name)).eye_distance_mm, distance_mm);
+        EXPECT_EQ(machine_class(machine_file(name)).refusal, "");
+        EXPECT_NO_THROW(require_main_job(machine_file(name), distance_mm));
+        EXPECT_THROW(require_main_job(machine_file(name), distance_mm + 1.0), InputError);
+        EXPECT_THROW(require_main_job(machine_file(name)), InputError);
     }
-    Machine without_cross_feed = shipped("four_axis");  // its eye is on the spindle axis
+    Machine without_cross_feed = machine_file("four_axis");  // its eye is on the spindle axis
     without_cross_feed.eye_chain.erase(without_cross_feed.eye_chain.begin() + 1);
     EXPECT_EQ(machine_class(without_cross_feed).eye_distance_mm, 0.0);
     EXPECT_NE(machine_class(without_cross_feed).refusal, "");
     EXPECT_THROW(require_main_job(without_cross_feed), InputError);
-    Machine without_carriage = shipped("four_axis");
+    Machine without_carriage = machine_file("four_axis");
     without_carriage.eye_chain.erase(without_carriage.eye_chain.begin());
     EXPECT_EQ(machine_class(without_carriage).eye_distance_mm, 0.0);
     EXPECT_THROW(require_main_job(without_carriage), InputError);
 }
 
 TEST(MakeEyeInverse, TakesTheClosedFormWhereItHolds) {
-    EXPECT_NE(dynamic_cast<SpindleWristInverse*>(make_eye_inverse(shipped("two_axis")).get()),
+    EXPECT_NE(dynamic_cast<SpindleWristInverse*>(make_eye_inverse(machine_file("two_axis")).get()),
               nullptr);
-    EXPECT_NE(dynamic_cast<NumericEyeInverse*>(make_eye_inverse(shipped("robot_kr16")).get()),
+    EXPECT_NE(dynamic_cast<NumericEyeInverse*>(make_eye_inverse(machine_file("robot_kr16")).get()),
               nullptr);
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "machines/arm_eye_inverse.h"
 #include "machines/kinematics.h"
-#include "machines/machine_json.h"
+#include "tests/support/machine_draws.h"
 
 namespace meshwind {
 namespace {
@@ -17,9 +17,7 @@ namespace {
 constexpr double kDrawn_mm = 5000.0;  // where an axis has no end
 constexpr double kRounding_mm = 1e-9;
 
-Machine shipped(const std::string& name) {
-    return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/" + name + ".json");
-}
+using test::machine_file;
 
 // Eyes of random joints within the limits, every third joint at an end.
 std::vector<Eigen::Vector3d> drawn_eyes(const Machine& machine, unsigned seed) {
@@ -52,7 +50,7 @@ void expect_holds(const Machine& machine, unsigned seed) {
 TEST(EyeRange, HoldsEveryEyeOfTheShippedMachines) {
     for (const char* name : {"six_axis", "five_axis", "four_axis", "hobby_grbl", "two_axis"}) {
         SCOPED_TRACE(name);
-        expect_holds(shipped(name), 1);
+        expect_holds(machine_file(name), 1);
     }
 }
 
@@ -60,7 +58,7 @@ TEST(EyeRange, HoldsEveryEyeOfMachinesWithOtherEndsMountsAndSlantedAxes) {
     std::mt19937_64 engine(7);
     std::uniform_real_distribution<double> end(-800.0, 800.0);
     for (unsigned draw = 0; draw < 40; ++draw) {
-        Machine machine = shipped(draw % 2 == 0 ? "six_axis" : "four_axis");
+        Machine machine = machine_file(draw % 2 == 0 ? "six_axis" : "four_axis");
         for (Axis& axis : machine.eye_chain) {
             if (axis.type == AxisType::Linear) {
                 const double a = end(engine);
@@ -80,7 +78,7 @@ TEST(EyeRange, HoldsEveryEyeOfMachinesWithOtherEndsMountsAndSlantedAxes) {
 }
 
 TEST(EyeRange, HasTheEndsThatTheFileNames) {
-    const std::optional<EyeRange> four = eye_range(shipped("four_axis"));
+    const std::optional<EyeRange> four = eye_range(machine_file("four_axis"));
     ASSERT_TRUE(four);
     EXPECT_DOUBLE_EQ(four->low_mm, -1500.0);
     EXPECT_DOUBLE_EQ(four->high_mm, 1500.0);
@@ -88,18 +86,50 @@ TEST(EyeRange, HasTheEndsThatTheFileNames) {
     EXPECT_DOUBLE_EQ(four->farthest_mm, 800.0);
     EXPECT_EQ(four->along, "Z");
     EXPECT_EQ(four->across, "X");
-    const std::optional<EyeRange> hobby = eye_range(shipped("hobby_grbl"));
+    const std::optional<EyeRange> hobby = eye_range(machine_file("hobby_grbl"));
     ASSERT_TRUE(hobby);
     EXPECT_DOUBLE_EQ(hobby->nearest_mm, 60.0);
     EXPECT_DOUBLE_EQ(hobby->farthest_mm, 60.0);
     EXPECT_EQ(hobby->along, "X");
     EXPECT_EQ(hobby->across, "");
-    EXPECT_FALSE(eye_range(shipped("robot_kr16")));
+    EXPECT_FALSE(eye_range(machine_file("robot_kr16")));
+}
+
+// Its reach: the wrist is on a sphere about the shoulder at most, and the head leads on by 358 mm.
+TEST(EyeRange, HoldsWhatARobotReaches) {
+    for (const char* name : {"robot_winder", "robot_track"}) {
+        SCOPED_TRACE(name);
+        const Machine machine = machine_file(name);
+        const auto arm = ArmEyeInverse::recognise(machine);
+        const auto range = eye_range(machine);
+        ASSERT_TRUE(arm && range);
+        std::mt19937_64 engine(5);
+        std::uniform_real_distribution<double> across(-1000.0, 1000.0);
+        std::uniform_real_distribution<double> along(-5000.0, 5000.0);
+        int reached = 0;
+        for (int draw = 0; draw < 20000; ++draw) {
+            const Eigen::Vector3d eye(std::abs(across(engine)), across(engine), along(engine));
+            if (std::abs(eye.y()) > std::sqrt(3.0) * eye.x() || !arm->reaches(eye)) {
+                continue;
+            }
+            ++reached;
+            EXPECT_GE(eye.z(), range->low_mm);
+            EXPECT_LE(eye.z(), range->high_mm);
+            EXPECT_GE(eye.head<2>().norm(), range->nearest_mm);
+            EXPECT_LE(eye.head<2>().norm(), range->farthest_mm);
+        }
+        EXPECT_GT(reached, 500);
+    }
+    const double shoulder_to_wrist_mm = 680.0 + std::hypot(670.0, 35.0);
+    EXPECT_LT(eye_range(machine_file("robot_winder"))->high_mm,
+              260.0 + shoulder_to_wrist_mm + 160.0);
+    EXPECT_NEAR(eye_range(machine_file("robot_track"))->high_mm,
+                eye_range(machine_file("robot_winder"))->high_mm + 3000.0, 1e-9);
 }
 
 // What the carriage reads is told in its own mm.
 TEST(EyeRange, TurnsHeightsIntoWhatTheCarriageReads) {
-    Machine machine = shipped("four_axis");
+    Machine machine = machine_file("four_axis");
     machine.eye_chain[0].direction = -Eigen::Vector3d::UnitZ();
     machine.mount = MandrelMount{};
     machine.mount->origin_mm.z() = 100.0;

@@ -84,6 +84,26 @@ Machine with_carriage(Machine machine, double min_mm, double max_mm) {
     return machine;
 }
 
+// The wrist of the robot is 1351 mm from its shoulder at most, the eye 358 mm before it.
+TEST(BeforePlanning, TellsWhatARobotDoesNotReach) {
+    const Machine robot = shipped("robot_winder");
+    const Mandrel tube = made("cylinder", {{"radius", 25.0}, {"length", 400.0}});
+    EXPECT_EQ(outcome(robot, tube).code, "");
+    const Mandrel long_tube = made("cylinder", {{"radius", 25.0}, {"length", 3200.0}});
+    const Outcome found = outcome(robot, long_tube);
+    EXPECT_EQ(found.code, "plan.travel");
+    EXPECT_TRUE(tells(found.words, "axes A B C U V W need -1600.7 to 1600.7 mm")) << found.words;
+    EXPECT_EQ(outcome(shipped("robot_track"), long_tube).code, "");
+    Machine far = robot;
+    for (Axis& axis : far.eye_chain) {
+        axis.point_mm.x() += 2000.0;
+    }
+    far.eye.position_mm.x() += 2000.0;
+    const Outcome too_far = outcome(far, tube);
+    EXPECT_EQ(too_far.code, "plan.travel");
+    EXPECT_TRUE(tells(too_far.words, "comes no nearer to the spindle axis")) << too_far.words;
+}
+
 TEST(BeforePlanning, TellsAxisAndMillimetresOfAPartBeyondItsTravel) {
     const Machine four = shipped("four_axis");
     const Mandrel tube = made("cylinder", {{"radius", 25.0}, {"length", 3200.0}});

@@ -68,7 +68,7 @@ class Completion(unittest.TestCase):
 
     def test_machines_by_name(self):
         self.assertEqual(self.offered("tee.stl", "--machine", "si"), ["six_axis.json"])
-        self.assertEqual(self.offered("tee.stl", "--machine", "=", "rob"), ["robot_kr16.json"])
+        self.assertEqual(self.offered("tee.stl", "--machine", "=", "rob"), ["robot_kr16.json", "robot_track.json", "robot_winder.json"])
         self.assertEqual(self.offered("validate", "hob"), ["hobby_grbl.json"])
 
 

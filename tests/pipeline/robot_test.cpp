@@ -1,0 +1,74 @@
+// The main job on a robot that holds the eye.
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "machines/kinematics.h"
+#include "pipeline/wind.h"
+#include "tests/support/run_checks.h"
+#include "tests/support/small_pipe.h"
+
+namespace meshwind {
+namespace {
+
+using Eigen::Vector3d;
+using test::check_of;
+using test::failed_checks;
+
+// More than an arm turns from one block to the next; another branch is half a turn of axis 1 or 4
+// away.
+constexpr double kSameBranch_rad = 1.0;
+
+// Six angles in steps of 0.001 deg.
+constexpr double kRounded = 6.0 * rad_from_deg(0.0005);
+
+// Plan, program and its proof are as on a winder; block by block the head is square to the spindle,
+// and the arm stays on one branch.
+void expect_wound(const std::string& name, const Job& job) {
+    SCOPED_TRACE(name);
+    const Machine machine = test::shipped(name);
+    const meshwind::Run run = wind(test::small_pipe(), machine, job);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    EXPECT_TRUE(run.usable);
+    ASSERT_EQ(run.layers.size(), 1U);
+    ASSERT_EQ(run.layers.front().programs.size(), 1U);
+    const JointPath joints = joint_path(run.layers.front().programs.front().made.blocks);
+    ASSERT_GT(joints.size(), 100U);
+    const std::size_t first = machine.axis_count() - 6;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const std::span<const double> row = joints.row(i);
+        const Eigen::Isometry3d eye = base_from_eye(machine, row);
+        ASSERT_LT((eye.linear() * machine.eye.exit + Vector3d::UnitX()).norm(), kRounded);
+        for (std::size_t a = first; i > 0 && a < row.size(); ++a) {
+            ASSERT_LT(std::abs(row[a] - joints.row(i - 1)[a]), kSameBranch_rad) << i;
+        }
+    }
+    // The plan is the part's, not the machine's.
+    const meshwind::Run other = wind(test::small_pipe(), test::shipped("six_axis"), job);
+    EXPECT_EQ(run.layers.front().plan.courses, other.layers.front().plan.courses);
+    EXPECT_NEAR(check_of(run, "coverage").numbers.at("fraction"),
+                check_of(other, "coverage").numbers.at("fraction"), 1e-12);
+}
+
+TEST(Robot, WindsAPipe) {
+    expect_wound("robot_winder", test::quick_job());
+    expect_wound("robot_track", test::quick_job());
+}
+
+TEST(Robot, ChoosesTheMotionOfLeastTime) {
+    const Machine machine = test::shipped("robot_winder");
+    const auto duration_s = [&](const Job& job) {
+        const meshwind::Run run = wind(test::small_pipe(), machine, job);
+        EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+        return run.layers.front().duration_s();
+    };
+    EXPECT_LT(duration_s(test::pipe_job()), duration_s(test::quick_job()));
+}
+
+}  // namespace
+}  // namespace meshwind
