@@ -83,10 +83,12 @@ inline constexpr CheckKind kFreeLength{
     "Free length",
     "fibre between mandrel and eye",
     {at_least("min_mm", "limit_min_mm", "shortest"), at_most("max_mm", "limit_max_mm", "Longest")}};
-inline constexpr CheckKind kRoller{"roller",
-                                   "Roller",
-                                   "the fibre leaves the roller at a right angle",
-                                   {at_most("worst_deg", "limit_deg", "worst")}};
+inline constexpr CheckKind kRoller{
+    "roller",
+    "Roller",
+    "the fibre leaves the roller at a right angle",
+    {at_most("worst_deg", "limit_deg", "worst"), told("mean_twist_deg", "Band twists"),
+     told("worst_twist_deg", "At most")}};
 inline constexpr CheckKind kLimits{
     "limits",
     "Axis limits",

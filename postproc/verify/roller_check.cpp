@@ -24,6 +24,13 @@ double lean_rad(const Machine& machine, std::span<const double> joints, const Ve
     return std::asin(std::min(1.0, std::abs(roller.dot(fibre))));
 }
 
+// Between roller and band, seen along the fibre.
+double twist_rad(const Machine& machine, std::span<const double> joints, const EyePoint& laid) {
+    const Vector3d roller = mandrel_from_eye(machine, joints).linear() * machine.eye.roller;
+    const Vector3d across = roller - roller.dot(laid.tangent) * laid.tangent;
+    return std::atan2(across.cross(laid.binormal).norm(), std::abs(across.dot(laid.binormal)));
+}
+
 bool turns_head(const Machine& machine) {
     return std::any_of(machine.eye_chain.begin(), machine.eye_chain.end(),
                        [&](const Axis& axis) { return axis.type == AxisType::Rotary; });
@@ -46,12 +53,18 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
         }
     }
     std::vector<double> lean(ends.size(), 0.0);
+    std::vector<double> twist(ends.size(), 0.0);
     parallel_for(lean.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             lean[k] = lean_rad(machine, laid.joints.row(ends[k]), laid.samples[ends[k]].tangent);
+            twist[k] = twist_rad(machine, laid.joints.row(ends[k]), laid.samples[ends[k]]);
         }
     });
     RollerFinding found;
+    for (const double at_end : twist) {
+        found.mean_twist_rad += at_end / static_cast<double>(twist.size());
+        found.worst_twist_rad = std::max(found.worst_twist_rad, at_end);
+    }
     const auto worst = std::max_element(lean.begin(), lean.end());
     if (worst != lean.end()) {
         found.worst_rad = *worst;

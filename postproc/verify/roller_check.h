@@ -1,4 +1,4 @@
-/// Whether the fibre leaves the eye's roller at a right angle.
+/// Whether the fibre leaves the eye's roller at a right angle, and how flat the band is.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +18,10 @@ inline constexpr double kRollerOff_rad = rad_from_deg(1.0);
 struct RollerFinding {
     double worst_rad = 0.0;  ///< off the square at the end of a block, at most, forced or not
     std::size_t worst_sample = 0;
+    /// Angle about the fibre between roller and laid band at the ends of blocks, 0 to pi/2: by so
+    /// much the band twists on its way from the eye to the wall.
+    double mean_twist_rad = 0.0;
+    double worst_twist_rad = 0.0;
     std::optional<std::size_t> wrong_sample{};  ///< the first that is off by more than it need be
     double wrong_rad = 0.0;                     ///< how far off the square it is
     double forced_rad = 0.0;                    ///< and the machine forces at this place

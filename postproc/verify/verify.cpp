@@ -165,7 +165,9 @@ private:
         const RollerFinding roller = find_roller(task_.machine, found_.laid);
         Check check(check_kind::kRoller);
         check.numbers = {{"worst_deg", deg_from_rad(roller.worst_rad)},
-                         {"limit_deg", deg_from_rad(kRollerOff_rad)}};
+                         {"limit_deg", deg_from_rad(kRollerOff_rad)},
+                         {"mean_twist_deg", deg_from_rad(roller.mean_twist_rad)},
+                         {"worst_twist_deg", deg_from_rad(roller.worst_twist_rad)}};
         put_at_sample(check, roller.wrong_sample.value_or(roller.worst_sample));
         // Programs from elsewhere may be for an eye without a roller.
         const bool asked = !task_.program.head || keeps_form(task_);

@@ -48,11 +48,28 @@ void expect_wound(const std::string& name, const Job& job) {
             ASSERT_LT(std::abs(row[a] - joints.row(i - 1)[a]), kSameBranch_rad) << i;
         }
     }
+    // The band against the roller, by the plan's own directions at the ends of blocks.
+    double twist_deg = 0.0;
+    const WoundLayer& layer = run.layers.front();
+    const BlockList& blocks = layer.programs.front().made.blocks;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const Block& block = blocks.blocks[i];
+        const PathPoint& at = layer.plan.pieces[static_cast<std::size_t>(block.piece)]
+                                  .path[static_cast<std::size_t>(block.point)];
+        const Vector3d band = at.tangent.cross(at.normal).normalized();
+        const Vector3d roller =
+            mandrel_from_eye(machine, joints.row(i)).linear() * machine.eye.roller;
+        twist_deg += deg_from_rad(std::acos(std::min(1.0, std::abs(roller.dot(band)))));
+    }
+    twist_deg /= static_cast<double>(joints.size());
+    EXPECT_GT(twist_deg, 1.0);
+    EXPECT_NEAR(check_of(run, "roller").numbers.at("mean_twist_deg"), twist_deg, 0.3);
     // The plan is the part's, not the machine's.
     const meshwind::Run other = wind(test::small_pipe(), test::shipped("six_axis"), job);
     EXPECT_EQ(run.layers.front().plan.courses, other.layers.front().plan.courses);
     EXPECT_NEAR(check_of(run, "coverage").numbers.at("fraction"),
                 check_of(other, "coverage").numbers.at("fraction"), 1e-12);
+    EXPECT_LT(check_of(other, "roller").numbers.at("mean_twist_deg"), 0.5);
 }
 
 TEST(Robot, WindsAPipe) {
