@@ -212,7 +212,9 @@ void SpindleWristInverse::recognise_linear(const Machine& machine) {
         ++count;
     }
     if (count == 0) {
-        missing(machine, "the eye chain does not start with a linear axis; add the carriage");
+        missing(machine,
+                "the eye chain does not start with a linear axis; add the carriage, or all six "
+                "rotary axes of a robot that holds the eye");
     }
     if (count > 3) {
         unsupported(machine, "the eye chain has more than three linear axes");
