@@ -189,13 +189,13 @@ RTCDevice shared_device() {
     struct Release {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
     };
-    static const std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device(
+    static const std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> kDevice(
         rtcNewDevice(nullptr));
-    if (device == nullptr) {
+    if (kDevice == nullptr) {
         throw NumericalError("mesh.ray_device", "",
                              "the ray tracing library Embree does not start");
     }
-    return device.get();
+    return kDevice.get();
 }
 
 }  // namespace
