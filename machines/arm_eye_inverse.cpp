@@ -13,18 +13,22 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kArmAxes = 6;
 
-// The arm alone, with the eye as what it carries.
-std::optional<Machine> arm_of(const Machine& machine, std::size_t tracks) {
-    const std::vector<Axis>& chain = machine.eye_chain;
-    const auto first = chain.begin() + static_cast<std::ptrdiff_t>(tracks);
-    const bool turns = chain.size() == tracks + kArmAxes &&
-                       std::all_of(first, chain.end(),
-                                   [](const Axis& axis) { return axis.type == AxisType::Rotary; });
-    if (!turns) {
-        return std::nullopt;
-    }
+// What kinematics needs: envelopes may be meshes.
+Machine chains_of(const Machine& machine) {
+    Machine chains;
+    chains.mandrel_chain = machine.mandrel_chain;
+    chains.eye_chain = machine.eye_chain;
+    chains.mount = machine.mount;
+    chains.eye.position_mm = machine.eye.position_mm;
+    chains.eye.roller = machine.eye.roller;
+    chains.eye.exit = machine.eye.exit;
+    return chains;
+}
+
+// The last six axes of the eye's chain, with the eye as the mandrel that they carry.
+Machine arm_of(const Machine& machine) {
     Machine arm;
-    arm.mandrel_chain.assign(first, chain.end());
+    arm.mandrel_chain.assign(machine.eye_chain.end() - kArmAxes, machine.eye_chain.end());
     arm.mount = MandrelMount{.origin_mm = machine.eye.position_mm};
     return arm;
 }
@@ -39,18 +43,22 @@ struct ArmEyeInverse::Head {
 };
 
 std::unique_ptr<ArmEyeInverse> ArmEyeInverse::recognise(const Machine& machine) {
+    const std::vector<Axis>& chain = machine.eye_chain;
+    const bool tracked = !chain.empty() && chain.front().type == AxisType::Linear;
     const std::optional<double> sign = spindle_sign(machine);
-    if (!sign || machine.eye_chain.empty()) {
+    if (chain.size() != (tracked ? 1U : 0U) + kArmAxes || !sign || !is_mounted_along_z(machine)) {
         return nullptr;
     }
-    const std::size_t tracks = machine.eye_chain.front().type == AxisType::Linear ? 1 : 0;
-    const std::optional<Machine> arm = arm_of(machine, tracks);
-    return arm ? std::unique_ptr<ArmEyeInverse>(new ArmEyeInverse(machine, *arm, *sign)) : nullptr;
+    PoseInverse pose(arm_of(machine));
+    if (!pose.closed_form()) {
+        return nullptr;
+    }
+    return std::unique_ptr<ArmEyeInverse>(new ArmEyeInverse(machine, std::move(pose), *sign));
 }
 
-ArmEyeInverse::ArmEyeInverse(const Machine& machine, const Machine& arm, double spindle_sign)
-    : machine_(machine),
-      pose_(arm),
+ArmEyeInverse::ArmEyeInverse(const Machine& machine, PoseInverse pose, double spindle_sign)
+    : machine_(chains_of(machine)),
+      pose_(std::move(pose)),
       spindle_sign_(spindle_sign),
       first_(machine.axis_count() - kArmAxes) {
     if (machine.eye_chain.size() > kArmAxes) {

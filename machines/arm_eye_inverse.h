@@ -14,8 +14,8 @@
 
 namespace meshwind {
 
-/// A robot that winds: an arm (any chain of six rotary axes) with the eye at its flange, on the
-/// ground or on a track of one linear axis, in front of a spindle. The head is held as a five-axis
+/// A robot that winds: an arm of ArmInverse's class with the eye at its flange, on the ground or on
+/// a track of one linear axis, in front of a spindle. The head is held as a five-axis
 /// winding machine holds it: its exit along -X, to the spindle axis, its roller at a right angle to
 /// the fibre; the band twists on its way by `twist_rad`. A head that leaned to lay the band flat
 /// would sweep the arm along the mandrel. That is one pose of the eye, for which PoseInverse has
@@ -38,7 +38,8 @@ public:
         return std::nullopt;
     }
 
-    /// All ways in which the arm reaches the target within its limits.
+    [[nodiscard]] bool has_branches() const override { return true; }
+
     [[nodiscard]] std::vector<std::vector<double>> starts(const EyeTarget& target,
                                                           double turn_rad) const override;
 
@@ -46,12 +47,11 @@ public:
     [[nodiscard]] bool reaches(const Eigen::Vector3d& eye_mm) const;
 
     [[nodiscard]] bool on_track() const { return track_.has_value(); }
-    [[nodiscard]] bool closed_form() const { return pose_.closed_form(); }
 
 private:
     struct Head;
 
-    ArmEyeInverse(const Machine& machine, const Machine& arm, double spindle_sign);
+    ArmEyeInverse(const Machine& machine, PoseInverse pose, double spindle_sign);
 
     [[nodiscard]] Head head_at(const EyeTarget& target, double turn_rad,
                                std::span<const double> previous) const;
@@ -60,7 +60,7 @@ private:
     [[nodiscard]] Eigen::Isometry3d place_base(Eigen::Isometry3d pose, double turn_rad,
                                                std::span<double> joints) const;
 
-    Machine machine_;
+    Machine machine_;   ///< its chains and its eye alone
     PoseInverse pose_;  ///< of the six axes alone, with the eye as their mandrel
     double spindle_sign_ = 1.0;
     std::size_t first_ = 0;      ///< joint of the arm's first axis

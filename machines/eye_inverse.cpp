@@ -37,16 +37,6 @@ constexpr double kPointTolerance_mm = 1e-9;
 constexpr double kFlip_rad = 0.5 * kPi;
 constexpr std::size_t kConstraints = 6;  // place, and the roller's three components
 
-bool is_spindle(const Machine& machine) {
-    if (machine.mandrel_chain.size() != 1) {
-        return false;
-    }
-    const Axis& axis = machine.mandrel_chain.front();
-    return axis.type == AxisType::Rotary &&
-           axis.direction.cross(Vector3d::UnitZ()).norm() < kParallel &&
-           axis.direction.cross(axis.point_mm).norm() < kPointTolerance_mm;
-}
-
 double length_of(const Machine& machine) {
     double length = kLeastLength_mm;
     for (std::size_t j = 0; j < machine.axis_count(); ++j) {
@@ -112,12 +102,6 @@ std::string general_words(const Machine& machine) {
     return "general chain: " + words + ": numerical";
 }
 
-std::string arm_words(const ArmEyeInverse& inverse) {
-    return std::string("spindle, arm that holds the eye") +
-           (inverse.on_track() ? ", on a track" : "") +
-           (inverse.closed_form() ? ": closed form" : ": numerical");
-}
-
 struct Judged {
     MachineClass what;
     std::string code;
@@ -134,11 +118,12 @@ double kept_distance_mm(const Machine& machine, const SpindleWristInverse& inver
 
 Judged judge(const Machine& machine) {
     Judged judged;
-    judged.what.spindle = is_spindle(machine);
+    judged.what.spindle = spindle_sign(machine).has_value();
     if (const auto arm = ArmEyeInverse::recognise(machine)) {
         judged.what.arm = true;
         judged.what.free_turn = true;
-        judged.what.words = arm_words(*arm);
+        judged.what.words = std::string("spindle, arm that holds the eye") +
+                            (arm->on_track() ? ", on a track" : "") + ": closed form";
         return judged;
     }
     try {
@@ -213,9 +198,9 @@ struct NumericEyeInverse::Found {
 
 NumericEyeInverse::NumericEyeInverse(const Machine& machine)
     : machine_(machine), length_mm_(length_of(machine)) {
-    if (is_spindle(machine)) {
+    if (const std::optional<double> sign = spindle_sign(machine)) {
         first_free_ = 1;
-        spindle_sign_ = machine.mandrel_chain.front().direction.z() > 0.0 ? 1.0 : -1.0;
+        spindle_sign_ = *sign;
     }
 }
 
@@ -345,11 +330,11 @@ WristState NumericEyeInverse::solve(const EyeTarget& target, double turn_rad,
 }
 
 std::unique_ptr<EyeInverse> make_eye_inverse(const Machine& machine) {
-    if (machine_class(machine).closed_form) {
-        return std::make_unique<SpindleWristInverse>(machine);
-    }
     if (std::unique_ptr<ArmEyeInverse> arm = ArmEyeInverse::recognise(machine)) {
         return arm;
+    }
+    if (machine_class(machine).closed_form) {
+        return std::make_unique<SpindleWristInverse>(machine);
     }
     return std::make_unique<NumericEyeInverse>(machine);
 }

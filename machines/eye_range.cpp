@@ -119,7 +119,7 @@ double length_mm(const Machine& arm) {
 }
 
 // What of a grid an arm without a track reaches, and a step more; machine frame.
-EyeRange range_of_arm(const Machine& machine, const std::optional<double>& at_mm) {
+EyeRange range_of_arm(const Machine& machine, double within_mm) {
     const std::unique_ptr<ArmEyeInverse> arm = ArmEyeInverse::recognise(machine);
     const auto reaches = [&](double from_axis_mm, double z_mm) {
         return std::any_of(kSides_rad.begin(), kSides_rad.end(), [&](double side_rad) {
@@ -131,21 +131,21 @@ EyeRange range_of_arm(const Machine& machine, const std::optional<double>& at_mm
     const double reach_mm = length_mm(machine);
     const double most_mm = reach_mm + foot.head<2>().norm();
     Interval height = kNone;
-    Interval height_there = kNone;
+    Interval height_within = kNone;
     Interval distance = kNone;
     for (double z = foot.z() - reach_mm; z <= foot.z() + reach_mm; z += kReachStep_mm) {
         for (double from_axis = 0.0; from_axis <= most_mm; from_axis += kReachStep_mm) {
             if (reaches(from_axis, z)) {
                 height.hold(z);
                 distance.hold(from_axis);
+                if (from_axis <= within_mm) {
+                    height_within.hold(z);
+                }
             }
         }
-        if (at_mm && reaches(*at_mm, z)) {
-            height_there.hold(z);
-        }
     }
-    if (height_there.low <= height_there.high) {
-        height = height_there;
+    if (height_within.low <= height_within.high) {
+        height = height_within;
     }
     EyeRange range;
     range.low_mm = height.low - kReachStep_mm;
@@ -156,13 +156,13 @@ EyeRange range_of_arm(const Machine& machine, const std::optional<double>& at_mm
 }
 
 // Its letters along and across are those of all its axes.
-EyeRange range_of_robot(Machine machine, const std::optional<double>& at_mm) {
+EyeRange range_of_robot(Machine machine, double within_mm) {
     const bool tracked = machine.eye_chain.front().type == AxisType::Linear;
     const Axis track = machine.eye_chain.front();
     if (tracked) {
         machine.eye_chain.erase(machine.eye_chain.begin());
     }
-    EyeRange range = range_of_arm(machine, at_mm);
+    EyeRange range = range_of_arm(machine, within_mm);
     Interval height{range.low_mm, range.high_mm};
     if (tracked) {
         height.add(track, track.direction.z());
@@ -180,10 +180,10 @@ EyeRange range_of_robot(Machine machine, const std::optional<double>& at_mm) {
 
 }  // namespace
 
-std::optional<EyeRange> eye_range(const Machine& machine, const std::optional<double>& at_mm) {
+std::optional<EyeRange> eye_range(const Machine& machine, double within_mm) {
     const MachineClass what = machine_class(machine);
     if (what.arm) {
-        return range_of_robot(machine, at_mm);
+        return range_of_robot(machine, within_mm);
     }
     if (!what.closed_form) {
         return std::nullopt;

@@ -28,9 +28,9 @@ struct EyeRange {
 /// those at which its head is held as when it winds, up to 60 degrees from its side; the height,
 /// and the distance where at most one axis moves the eye across, are the least that do. A robot's
 /// reach is looked up on a grid and told a step of it, 80 mm, too large.
-/// \param at_mm a robot's heights are those at which its eye can be so far from the spindle axis;
-///        where it nowhere can, and where nothing is given, those at any distance
-[[nodiscard]] std::optional<EyeRange> eye_range(const Machine& machine,
-                                                const std::optional<double>& at_mm = std::nullopt);
+/// \param within_mm a robot's heights are those at which its eye can be no farther than this from
+///        the spindle axis; where it nowhere can, those at any distance
+[[nodiscard]] std::optional<EyeRange> eye_range(
+    const Machine& machine, double within_mm = std::numeric_limits<double>::infinity());
 
 }  // namespace meshwind

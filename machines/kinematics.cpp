@@ -57,13 +57,6 @@ double sign_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& line)
     return direction.dot(line) > 0.0 ? 1.0 : -1.0;
 }
 
-// The mandrel frame at zero is the machine frame, or that moved along Z.
-bool is_along_spindle(const std::optional<MandrelMount>& mount) {
-    return !mount || (mount->origin_mm.head<2>().norm() <= kPointTolerance_mm &&
-                      (mount->x - Eigen::Vector3d::UnitX()).norm() <= kParallel &&
-                      (mount->z - Eigen::Vector3d::UnitZ()).norm() <= kParallel);
-}
-
 double distance_to_axis(const Axis& axis, const Eigen::Vector3d& point_mm) {
     return axis.direction.cross(point_mm - axis.point_mm).norm();
 }
@@ -159,11 +152,18 @@ std::optional<double> spindle_sign(const Machine& machine) {
         machine.mandrel_chain.front().type != AxisType::Rotary) {
         return std::nullopt;
     }
-    const Axis& spindle = machine.mandrel_chain.front();
-    const double sign = sign_along(spindle.direction, Eigen::Vector3d::UnitZ());
-    const bool in_place =
-        sign != 0.0 && distance_to_axis(spindle, Eigen::Vector3d::Zero()) <= kPointTolerance_mm;
-    return in_place && is_along_spindle(machine.mount) ? std::optional(sign) : std::nullopt;
+    const Axis& axis = machine.mandrel_chain.front();
+    const double sign = sign_along(axis.direction, Eigen::Vector3d::UnitZ());
+    const bool through_origin =
+        distance_to_axis(axis, Eigen::Vector3d::Zero()) <= kPointTolerance_mm;
+    return sign != 0.0 && through_origin ? std::optional(sign) : std::nullopt;
+}
+
+bool is_mounted_along_z(const Machine& machine) {
+    const std::optional<MandrelMount>& mount = machine.mount;
+    return !mount || (mount->origin_mm.head<2>().norm() <= kPointTolerance_mm &&
+                      (mount->x - Eigen::Vector3d::UnitX()).norm() <= kParallel &&
+                      (mount->z - Eigen::Vector3d::UnitZ()).norm() <= kParallel);
 }
 
 SpindleWristInverse::SpindleWristInverse(const Machine& machine)
@@ -188,22 +188,19 @@ void SpindleWristInverse::recognise_spindle(const Machine& machine) {
     if (machine.mandrel_chain.size() != 1 || spindle.type != AxisType::Rotary) {
         unsupported(machine, "the mandrel chain is not one rotary axis");
     }
-    spindle_sign_ = sign_along(spindle.direction, Eigen::Vector3d::UnitZ());
-    if (spindle_sign_ == 0.0 ||
-        distance_to_axis(spindle, Eigen::Vector3d::Zero()) > kPointTolerance_mm) {
+    spindle_sign_ = spindle_sign(machine).value_or(0.0);
+    if (spindle_sign_ == 0.0) {
         unsupported(machine, name_of(spindle) + " is not the Z axis of the machine frame");
     }
 }
 
 void SpindleWristInverse::recognise_mount(const Machine& machine) {
-    if (!machine.mount) {
-        return;
-    }
-    if (!is_along_spindle(machine.mount)) {
+    if (!is_mounted_along_z(machine)) {
         unsupported(machine, "the mandrel frame at zero is not the machine frame moved along Z");
     }
-    eye_zero_mm_.z() -=
-        machine.mount->origin_mm.z();  // what is left to move when the eye is at the target
+    if (machine.mount) {  // what is left to move when the eye is at the target
+        eye_zero_mm_.z() -= machine.mount->origin_mm.z();
+    }
 }
 
 void SpindleWristInverse::recognise_linear(const Machine& machine) {
@@ -214,7 +211,7 @@ void SpindleWristInverse::recognise_linear(const Machine& machine) {
     if (count == 0) {
         missing(machine,
                 "the eye chain does not start with a linear axis; add the carriage, or all six "
-                "rotary axes of a robot that holds the eye");
+                "rotary axes of a robot that holds the eye, the last three through one point");
     }
     if (count > 3) {
         unsupported(machine, "the eye chain has more than three linear axes");

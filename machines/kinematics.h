@@ -50,9 +50,11 @@ struct PlacedAxis {
                                                   std::span<const double> q);
 
 /// What the joint of a spindle counts for a turn of the mandrel about +Z of the machine, +1 or -1:
-/// where one rotary axis along +-Z through the origin is all that moves the mandrel, mounted
-/// further along the axis or not. Else nothing.
+/// where one rotary axis along +-Z through the origin is all that moves the mandrel. Else nothing.
 [[nodiscard]] std::optional<double> spindle_sign(const Machine& machine);
+
+/// The mandrel frame at zero is the machine frame, or that moved along Z.
+[[nodiscard]] bool is_mounted_along_z(const Machine& machine);
 
 /// Where the eye must be, mandrel frame.
 struct EyeTarget {
@@ -97,8 +99,11 @@ public:
     [[nodiscard]] virtual std::optional<double> forced_turn(const EyeTarget& target,
                                                             double near_rad) const = 0;
 
-    /// Joints with which a path may begin at `target`, where there are ways that lead on from each
-    /// other by no small step; none: any joints will do, all zero say.
+    /// True for arms: a place is reached in ways from one of which no small step leads to another,
+    /// and any axis may move the eye. Else rotary axes of the eye's chain turn the head alone.
+    [[nodiscard]] virtual bool has_branches() const { return false; }
+
+    /// With branches: joints of every way within the limits to begin a path at `target`.
     [[nodiscard]] virtual std::vector<std::vector<double>> starts(const EyeTarget& /*target*/,
                                                                   double /*turn_rad*/) const {
         return {};

@@ -112,8 +112,7 @@ struct PoseInverse::Choice {
 PoseInverse::PoseInverse(const Machine& machine)
     : machine_(machine), arm_(ArmInverse::recognise(machine)), length_mm_(length_of(machine)) {}
 
-// Whole turns bring each rotary joint near its previous value, within its travel if one does.
-// Then a few Newton steps where rounding near singular poses has left something.
+// Newton steps, near to the previous joints.
 PoseInverse::Choice PoseInverse::refined(const Isometry3d& pose, std::span<const double> previous,
                                          std::vector<double> start, bool keep_limits) const {
     const std::size_t axes = machine_.mandrel_chain.size();
@@ -156,6 +155,7 @@ PoseInverse::Choice PoseInverse::refined(const Isometry3d& pose, std::span<const
     return choice;
 }
 
+// Whole turns bring each rotary joint near its previous value, within its travel if one does.
 void PoseInverse::bring_near(std::span<const double> previous, Choice& choice) const {
     choice.step_rad = 0.0;
     choice.within_limits = true;
@@ -264,23 +264,18 @@ void PoseInverse::measure(std::span<const double> joints, PoseState& state) cons
 }
 
 std::vector<std::vector<double>> PoseInverse::all(const Isometry3d& base_from_mandrel) const {
+    assert(arm_);
     std::vector<double> middle(machine_.axis_count(), 0.0);
     for (std::size_t j = 0; j < machine_.mandrel_chain.size(); ++j) {
         const Axis& axis = machine_.mandrel_chain[j];
         middle[j] = std::isfinite(axis.min + axis.max) ? 0.5 * (axis.min + axis.max) : 0.0;
     }
     std::vector<std::vector<double>> ways;
-    const auto add = [&](Choice choice) {
+    for (const ArmInverse::Joints& found : arm_->solve(base_from_mandrel, middle)) {
+        Choice choice = settled(base_from_mandrel, middle, found);
         if (choice.good()) {
             ways.push_back(std::move(choice.joints));
         }
-    };
-    if (!arm_) {
-        add(solve_numerically(base_from_mandrel, middle));
-        return ways;
-    }
-    for (const ArmInverse::Joints& found : arm_->solve(base_from_mandrel, middle)) {
-        add(settled(base_from_mandrel, middle, found));
     }
     return ways;
 }

@@ -58,7 +58,7 @@ public:
                     std::span<double> joints) const;
 
     /// Every way to reach a pose within the limits, rotary joints as near to the middle of their
-    /// travel as whole turns bring them; one at most where there is no closed form.
+    /// travel as whole turns bring them. \pre closed_form()
     [[nodiscard]] std::vector<std::vector<double>> all(
         const Eigen::Isometry3d& base_from_mandrel) const;
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 #include <embree3/rtcore.h>
@@ -186,11 +185,8 @@ RTCRay ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, d
 // The one device of the process: each takes half a MB of address space and threads of its own, and
 // a CAD part of a thousand faces has as many queries at once.
 RTCDevice shared_device() {
-    struct Release {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    };
-    static const std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> kDevice(
-        rtcNewDevice(nullptr));
+    static const std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> kDevice(
+        rtcNewDevice(nullptr), rtcReleaseDevice);
     if (kDevice == nullptr) {
         throw NumericalError("mesh.ray_device", "",
                              "the ray tracing library Embree does not start");

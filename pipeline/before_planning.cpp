@@ -21,6 +21,7 @@
 #include "pipeline/part_room.h"
 #include "pipeline/part_words.h"
 #include "pipeline/plan_layer.h"
+#include "pipeline/travel_words.h"
 #include "winding/revolution/aim_pass.h"
 #include "winding/revolution/hoop_path.h"
 #include "winding/turn/turn.h"
@@ -110,7 +111,8 @@ public:
           job_(task.job),
           turn_(traits_of(task.job.mandrel.turn)),
           friction_(most_friction_of(task.job)),
-          eye_(eye_range(task.machine, hoop_eye_mm(widest_mm(task.mandrel)))),
+          eye_(eye_range(task.machine,
+                         widest_mm(task.mandrel) + task.machine.fibre.max_free_length_mm)),
           found_(find_revolution(task.mandrel)) {
         if (eye_ && job_.eye.rule == EyeRule::Cylinder) {
             eye_->farthest_mm = std::min(eye_->farthest_mm, job_.eye.radius_mm);
@@ -144,8 +146,9 @@ public:
             const double z_mm = hoop_height_mm(rim);
             remarks.push_back("at the rim at z " + fixed(rim.centre_mm.z(), 1) +
                               " mm no fibre can be turned round: " +
-                              (in_height(z_mm) ? across_words(hoop_eye_mm(rim.radius_mm))
-                                               : along_words(z_mm, z_mm)));
+                              (in_height(z_mm) ? across_words(*eye_, hoop_eye_mm(rim.radius_mm),
+                                                              machine_.fibre.max_free_length_mm)
+                                               : along_words(*eye_, z_mm, z_mm)));
         }
     }
 
@@ -420,71 +423,18 @@ private:
         for (const auto& [low, high] : {needed_heights_mm(), heights_of_wall_mm()}) {
             if (low < eye_->low_mm - kSlack_mm || high > eye_->high_mm + kSlack_mm) {
                 refuse("plan.travel", machine_place(),
-                       along_words(low, high) + unit_question(mandrel_));
+                       along_words(*eye_, low, high) + unit_question(mandrel_));
             }
         }
         const double needed_mm = hoop_eye_mm(widest_mm(mandrel_));
         if (needed_mm > eye_->farthest_mm) {
             refuse("plan.travel", machine_place(),
                    "the part is " + fixed(2.0 * widest_mm(mandrel_), 1) + " mm wide; " +
-                       across_words(needed_mm) + unit_question(mandrel_));
+                       across_words(*eye_, needed_mm, machine_.fibre.max_free_length_mm) +
+                       unit_question(mandrel_));
         }
-        refuse("plan.travel", machine_place(), nearest_words() + unit_question(mandrel_));
-    }
-
-    // "axis Z", "axes A B C"
-    static std::string axes_words(const std::string& letters) {
-        std::string words = letters.size() == 1 ? "axis" : "axes";
-        for (const char letter : letters) {
-            (words += ' ') += letter;
-        }
-        return words;
-    }
-
-    [[nodiscard]] std::string nearest_words() const {
-        return "the eye comes no nearer to the spindle axis than " + fixed(eye_->nearest_mm, 1) +
-               " mm" + (eye_->across.empty() ? "" : " (" + axes_words(eye_->across) + ")") +
-               ", and the longest free fibre is " + fixed(machine_.fibre.max_free_length_mm, 1) +
-               " mm";
-    }
-
-    [[nodiscard]] std::string along_words(double low_mm, double high_mm) const {
-        if (eye_->along.empty()) {
-            return "no axis moves the eye along the spindle, and the part needs it from " +
-                   fixed(low_mm, 1) + " to " + fixed(high_mm, 1) + " mm";
-        }
-        const bool one = eye_->along.size() == 1;
-        const auto shown = [&](double z_mm) {
-            return one ? eye_->along_zero_mm + eye_->along_scale * z_mm : z_mm;
-        };
-        std::array<double, 2> needs = {shown(low_mm), shown(high_mm)};
-        std::array<double, 2> has = {shown(eye_->low_mm), shown(eye_->high_mm)};
-        std::sort(needs.begin(), needs.end());
-        std::sort(has.begin(), has.end());
-        const FixedPair low = fixed_apart(needs[0], finite(has[0]), 1);
-        const FixedPair high = fixed_apart(needs[1], finite(has[1]), 1);
-        return axes_words(eye_->along) + (one ? " needs " : " need ") + low.value + " to " +
-               high.value + " mm for the turns at the part's ends, " + (one ? "has " : "have ") +
-               end_words(has[0], low.limit) + " to " + end_words(has[1], high.limit) + " mm";
-    }
-
-    static double finite(double end) { return std::isfinite(end) ? end : 0.0; }
-
-    static std::string end_words(double end, const std::string& text) {
-        return std::isfinite(end) ? text : "any";
-    }
-
-    [[nodiscard]] std::string across_words(double needed_mm) const {
-        if (needed_mm <= eye_->farthest_mm) {
-            return nearest_words();
-        }
-        const FixedPair shown = fixed_apart(needed_mm, eye_->farthest_mm, 1);
-        return "there the eye needs to be " + shown.value + " mm from the spindle axis; " +
-               (eye_->across.empty()
-                    ? "it stands at "
-                    : axes_words(eye_->across) + (eye_->across.size() == 1 ? " brings" : " bring") +
-                          " it to ") +
-               shown.limit + " mm";
+        refuse("plan.travel", machine_place(),
+               nearest_words(*eye_, machine_.fibre.max_free_length_mm) + unit_question(mandrel_));
     }
 
     // What stands on the base and is met by the turning part.

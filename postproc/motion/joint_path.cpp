@@ -17,8 +17,6 @@ namespace {
 constexpr double kNearSingularSine = 0.0175;
 // An eye this near to the axis asks for a quarter turn of the spindle per few mm of path.
 constexpr double kNearAxis_mm = 5.0;
-// Places that are missed by less are rounding of positions of some metres over a thousand turns.
-constexpr double kReached_mm = 1e-6;
 // A way to begin is judged by every so many points of a path.
 constexpr std::size_t kCoarse = 8;
 // Axis::resolution_nano counts these per mm or degree.
@@ -104,7 +102,7 @@ JointPath solve_from(const Machine& machine, const EyeInverse& inverse, const Ey
         if (eye_radius_mm(path[i]) < kNearAxis_mm) {
             note(result, JointNoteKind::EyeNearSpindleAxis, i, eye_radius_mm(path[i]));
         }
-        if (state.residual_mm > kReached_mm) {
+        if (state.residual_mm > kEyeThere_mm) {
             note(result, JointNoteKind::EyeOutOfReach, i, state.residual_mm);
         }
     }
@@ -135,8 +133,8 @@ double singular_sine(const JointPath& path) {
     return least;
 }
 
-// Of the ways to begin the one with the least trouble, then the one farthest from singular poses;
-// every kCoarse-th point tells.
+// Of the ways to begin the one with the least trouble, then, where all come within a degree of a
+// singular pose, the one that stays farthest away; every kCoarse-th point tells.
 const std::vector<double>& best_start(const Machine& machine, const EyeInverse& inverse,
                                       const EyePath& path, std::span<const double> turns_rad,
                                       std::span<const std::vector<double>> starts) {
@@ -166,7 +164,7 @@ const std::vector<double>& best_start(const Machine& machine, const EyeInverse& 
 // one on the way may start half a turn or a turn further back: the roller is the same.
 JointPath solve(const Machine& machine, const EyeInverse& inverse, const EyePath& path,
                 std::span<const double> turns_rad) {
-    if (!path.empty()) {
+    if (inverse.has_branches() && !path.empty()) {
         const std::vector<std::vector<double>> starts =
             inverse.starts(target_of(path.front()), turns_rad.front());
         if (!starts.empty()) {

@@ -69,6 +69,10 @@ struct JointPath {
     }
 };
 
+/// Eyes that miss their place by less are there: rounding of positions of some metres over a
+/// thousand turns.
+inline constexpr double kEyeThere_mm = 1e-6;
+
 /// Below this distance the direction of the eye from the spindle axis is rounding noise of
 /// positions of some metres; the policy CentralAngle then keeps the previous turn.
 inline constexpr double kLeastEyeRadius_mm = 1e-6;

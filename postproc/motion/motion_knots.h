@@ -62,10 +62,8 @@ public:
     /// motion.
     [[nodiscard]] std::span<const double> start() const { return given_joints(0); }
 
-    /// Whether an axis may move the eye: with an arm any may, else a rotary one of the eye's chain
-    /// turns the head alone.
     [[nodiscard]] bool moves_eye(std::size_t joint) const {
-        return arm_ || joint < task_.machine.mandrel_chain.size() ||
+        return inverse_->has_branches() || joint < task_.machine.mandrel_chain.size() ||
                axis(joint).type == AxisType::Linear;
     }
 
@@ -84,14 +82,14 @@ public:
 private:
     void find_joints();
     [[nodiscard]] std::span<const double> given_joints(std::size_t knot) const {
-        return {joints_.data() + (arm_ ? knot : 0) * axis_count(), axis_count()};
+        return {joints_.data() + (inverse_->has_branches() ? knot : 0) * axis_count(),
+                axis_count()};
     }
     [[nodiscard]] bool in_reach(std::size_t knot, const KnotChoice& choice) const;
     [[nodiscard]] bool head_clear(std::size_t station, const KnotChoice& choice) const;
 
     const OptimalMotionTask& task_;
     std::unique_ptr<EyeInverse> inverse_;
-    bool arm_ = false;
     std::vector<double> joints_;  // of an arm at each place in the given motion; else zero, once
     std::vector<Knot> knots_;
 };

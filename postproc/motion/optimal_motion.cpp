@@ -22,9 +22,6 @@ constexpr double kLeastKnot_mm = 1.0;
 // Places kept at either end of a stretch: what the accelerations at its first free one need.
 constexpr double kKeptEnds = 3.0;
 
-// Places that are missed by less are reached.
-constexpr double kReached_mm = 1e-6;
-
 // Where a motion is to be mended, what is clear is looked for in such steps to either side.
 constexpr int kSearchSteps = 10;
 constexpr double kSearchTurn_rad = 0.05;
@@ -125,7 +122,7 @@ std::vector<KnotChoice> clear_choices(const MotionKnots& knots) {
 }  // namespace
 
 MotionKnots::MotionKnots(const OptimalMotionTask& task, std::size_t first, std::size_t last)
-    : task_(task), inverse_(make_eye_inverse(task.machine)), arm_(machine_class(task.machine).arm) {
+    : task_(task), inverse_(make_eye_inverse(task.machine)) {
     const EyePath& path = task.path;
     for (std::size_t i = first; i <= last; ++i) {
         if (!knots_.empty()) {
@@ -155,7 +152,7 @@ MotionKnots::MotionKnots(const OptimalMotionTask& task, std::size_t first, std::
 }
 
 void MotionKnots::find_joints() {
-    if (!arm_) {
+    if (!inverse_->has_branches()) {
         joints_.assign(axis_count(), 0.0);
         return;
     }
@@ -202,7 +199,7 @@ bool MotionKnots::head_clear(std::size_t station, const KnotChoice& choice) cons
 
 // Whether an arm reaches the place from near where it is in the given motion.
 bool MotionKnots::in_reach(std::size_t knot, const KnotChoice& choice) const {
-    if (!arm_) {
+    if (!inverse_->has_branches()) {
         return true;
     }
     std::vector<double> joints(axis_count());
@@ -210,7 +207,7 @@ bool MotionKnots::in_reach(std::size_t knot, const KnotChoice& choice) const {
     const WristState state = inverse_->solve(
         {.eye_mm = eye_mm(knot, choice.length_mm), .tangent = at.tangent, .binormal = at.binormal},
         choice.turn_rad, given_joints(knot), joints);
-    if (state.residual_mm > kReached_mm) {
+    if (state.residual_mm > kEyeThere_mm) {
         return false;
     }
     for (std::size_t a = 0; a < joints.size(); ++a) {

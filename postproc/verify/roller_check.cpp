@@ -36,13 +36,6 @@ bool turns_head(const Machine& machine) {
                        [&](const Axis& axis) { return axis.type == AxisType::Rotary; });
 }
 
-// Turn of a lone spindle; other chains are free to choose.
-double turn_of(const Machine& machine, std::span<const double> joints) {
-    const bool spindle =
-        machine.mandrel_chain.size() == 1 && machine.mandrel_chain.front().type == AxisType::Rotary;
-    return !spindle ? 0.0 : machine.axis(0).direction.z() < 0.0 ? -joints[0] : joints[0];
-}
-
 }  // namespace
 
 RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
@@ -74,6 +67,7 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
         return found;
     }
     const std::unique_ptr<EyeInverse> inverse = make_eye_inverse(machine);
+    const double sign = spindle_sign(machine).value_or(0.0);  // other chains choose their turn
     std::vector<double> joints(machine.axis_count());
     for (std::size_t k = 0; k < lean.size() && !found.wrong_sample; ++k) {
         if (lean[k] <= kRollerOff_rad) {
@@ -84,7 +78,7 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
         const std::span<const double> is = laid.joints.row(ends[k]);
         const WristState state = inverse->solve(
             {.eye_mm = sample.eye_mm, .tangent = sample.tangent, .binormal = sample.binormal},
-            turn_of(machine, is), is, joints);
+            sign * is.front(), is, joints);
         const double forced = lean_rad(machine, joints, sample.tangent);
         if (state.singular_sine > kSingular_sine && lean[k] > forced + kRollerOff_rad) {
             found.wrong_sample = ends[k];

@@ -1,7 +1,6 @@
 #include "machines/kinematics.h"
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,15 +8,17 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "machines/machine_json.h"
+#include "tests/support/machine_draws.h"
 
 namespace meshwind {
 namespace {
 
-const std::string kSource = MESHWIND_SOURCE_DIR;
-const std::string kCorpus = kSource + "/data/conformance/machine/valid/";
+using test::Draw;
+
+const std::string kCorpus = std::string(MESHWIND_SOURCE_DIR) + "/data/conformance/machine/valid/";
 
 Machine six_axis() {
-    return read_machine(kSource + "/machines/six_axis.json");
+    return test::machine_file("six_axis");
 }
 
 Machine five_axis() {
@@ -33,33 +34,13 @@ std::string refusal(const Machine& machine) {
     return "accepted";
 }
 
-class RandomTargets {
-public:
-    explicit RandomTargets(unsigned seed) : engine_(seed) {}
-
-    EyeTarget next() {
-        EyeTarget target;
-        target.eye_mm = 500.0 * direction();
-        target.tangent = direction();
-        target.binormal = target.tangent.cross(direction()).normalized();
-        return target;
-    }
-
-    double number(double min, double max) {
-        return std::uniform_real_distribution<double>(min, max)(engine_);
-    }
-
-private:
-    Eigen::Vector3d direction() {
-        Eigen::Vector3d vector;
-        do {
-            vector = {number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)};
-        } while (vector.norm() < 0.1);
-        return vector.normalized();
-    }
-
-    std::mt19937 engine_;
-};
+EyeTarget drawn_target(Draw& draw) {
+    EyeTarget target;
+    target.eye_mm = 500.0 * draw.direction();
+    target.tangent = draw.direction();
+    target.binormal = target.tangent.cross(draw.direction()).normalized();
+    return target;
+}
 
 // Largest error of position (mm) and of the roller's direction against `across` (rad).
 void expect_pose(const Machine& machine, const std::vector<double>& q, const EyeTarget& target,
@@ -73,12 +54,12 @@ void expect_pose(const Machine& machine, const std::vector<double>& q, const Eye
 
 void expect_round_trip(const Machine& machine, unsigned seed) {
     const SpindleWristInverse inverse(machine);
-    RandomTargets random(seed);
+    Draw draw(seed);
     std::vector<double> q(machine.axis_count(), 0.0);
     for (int i = 0; i < 10'000; ++i) {
-        const EyeTarget target = random.next();
+        const EyeTarget target = drawn_target(draw);
         // A thousand turns: the angle that a mandrel reaches in a real program.
-        const double turn = random.number(-6000.0, 6000.0);
+        const double turn = draw.between(-6000.0, 6000.0);
         const WristState state = inverse.solve(target, turn, q, q);
         EXPECT_FALSE(state.held);
         EXPECT_DOUBLE_EQ(inverse.turn_rad(q), turn);

@@ -2,8 +2,8 @@
 """tidy.py BUILD_FOLDER JOBS FOLDER...: clang-tidy over the library sources of these folders, many in one run.
 
 Headers, Eigen's before all, are parsed and checked anew for each text. So sources of one library with the same flags are
-read one after the other as one text, none beside another that defines the same name. Where the compiler complains of such a text
-nevertheless, each half is checked by itself. Exit 1 when something is found.
+read one after the other as one text, none beside another that defines the same name. Where the compiler complains of such
+a text nevertheless, each half is checked by itself. Exit 1 when something is found.
 """
 import concurrent.futures
 import json
