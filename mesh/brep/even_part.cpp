@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include <cstdio>
 #include "core/index.h"
 #include "mesh/edge_table.h"
 #include "mesh/even/even_mesh.h"
@@ -41,6 +40,14 @@ constexpr double kLeftOut = 1e-5;
 // them is known exactly all the same.
 constexpr double kMostTurn_rad = 0.7;
 constexpr double kGrading = 0.35;
+
+// A part of more triangles than this, and than so many times those of its longest edge, has
+// roundings far smaller than itself. Their edges are made longer by a factor, from a share of the
+// least edge on, until it has no more.
+constexpr double kMostTriangles = 60000.0;
+constexpr double kMostRefined = 2.0;
+constexpr double kLonger = 1.4;
+constexpr double kShortest = 0.02;
 
 LabelledMesh labelled(const TriangleSoup& soup, std::span<const std::int32_t> face) {
     LabelledMesh part{soup, {face.begin(), face.end()}, {}};
@@ -139,6 +146,17 @@ Surface exact_wall(const LabelledMesh& part, const std::vector<char>& all, Exact
     return wall;
 }
 
+// The shortest edges that the part can afford, 0 where it can afford any.
+double affordable_edge_mm(const Surface& wall, EvenMeshOptions options) {
+    options.shortest_mm = options.longest_mm;
+    const double most = std::max(kMostTriangles, kMostRefined * wanted_triangles(wall, options));
+    options.shortest_mm = 0.0;
+    while (wanted_triangles(wall, options) > most) {
+        options.shortest_mm = std::max(kLonger * options.shortest_mm, kShortest * options.least_mm);
+    }
+    return options.shortest_mm;
+}
+
 // What meets at a vertex.
 struct Meeting {
     std::set<std::int32_t> faces;
@@ -222,6 +240,7 @@ CadMesh even_part(const TriangleSoup& start, std::span<const std::int32_t> face,
     part = Halving(part, all, exact, options.longest_mm).run();
     part = without_slivers(part, all, kShortEdge * size, kLeftOut * size);
     Surface wall = exact_wall(part, all, exact);
+    options.shortest_mm = affordable_edge_mm(wall, options);
     part = even_mesh(part, all, std::move(wall), options);
     snap(part, meetings(part), exact);
     CadMesh mesh;

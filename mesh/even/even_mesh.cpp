@@ -47,7 +47,8 @@ std::vector<double> sizes_of(const Surface& surface, const EvenMeshOptions& opti
     std::vector<double> size(curvature.size());
     for (std::size_t v = 0; v < size.size(); ++v) {
         const double k = std::max(curvature[v], 1e-12);
-        const double least = std::min(options.least_mm, options.most_turn / k);
+        const double least =
+            std::max(options.shortest_mm, std::min(options.least_mm, options.most_turn / k));
         size[v] = std::clamp(options.turn_rad / k, std::min(least, options.longest_mm),
                              options.longest_mm);
         if (!options.most_mm.empty()) {

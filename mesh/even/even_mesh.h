@@ -11,8 +11,9 @@ namespace meshwind {
 struct EvenMeshOptions {
     double turn_rad = 0.1;  ///< by which the surface turns along an edge, where nothing else binds
     double least_mm = 0.0;  ///< edges are not made shorter than this,
-    double most_turn = 0.35;  ///< unless the surface would turn by more than this
-    double longest_mm = 0.0;  ///< > 0
+    double most_turn = 0.35;   ///< unless the surface would turn by more than this,
+    double shortest_mm = 0.0;  ///< and never shorter than this
+    double longest_mm = 0.0;   ///< > 0
     std::vector<double> most_mm =
         {};                ///< the same per vertex of the wall; empty: nothing of that kind
     double grading = 0.2;  ///< by which edges grow per length of way, no unit

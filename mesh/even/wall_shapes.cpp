@@ -42,6 +42,10 @@ constexpr std::size_t kLeastGroup = 6;
 // turn least. They have vertices inside: one row of a curved surface has none, and lies on a cone.
 constexpr std::size_t kWideGroup = 128;
 
+// Facets of which so many lie on a shape that is none are not looked at again: from each of them
+// the same would be found.
+constexpr std::size_t kManyInVain = 256;
+
 // A shape's own normals turn by less than this over a facet (46 degrees), and the facet's is among
 // them within this (3 degrees).
 constexpr double kMostTurnRad = 0.8;
@@ -363,6 +367,11 @@ private:
         }
         if (!shape || !is_certain(*shape, faces) ||
             (wide && vertices_inside(faces) < kLeastInside)) {
+            if (faces.size() >= kManyInVain) {
+                for (const std::int32_t f : faces) {
+                    tried_[at(f)] = 1;
+                }
+            }
             return false;
         }
         for (const std::int32_t f : faces) {

@@ -32,6 +32,7 @@
 #include <Eigen/LU>
 
 #include "core/units.h"
+#include "mesh/nearest.h"
 
 namespace meshwind {
 namespace {
@@ -119,8 +120,8 @@ struct OcctFaces::Face {
     TopoDS_Face face;
     BRepAdaptor_Surface surface;  // without its borders
     bool reversed = false;
-    std::vector<Vector2d> uv;  // where points are looked for from
-    std::vector<Vector3d> at_mm;
+    std::vector<Vector2d> uv;  // where points are looked for from, those of `known`
+    NearestPoints known{{}};
 
     explicit Face(const TopoDS_Face& of)
         : face(of), surface(of, Standard_False), reversed(of.Orientation() == TopAbs_REVERSED) {}
@@ -143,11 +144,7 @@ struct OcctFaces::Face {
         if (uv.empty()) {
             return {};
         }
-        std::size_t best = 0;
-        for (std::size_t i = 1; i < at_mm.size(); ++i) {
-            best = (at_mm[i] - p).squaredNorm() < (at_mm[best] - p).squaredNorm() ? i : best;
-        }
-        Vector2d place = uv[best];
+        Vector2d place = uv[static_cast<std::size_t>(known.nearest(p))];
         for (int step = 0; step < kMostSteps; ++step) {
             const SurfacePlace s = evaluate(surface, place);
             const Vector3d off = s.at - p;
@@ -256,6 +253,7 @@ OcctMesh OcctFaces::first_mesh() {
     IMeshTools_Parameters wanted;
     wanted.Deflection = kFirstDeflection * std::sqrt(box.SquareExtent());
     wanted.Angle = kFirstTurn_rad;
+    wanted.MinSize = kFirstDeflection * std::sqrt(box.SquareExtent());
     wanted.InParallel = Standard_False;
     const BRepMesh_IncrementalMesh mesher(shape_, wanted);
 
@@ -321,8 +319,9 @@ OcctMesh OcctFaces::first_mesh() {
                 point[static_cast<std::size_t>(n)] = point_at(key, p, number);
             }
         }
+        std::vector<Vector3d> at_mm;
         for (int n = 1; n <= triangles->NbNodes(); ++n) {
-            face.at_mm.push_back(node(n));
+            at_mm.push_back(node(n));
             if (triangles->HasUVNodes()) {
                 const gp_Pnt2d uv = triangles->UVNode(n);
                 face.uv.emplace_back(uv.X(), uv.Y());
@@ -333,6 +332,7 @@ OcctMesh OcctFaces::first_mesh() {
                 mesh.soup.points_mm.push_back(node(n));
             }
         }
+        face.known = NearestPoints(at_mm);
         const bool turned = face.reversed != moved.IsNegative();
         for (int t = 1; t <= triangles->NbTriangles(); ++t) {
             int a = 0, b = 0, c = 0;

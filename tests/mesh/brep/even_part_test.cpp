@@ -150,6 +150,26 @@ TEST(EvenPart, HalfTheEdgeTakesFourTimesTheTriangles) {
     EXPECT_NEAR(count(1.5) / count(3.0), 4.0, 0.4);
 }
 
+// A capsule whose ends claim to be bent as strongly as a lip of a few micrometres.
+class SharpCapsule : public Capsule {
+public:
+    std::optional<Jet> jet(std::int32_t face, const Vector3d& p, double reach_mm) override {
+        constexpr double kSharper = 1e4;
+        std::optional<Jet> jet = Capsule::jet(face, p, reach_mm);
+        jet->shape_operator_per_mm *= face == 0 ? 1.0 : kSharper;
+        return jet;
+    }
+};
+
+TEST(EvenPart, RoundingsFarSmallerThanThePartTakeNoMillionsOfTriangles) {
+    SharpCapsule exact;
+    const Start from = start();
+    const CadMesh mesh = even_part(from.soup, from.face, exact, 0.0);
+    EXPECT_GT(mesh.soup.faces.size(), 10000U);
+    EXPECT_LT(mesh.soup.faces.size(), 100000U);
+    EXPECT_GT(least_quality(mesh.soup), 0.4);
+}
+
 TEST(ExactCorners, BordersWhereTheCurvatureJumpsPartTheFits) {
     const CadMesh mesh = capsule(0.0);
     const ExactCorners known = exact_corners(mesh, mesh.soup);
