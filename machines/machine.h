@@ -90,6 +90,7 @@ struct Controller {
     std::vector<std::string> header;  ///< lines put before the first move as they are
     std::vector<std::string> footer;  ///< lines put after the last move as they are
     std::optional<std::int32_t> program_number;
+    std::optional<double> junction_deviation_mm;  ///< > 0, GRBL's $11; nothing: its default
 };
 
 /// A machine as read from its file (machines/machine_json.h); not changed afterwards.

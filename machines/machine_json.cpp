@@ -350,6 +350,8 @@ const KeyTable<Controller>& controller_keys() {
         lines_key("footer", &Controller::footer, "lines of one's own at its end"),
         or_null(count("program_number", &Controller::program_number, kLargestProgramNumber,
                       "O number of fanuc programs; 1 without")),
+        or_null(number("junction_deviation", &Controller::junction_deviation_mm, kPositive,
+                       "of grbl, $11: how near to the corners it stays, mm; 0.01 without")),
     }};
     return kTable;
 }

@@ -83,6 +83,7 @@ void LayerMachine::wind_fibre(std::span<const Piece> pieces, bool goes_on, bool 
     program.made = program_of(setup_, pieces, options);
     if (!program.made.read.blocks.empty()) {
         program.made.duration_s = program.made.verification.duration_s;  // F has six digits
+        program.made.corner_s = program.made.duration_s - program.made.read.duration_s();
     }
 }
 

@@ -44,6 +44,11 @@ constexpr int kMendedPrograms = 3;
 // fibre does.
 constexpr double kWorthwhile = 0.99;
 
+// Where a controller spends more than this share of the time on corners, finer blocks are tried. On
+// a pipe of the hobby winder they save 12 %; yet finer ones save nothing more.
+constexpr double kMostCorners = 0.02;
+constexpr double kFinerForCorners = 0.25;
+
 // Of what a program takes until its blocks are made: a first motion, and the choice of a better
 // one.
 constexpr double kFirstMotionShare = 0.3;
@@ -190,11 +195,11 @@ private:
         }
     }
 
-    [[nodiscard]] BlockTolerance block_tolerance() const {
+    [[nodiscard]] BlockTolerance block_tolerance(double finer = 1.0) const {
+        const double share = margin::kBlocksOfDeviation * finer;
         BlockTolerance tolerance;
-        tolerance.sideways_mm = margin::kBlocksOfDeviation * setup_.job.tolerance.laydown_mm;
-        tolerance.angle_rad =
-            margin::kBlocksOfDeviation * rad_from_deg(setup_.job.tolerance.laydown_angle_deg);
+        tolerance.sideways_mm = share * setup_.job.tolerance.laydown_mm;
+        tolerance.angle_rad = share * rad_from_deg(setup_.job.tolerance.laydown_angle_deg);
         tolerance.eye_mm = margin::kMostBetweenBlocks_mm;
         tolerance.most_mm = most_mm_;
         return tolerance;
@@ -437,8 +442,21 @@ private:
         }
     }
 
-    // Blocks for the motion.
+    // Blocks for the motion. A controller that slows down at corners runs shorter ones faster, for
+    // they turn less from one to the next.
     void make_blocks() {
+        make_blocks(1.0);
+        const double whole_s = found_.duration_s;
+        if (found_.corner_s > kMostCorners * whole_s) {
+            make_blocks(kFinerForCorners);
+            if (found_.duration_s > kWorthwhile * whole_s) {
+                make_blocks(1.0);
+            }
+        }
+    }
+
+    // \param finer share of the tolerances that blocks may take up
+    void make_blocks(double finer) {
         const std::vector<double> turn_room = turn_room_per_mm();
         found_.choice = choose_blocks(setup_.machine,
                                       {.path = path_,
@@ -446,7 +464,7 @@ private:
                                        .room_mm = room_mm_,
                                        .turn_room_per_mm = turn_room,
                                        .share = share_},
-                                      block_tolerance());
+                                      block_tolerance(finer));
         const std::span<const std::size_t> ends = found_.choice.ends;
         const TimeLawOptions time{.fibre_speed_mm_s = fibre_speed_mm_s(),
                                   .corner_mm = setup_.dialect->corner_tolerance_mm(setup_.machine),
@@ -471,6 +489,9 @@ private:
         FoldedProgram folded = setup_.dialect->fold(std::move(prepared));
         found_.blocks = std::move(folded.list);
         found_.layout = std::move(folded.layout);
+        found_.corner_s =
+            setup_.dialect->run_time_s(setup_.machine, found_.blocks) - found_.blocks.duration_s();
+        found_.duration_s += found_.corner_s;
         found_.exact = exact_blocks(ends);
     }
 

@@ -29,7 +29,8 @@ struct PieceProgram {
     BlockList exact;       ///< the ends of these as planned, rounded to nothing but 1e-9 mm or deg
     ProgramLayout layout;  ///< how they are written
     bool optimal = false;  ///< no other free lengths and turns that are known save 1 % of the time
-    double duration_s = 0.0;  ///< of the blocks, starting from rest and stopping
+    double duration_s = 0.0;  ///< of the blocks, starting from rest and stopping, corner_s of it
+    double corner_s = 0.0;    ///< what the controller adds at corners to the program's durations
     double least_s = 0.0;     ///< were the fibre at its full speed all along
     std::vector<BindingLimit> binding;
     BlockList read;             ///< the blocks as they were wound again

@@ -286,13 +286,15 @@ Verification verify_program(const Setup& setup, const BlockList& program, const 
                             .laydown = {.deviation_mm = job.tolerance.laydown_mm,
                                         .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},
                             .simulation = {.progress = progress}};
-    return verify({.program = program,
-                   .machine = setup.machine,
-                   .envelope = setup.envelope,
-                   .wall = *setup.wall,
-                   .obstacles = *setup.obstacles,
-                   .rules = rules,
-                   .plan = plan});
+    Verification found = verify({.program = program,
+                                 .machine = setup.machine,
+                                 .envelope = setup.envelope,
+                                 .wall = *setup.wall,
+                                 .obstacles = *setup.obstacles,
+                                 .rules = rules,
+                                 .plan = plan});
+    found.duration_s = setup.dialect->run_time_s(setup.machine, program);
+    return found;
 }
 
 }  // namespace meshwind

@@ -289,6 +289,7 @@ json program_report(const WoundLayer& layer, const FibreProgram& program, bool w
             {"choice", choice_report(made.choice)},
             {"optimal_motion", made.optimal},
             {"duration_s", report_number(made.duration_s)},
+            {"corner_s", report_number(made.corner_s)},
             {"least_s", report_number(made.least_s)},
             {"free_length_mm",
              {{"min", report_number(made.eyes.shortest_mm)},

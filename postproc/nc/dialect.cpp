@@ -8,6 +8,11 @@
 
 namespace meshwind {
 void Dialect::check(const Machine& machine) const {
+    if (machine.controller.junction_deviation_mm && !has_junction_deviation()) {
+        throw InputError(
+            "dialect.junction_deviation", machine.name,
+            "\"junction_deviation\" is a setting of grbl; remove it, " + name() + " has none");
+    }
     BlockList list;
     for (std::size_t a = 0; a < machine.axis_count(); ++a) {
         const Axis& axis = machine.axis(a);

@@ -50,11 +50,19 @@ public:
     [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const {
         return path_mode(machine).corner_mm;
     }
+    /// Whether it slows down at corners by a junction deviation.
+    [[nodiscard]] virtual bool has_junction_deviation() const { return false; }
+    /// How long the controller takes for the blocks: their durations, and what it adds at corners.
+    /// \pre list has the axes of the machine
+    [[nodiscard]] virtual double run_time_s(const Machine&, const BlockList& list) const {
+        return list.duration_s();
+    }
     /// Blocks last whole ticks of this length; 0: any time.
     [[nodiscard]] virtual double tick_s() const { return 0.0; }
 
     /// What the machine file asks of the controller, before anything is planned for it.
-    /// \throws InputError what `write` throws for letters, feed and header lines
+    /// \throws InputError what `write` throws for letters, feed and header lines;
+    /// dialect.junction_deviation where the controller has no such setting
     void check(const Machine& machine) const;
 
     /// The blocks as the controller needs them: what it would execute wrongly is written in another

@@ -27,6 +27,10 @@ public:
     [[nodiscard]] std::string name() const override { return std::string(flavour_.dialect); }
     [[nodiscard]] std::string extension() const override { return std::string(flavour_.extension); }
     [[nodiscard]] PathMode path_mode(const Machine& machine) const override;
+    [[nodiscard]] bool has_junction_deviation() const override {
+        return flavour_.junction_deviation_mm > 0.0;
+    }
+    [[nodiscard]] double run_time_s(const Machine& machine, const BlockList& list) const override;
     [[nodiscard]] BlockList prepare(BlockList list) const override;
     [[nodiscard]] FoldedProgram fold(BlockList list) const override;
     using Dialect::write;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "postproc/motion/junction_time.h"
 #include "postproc/nc/linuxcnc.h"
 #include "postproc/nc/linuxcnc_flow.h"
 #include "postproc/nc/siemens_flow.h"
@@ -152,6 +153,7 @@ const NcFlavour& grbl_flavour() {
         .tie_on = kTieOn,
         .winding_modes = "G91 ",
         .per_minute = true,
+        .junction_deviation_mm = JunctionPlanner{}.deviation_mm,
         .end = "M2\n",
         .runs_on = true,
         .float32 = Float32Text::ByHundreds,

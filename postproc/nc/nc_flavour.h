@@ -75,6 +75,9 @@ struct NcFlavour {
     bool has_feed_modes = true;      ///< G93 and G94 are known
     FeedRule feed_rule = FeedRule::Euclid;
     std::string_view no_per_minute{};  ///< why not, in a message
+    /// Of a controller that slows down at corners by it (junction_time.h), where nothing is said;
+    /// 0: it keeps the durations.
+    double junction_deviation_mm = 0.0;
     SlowLinear slow_linear{};
 
     // End.

@@ -1,5 +1,8 @@
+#include <numeric>
+
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "postproc/motion/junction_time.h"
 #include "postproc/nc/float32_steps.h"
 #include "postproc/nc/nc_writer.h"
 
@@ -31,6 +34,16 @@ std::string words_of(const PinRing& ring) {
            fixed(deg_from_rad(ring.azimuth_rad), 7);
 }
 
+std::string short_number(double value) {
+    std::string digits;
+    append_shortest(digits, value);
+    return digits;
+}
+
+double deviation_mm(const NcFlavour& flavour, const Machine& machine) {
+    return machine.controller.junction_deviation_mm.value_or(flavour.junction_deviation_mm);
+}
+
 // Steps that differ from the machine's, and what float sums lose all the same.
 void append_float32(std::vector<std::string>& to, const Machine& machine, const BlockList& list,
                     Float32Text text) {
@@ -38,9 +51,7 @@ void append_float32(std::vector<std::string>& to, const Machine& machine, const 
         const std::int64_t step = list.axes[a].resolution_nano;
         const std::int64_t own = machine.axis(a).resolution_nano;
         const auto shown = [](std::int64_t nano) {
-            std::string digits;
-            append_shortest(digits, static_cast<double>(nano) / static_cast<double>(kNanoPerUnit));
-            return digits;
+            return short_number(static_cast<double>(nano) / static_cast<double>(kNanoPerUnit));
         };
         const std::string name = std::string("axis ") + list.axes[a].letter;
         if (step != own) {
@@ -58,8 +69,17 @@ void append_float32(std::vector<std::string>& to, const Machine& machine, const 
 
 }  // namespace
 
-std::vector<std::string> head_comments(const Machine& machine, const BlockList& list,
-                                       const ProgramHeader& header, Float32Text float32) {
+double nc_run_time_s(const NcFlavour& flavour, const Machine& machine, const BlockList& list) {
+    if (!(flavour.junction_deviation_mm > 0.0)) {
+        return list.duration_s();
+    }
+    const std::vector<double> times_s =
+        junction_times_s(machine, list, {.deviation_mm = deviation_mm(flavour, machine)});
+    return std::accumulate(times_s.begin(), times_s.end(), 0.0);
+}
+
+std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& machine,
+                                       const BlockList& list, const ProgramHeader& header) {
     std::vector<std::string> lines{"meshwind " + header.version};
     append_if(lines, "mandrel: ", header.mandrel);
     append_if(lines, "mandrel digest: ", header.mandrel_digest);
@@ -67,7 +87,12 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
     append_if(lines, std::string(kJobDigest), header.job_digest);
     append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
-    lines.push_back("time: " + fixed(list.duration_s(), 1) + " s");
+    lines.push_back("time: " + fixed(nc_run_time_s(flavour, machine, list), 1) + " s");
+    if (flavour.junction_deviation_mm > 0.0) {
+        lines.push_back("of these for corners: " +
+                        fixed(nc_run_time_s(flavour, machine, list) - list.duration_s(), 1) +
+                        " s, at $11=" + short_number(deviation_mm(flavour, machine)));
+    }
     lines.push_back("blocks: " + std::to_string(list.moves()));
     if (header.tie_on_mm) {
         const Eigen::Vector3d& p = *header.tie_on_mm;
@@ -81,7 +106,7 @@ std::vector<std::string> head_comments(const Machine& machine, const BlockList& 
     for (const std::string& note : header.notes) {
         lines.push_back("note: " + note);
     }
-    append_float32(lines, machine, list, float32);
+    append_float32(lines, machine, list, flavour.float32);
     return lines;
 }
 
@@ -95,7 +120,7 @@ LineValues line_values(const NcFlavour& flavour, const Machine& machine, const B
     return {.program = std::to_string(machine.controller.program_number.value_or(1)),
             .mandrel = plain(header.mandrel),
             .machine = plain(machine.name),
-            .time_s = fixed(list.duration_s(), 1),
+            .time_s = fixed(nc_run_time_s(flavour, machine, list), 1),
             .fibre_m = fixed(header.fibre_length_mm / kMmPerM, 3),
             .blocks = std::to_string(list.moves()),
             .version = plain(header.version)};

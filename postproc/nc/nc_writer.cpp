@@ -134,7 +134,7 @@ private:
             }
             text_ += "O" + number + ' ' + comment_lines(flavour_, title);
         }
-        for (std::string& words : head_comments(machine_, list_, header_, flavour_.float32)) {
+        for (std::string& words : head_comments(flavour_, machine_, list_, header_)) {
             comment(std::move(words));
         }
     }

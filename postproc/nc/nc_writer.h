@@ -20,11 +20,15 @@ namespace meshwind {
                                    const BlockList& list, const ProgramLayout& layout,
                                    const ProgramHeader& header);
 
+/// Dialect::run_time_s of the flavour.
+[[nodiscard]] double nc_run_time_s(const NcFlavour& flavour, const Machine& machine,
+                                   const BlockList& list);
+
 /// The head's comments, one entry each and of any length: who made the program, of what, how long
 /// it takes, where the fibre is tied on, what float sums ask for, notes.
-[[nodiscard]] std::vector<std::string> head_comments(const Machine& machine, const BlockList& list,
-                                                     const ProgramHeader& header,
-                                                     Float32Text float32);
+[[nodiscard]] std::vector<std::string> head_comments(const NcFlavour& flavour,
+                                                     const Machine& machine, const BlockList& list,
+                                                     const ProgramHeader& header);
 
 /// What the controller's own lines may ask for, such that it can stand in a comment of the flavour.
 [[nodiscard]] LineValues line_values(const NcFlavour& flavour, const Machine& machine,

@@ -281,7 +281,7 @@ public:
         : machine_(machine), list_(list), header_(header), flavour_(text_flavour()) {}
 
     std::string program() && {
-        for (std::string& words : head_comments(machine_, list_, header_, Float32Text::None)) {
+        for (std::string& words : head_comments(flavour_, machine_, list_, header_)) {
             text_ += comment_lines(flavour_, std::move(words));
         }
         own_lines(machine_.controller.header);

@@ -73,6 +73,15 @@ std::string write_error(const std::string& name, const Machine& machine, const B
     return "written";
 }
 
+std::string check_error(const std::string& name, const Machine& machine) {
+    try {
+        make_dialect(name)->check(machine);
+    } catch (const InputError& error) {
+        return error.code();
+    }
+    return "taken";
+}
+
 bool is_motion(const std::string& line) {
     return line.substr(0, 2) == "G1" && line.size() > 2;
 }
@@ -295,6 +304,10 @@ TEST(Dialects, RefuseLettersAndFeedsTheyDoNotHave) {
         EXPECT_EQ(write_error(name, machine, list), per_minute ? "written" : "dialect.feed");
         machine.controller.feed = FeedMode::InverseTime;
         EXPECT_EQ(write_error(name, machine, list), name == "marlin" ? "dialect.feed" : "written");
+        machine = machine_for(name);
+        machine.controller.junction_deviation_mm = 0.02;
+        EXPECT_EQ(check_error(name, machine),
+                  name == "grbl" ? "taken" : "dialect.junction_deviation");
     }
 }
 
