@@ -297,12 +297,12 @@ private:
         return depth_mm > 0.0;
     }
 
-    // Inside the leg's surface, so that the wall leaves it inward.
-    [[nodiscard]] bool is_inside(const Cut& cut, std::int32_t v) const {
+    // How far inside the leg's surface.
+    [[nodiscard]] double inside_mm(const Cut& cut, std::int32_t v) const {
         const RuledShape& leg = cut.leg;
         const Vector3d arm = point_of(v) - leg.origin_mm;
         const double z = leg.axis.dot(arm);
-        return (arm - z * leg.axis).norm() - leg.radius_mm - leg.growth * z < -cut.tolerance_mm;
+        return leg.radius_mm + leg.growth * z - (arm - z * leg.axis).norm();
     }
 
     [[nodiscard]] bool cut_where_it_ends(const Rim& rim, Cut& cut) const {
@@ -314,14 +314,16 @@ private:
         for (const std::int32_t v : cut.loop) {
             nearest = std::min(nearest, height_mm(cut.leg, point_of(v)));
             reached[at(v)] = 1;
-            if (is_inside(cut, v)) {
+            if (inside_mm(cut, v) > cut.tolerance_mm) {
                 stack.push_back(v);
             }
         }
         if (stack.empty() && rim.circularity_mm <= kLeastDepth * radius) {
             return false;
         }
-        // From the rim along what lies inside the leg, to the first vertices that lie on it.
+        // From the rim along what lies inside the leg, to the first vertices that lie on it, but
+        // for so much.
+        double off_mm = cut.leg.residual_mm;
         while (!stack.empty() && farthest - nearest <= kMostDepth * radius) {
             const std::int32_t v = stack.back();
             stack.pop_back();
@@ -334,12 +336,17 @@ private:
                     const double height = height_mm(cut.leg, point_of(w));
                     nearest = std::min(nearest, height);
                     farthest = std::max(farthest, height);
-                    if (is_inside(cut, w)) {
+                    const double inside = inside_mm(cut, w);
+                    if (inside > cut.tolerance_mm) {
                         stack.push_back(w);
+                    } else {
+                        off_mm = std::max(off_mm, inside + cut.leg.residual_mm);
                     }
                 }
             }
         }
+        // A round lip goes on that far beyond its last vertex, and there its normals still lean.
+        nearest -= std::sqrt(2.0 * off_mm * (farthest - nearest));
         cut.depth_mm = farthest - nearest;
         cut.height_mm = nearest;
         return cut.depth_mm > kLeastDepth * radius && cut.depth_mm <= kMostDepth * radius;
