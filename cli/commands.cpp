@@ -30,6 +30,7 @@
 #include "mesh/mandrel/load_mandrel.h"
 #include "pipeline/check_controller.h"
 #include "pipeline/load_inputs.h"
+#include "pipeline/resume/resume.h"
 #include "pipeline/run_names.h"
 #include "pipeline/trials/trials.h"
 #include "pipeline/verify_text.h"
@@ -178,6 +179,34 @@ std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double fi
     return mandrels;
 }
 
+RunContext context_of(const Common& common, Progress& progress) {
+    RunContext context;
+    context.seed = common.seed;
+    context.progress = [&](const std::string& step, double share) { progress.show(step, share); };
+    return context;
+}
+
+// What a program is wound again with.
+Setup setup_of(const VerifyArguments& arguments, const Common& common) {
+    const InputFiles files{.machine = find_input(arguments.machine),
+                           .job = found_or_none(arguments.job.file)};
+    require_machine_file(files.machine);
+    const Machine machine = load_machine(files.machine);
+    const Job job = job_of(arguments.job, files.job, false);
+    return make_setup(
+        load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units))),
+        machine, job, files);
+}
+
+VerifyInputs program_inputs(const VerifyArguments& arguments) {
+    VerifyInputs inputs;
+    inputs.program = {arguments.program, read_text_file(arguments.program)};
+    if (!arguments.tie_on.empty()) {
+        inputs.tie_on_mm = vector_of("--tie-on", arguments.tie_on);
+    }
+    return inputs;
+}
+
 }  // namespace
 
 Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
@@ -208,25 +237,12 @@ int run_post(const PostArguments& arguments, const Common& common) {
 }
 
 int run_verify_command(const VerifyArguments& arguments, const Common& common) {
-    VerifyInputs inputs;
-    if (!arguments.tie_on.empty()) {
-        inputs.tie_on_mm = vector_of("--tie-on", arguments.tie_on);
-    }
     Progress progress(common.quiet);
-    RunContext context;
-    context.seed = common.seed;
-    context.progress = [&](const std::string& step, double share) { progress.show(step, share); };
+    const RunContext context = context_of(common, progress);
     context.report_progress("import", 0.0);
     const auto begun = std::chrono::steady_clock::now();
-    const InputFiles files{.machine = find_input(arguments.machine),
-                           .job = found_or_none(arguments.job.file)};
-    require_machine_file(files.machine);
-    const Machine machine = load_machine(files.machine);
-    const Job job = job_of(arguments.job, files.job, false);
-    Setup setup = make_setup(
-        load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units))),
-        machine, job, files);
-    inputs.program = {arguments.program, read_text_file(arguments.program)};
+    Setup setup = setup_of(arguments, common);
+    VerifyInputs inputs = program_inputs(arguments);
     if (!arguments.plan.empty()) {
         inputs.path = plan_table(arguments.plan, arguments.program, "path");
         inputs.motion = plan_table(arguments.plan, arguments.program, "motion");
@@ -250,6 +266,36 @@ int run_verify_command(const VerifyArguments& arguments, const Common& common) {
         print_verify(std::cout, outcome);
     }
     return exit_code(arguments.program, outcome.checks, common);
+}
+
+int run_resume(const ResumeArguments& arguments, const Common& common) {
+    if (arguments.block.has_value() == arguments.line.has_value()) {
+        throw InputError("resume.block", "resume",
+                         "say by --block or --line how far the program has been run");
+    }
+    const VerifyArguments& of = arguments.program;
+    Progress progress(common.quiet);
+    const RunContext context = context_of(common, progress);
+    context.report_progress("import", 0.0);
+    const LaidProgram whole = lay_program(setup_of(of, common), program_inputs(of), context);
+    const ResumedProgram rest = resume(
+        whole, arguments.block ? *arguments.block : block_of_line(whole, *arguments.line), context);
+    const fs::path beside(of.program);
+    fs::path file = of.out.empty() ? beside.parent_path() / ("resume_" + beside.filename().string())
+                                   : fs::path(of.out);
+    if (rest.passed() || common.force) {
+        write_file(file, rest.text);
+    } else {
+        file.clear();
+    }
+    progress.clear();
+    if (common.json) {
+        std::cout << resume_json(rest, of.program, file.string());
+    } else if (!common.quiet) {
+        print_resume(std::cout, rest, of.program);
+        std::cout << (file.empty() ? "no program written" : "program   " + file.string()) << '\n';
+    }
+    return exit_code(of.program, rest.verification.checks, common);
 }
 
 int run_inspect(const InspectArguments& arguments, const Common& common) {

@@ -58,6 +58,12 @@ struct VerifyArguments {
     JobArguments job;
 };
 
+struct ResumeArguments {
+    VerifyArguments program;  ///< `plan` is not read, `out` is a file
+    std::optional<std::size_t> block;
+    std::optional<std::int32_t> line;
+};
+
 // The schemas that `validate --schema` prints.
 inline constexpr const char* kJobSchema = "job";
 inline constexpr const char* kMachineSchema = "machine";
@@ -109,6 +115,7 @@ struct CarryArguments {
 [[nodiscard]] int run_wind(const WindArguments& arguments, const Common& common);
 [[nodiscard]] int run_post(const PostArguments& arguments, const Common& common);
 [[nodiscard]] int run_verify_command(const VerifyArguments& arguments, const Common& common);
+[[nodiscard]] int run_resume(const ResumeArguments& arguments, const Common& common);
 [[nodiscard]] int run_inspect(const InspectArguments& arguments, const Common& common);
 /// \param has_angle the angle was given
 [[nodiscard]] int run_trace_command(TraceArguments& arguments, bool has_angle,

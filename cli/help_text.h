@@ -71,6 +71,17 @@ constexpr const char* kVerifyHelp =
     "  meshwind verify other.ngc --mandrel part.stl --machine my_machine.json --job my_job.json "
     "--tie-on 50,0,-120 -o laid";
 
+constexpr const char* kResumeHelp =
+    "After a torn fibre, a stop or a power cut: the rest of the program as a program of its own.\n"
+    "Its head brings every axis to where the block ended and says where the fibre lies there, to\n"
+    "be tied on. It is wound again, and must lay what the whole program lays from there on.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind resume meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json --block "
+    "3120\n"
+    "  meshwind resume other.ngc --mandrel part.stl --machine my_machine.json --line 5340 -o "
+    "rest.ngc";
+
 constexpr const char* kInspectHelp =
     "Prints what is read from the file and what can be done with it: unit and size, repairs,\n"
     "regions with what would be wound of them, rims, how the spindle axis was found, whether it "

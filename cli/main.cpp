@@ -112,6 +112,10 @@ int run(const std::vector<std::string>& arguments) {
     CLI::App* verify_command =
         app.add_subcommand("verify", "wind a program again from its text, and check it");
     add_verify(*verify_command, verify_options);
+    ResumeArguments resume_options;
+    CLI::App* resume_command =
+        app.add_subcommand("resume", "what is left of a program that stopped, as a program");
+    add_resume(*resume_command, resume_options);
     InspectArguments inspect_options;
     CLI::App* inspect = app.add_subcommand(
         "inspect", "what is read from a mandrel file: units, repairs, regions, rims, axis");
@@ -176,6 +180,7 @@ int run(const std::vector<std::string>& arguments) {
     for (const auto& [command, more] : {std::pair(wind_command, kWindHelp),
                                         {post_command, kPostHelp},
                                         {verify_command, kVerifyHelp},
+                                        {resume_command, kResumeHelp},
                                         {inspect, kInspectHelp},
                                         {make, kMakeHelp},
                                         {trace_command, kTraceHelp},
@@ -216,6 +221,9 @@ int run(const std::vector<std::string>& arguments) {
     }
     if (verify_command->parsed()) {
         return run_verify_command(verify_options, common);
+    }
+    if (resume_command->parsed()) {
+        return run_resume(resume_options, common);
     }
     if (inspect->parsed()) {
         return run_inspect(inspect_options, common);

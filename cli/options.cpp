@@ -172,7 +172,8 @@ void add_post(CLI::App& app, PostArguments& options) {
     add_png(app, options.png);
 }
 
-void add_verify(CLI::App& app, VerifyArguments& options) {
+// What a program is wound again with.
+void add_program(CLI::App& app, VerifyArguments& options) {
     app.add_option("program", options.program,
                    "NC program, by meshwind or anybody; the machine file names its language")
         ->type_name("FILE")
@@ -181,15 +182,32 @@ void add_verify(CLI::App& app, VerifyArguments& options) {
     app.add_option("--machine", options.machine, "machine file")->type_name("FILE")->required();
     add_job(app, options.job,
             "job file: tow, friction, extensions, tolerances; without it the defaults hold");
+    app.add_option("--tie-on", options.tie_on,
+                   "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
+                   "say it")
+        ->type_name("X,Y,Z");
+}
+
+void add_resume(CLI::App& app, ResumeArguments& options) {
+    add_program(app, options.program);
+    auto* block = app.add_option("--block", options.block,
+                                 "the last block that has been run, counted from 1");
+    auto* line =
+        app.add_option("--line", options.line, "the same by its line in the program's text");
+    block->type_name("N")->excludes(line);
+    line->type_name("N");
+    app.add_option("-o,--out", options.program.out,
+                   "program to write; without it resume_ and the program's name, beside it")
+        ->type_name("FILE");
+}
+
+void add_verify(CLI::App& app, VerifyArguments& options) {
+    add_program(app, options);
     app.add_option(
            "--plan", options.plan,
            "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
            "path-2.csv and motion-2.csv")
         ->type_name("DIR");
-    app.add_option("--tie-on", options.tie_on,
-                   "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
-                   "say it")
-        ->type_name("X,Y,Z");
     app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv")
         ->type_name("DIR");
 }

@@ -25,6 +25,7 @@ namespace meshwind {
 void add_wind_options(CLI::App& app, WindArguments& options, bool required);
 void add_post(CLI::App& app, PostArguments& options);
 void add_verify(CLI::App& app, VerifyArguments& options);
+void add_resume(CLI::App& app, ResumeArguments& options);
 void add_inspect(CLI::App& app, InspectArguments& options);
 void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>& values);
 /// \return --angle

@@ -81,6 +81,17 @@ TextChecks check_text(const Setup& setup, std::string_view text, const std::stri
     return found;
 }
 
+BlockList read_program(Setup& setup, const VerifyInputs& inputs) {
+    const std::string& name = inputs.program.name;
+    setup.friction = friction_of(setup.job, layer_of(name));
+    BlockList program = setup.dialect->read(inputs.program.text, name, setup.machine);
+    if (inputs.tie_on_mm) {
+        program.tie_on_mm = inputs.tie_on_mm;
+    }
+    put_pins_of(program, name, setup);
+    return program;
+}
+
 bool VerifyOutcome::passed() const {
     return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
 }
@@ -91,13 +102,8 @@ VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs, const RunCont
     outcome.program = std::filesystem::path(inputs.program.name).filename().string();
     const std::string& text = inputs.program.text;
     const std::string& name = inputs.program.name;
-    outcome.setup.friction = friction_of(outcome.setup.job, layer_of(name));
-    outcome.blocks = outcome.setup.dialect->read(text, name, outcome.setup.machine);
-    if (inputs.tie_on_mm) {
-        outcome.blocks.tie_on_mm = inputs.tie_on_mm;
-    }
+    outcome.blocks = read_program(outcome.setup, inputs);
     outcome.other_job = is_of_other_job(outcome.blocks, outcome.setup.job);
-    put_pins_of(outcome.blocks, name, outcome.setup);
     const VerifyPlan plan = plan_of(inputs, outcome.setup.machine);
     const TextChecks texts = check_text(outcome.setup, text, name, outcome.blocks, plan);
     outcome.checks = texts.checks;

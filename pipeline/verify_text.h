@@ -51,6 +51,11 @@ struct VerifyPlan {
     std::vector<PlannedMotion> motion;
 };
 
+/// Reads a program, and readies the setup for it: pins that its head names stand on the mandrel,
+/// and what friction holds is that of the layer in its name (run_names.h). \throws InputError as a
+/// dialect's reader; nc.pins where pins are not those of the mandrel or the job
+[[nodiscard]] BlockList read_program(Setup& setup, const VerifyInputs& inputs);
+
 /// Checks for which nothing is wound.
 struct TextChecks {
     std::vector<Check> checks;  ///< "program" where there is a plan, "code" where the head has a
@@ -66,8 +71,7 @@ struct TextChecks {
 
 /// Winds the program again (postproc/verify/verify.h). With a plan the first check is "program":
 /// block by block its positions and times are those of motion.csv, and the eye is where the plan's
-/// machine had it. What friction holds is that of the layer in the program's name (run_names.h).
-/// \throws InputError for input that cannot be used
+/// machine had it. \throws InputError for input that cannot be used
 [[nodiscard]] VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs,
                                         const RunContext& context = {});
 

@@ -35,14 +35,10 @@ public:
     explicit Verifier(const VerifyTask& task) : task_(task), rules_(task.rules) {}
 
     Verification run() {
-        if (!task_.program.tie_on_mm) {
-            throw InputError("verify.tie_on", "",
-                             "the program does not say where the fibre is tied on; give --tie-on "
-                             "X,Y,Z in the mandrel's frame");
-        }
+        const Eigen::Vector3d tie_on_mm = tie_on_of(task_.program);
         coarse_.assign(task_.program.blocks.size(), 0);
-        found_.laid = lay_down(task_.wall, task_.machine, task_.program, *task_.program.tie_on_mm,
-                               rules_.simulation);
+        found_.laid =
+            lay_down(task_.wall, task_.machine, task_.program, tie_on_mm, rules_.simulation);
         found_.fibre_length_mm = found_.laid.path.back().s_mm;
         found_.duration_s = task_.program.duration_s();
         check_head();
@@ -487,6 +483,15 @@ void append_cells(std::string& text, const Eigen::Vector3d& v, int decimals) {
 }
 
 }  // namespace
+
+Eigen::Vector3d tie_on_of(const BlockList& program) {
+    if (!program.tie_on_mm) {
+        throw InputError("verify.tie_on", "",
+                         "the program does not say where the fibre is tied on; give --tie-on "
+                         "X,Y,Z in the mandrel's frame");
+    }
+    return *program.tie_on_mm;
+}
 
 Verification verify(const VerifyTask& task) {
     return Verifier(task).run();

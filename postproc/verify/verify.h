@@ -65,6 +65,10 @@ struct Verification {
     std::vector<FastBlock> fast_blocks;  ///< ascending: to be given more time
 };
 
+/// Where the program ties the fibre on, mandrel frame. \throws InputError verify.tie_on where it
+/// does not say
+[[nodiscard]] Eigen::Vector3d tie_on_of(const BlockList& program);
+
 /// Lays the fibre (laydown.h) and checks on it, where the program was read from a text:
 ///  - tie_on, approach, path_mode: verify_head.h;
 /// and always:

@@ -292,6 +292,29 @@ class Commands(program.ProgramTest):
             self.assertEqual(self.done("validate", "--schema", *arguments).stdout, schema)
         self.assertEqual(self.run_program("validate", "--schema", "job.json").returncode, 2)
 
+    def test_resume_writes_the_rest_that_verify_takes(self):
+        self.make("cylinder", "--radius", "30", "--length", "120")
+        self.done("cylinder.stl", "--machine", "six_axis.json", "-o", "out")
+        with_mandrel = ("--mandrel", "cylinder.stl", "--machine", "six_axis.json")
+        whole = json.loads(self.done("verify", "out/program.ngc", *with_mandrel, "--json").stdout)
+        report = json.loads(self.done("resume", "out/program.ngc", *with_mandrel, "--block", "150", "--json").stdout)
+        self.assertTrue(report["ok"])
+        self.assertEqual(report["block"], 150)
+        rest = self.folder / "out/resume_program.ngc"
+        self.assertEqual(report["file"], "out/resume_program.ngc")
+        left = json.loads(self.done("verify", rest, *with_mandrel, "--json").stdout)
+        self.assertAlmostEqual(report["laid_mm"] + left["verification"]["fibre_length_mm"],
+                               whole["verification"]["fibre_length_mm"], 2)
+        self.done("resume", "out/program.ngc", *with_mandrel, "--line", report["line"], "-o", "again.ngc")
+        self.assertEqual((self.folder / "again.ngc").read_text(), rest.read_text())
+        for bad, code in ((("--block", "999999"), "resume.block"), ((), "resume.block"),
+                          (("--line", "1"), "resume.line"),
+                          (("--block", "150", "--line", "150"), "cli.usage")):
+            result = self.run_program("resume", "out/program.ngc", *with_mandrel, *bad, "-o", "none.ngc", "--json")
+            self.assertEqual(result.returncode, 2)
+            self.assertEqual(json.loads(result.stdout)["error"]["code"], code)
+        self.assertFalse((self.folder / "none.ngc").exists())
+
     def test_verify_of_a_program_from_elsewhere(self):
         """The laid length is that of the helix, pi / 2 * 50 mm / sin 45 deg."""
         self.make("cylinder", "--radius", "50", "--length", "200")
