@@ -40,7 +40,7 @@ TEST_P(ResumeOn, FromAnyBlockOnTheRestLaysWhatTheWholeDoes) {
     constexpr int kBlocks = 25;
     // The tie-on has three decimals, F six digits.
     constexpr double kSame_mm = 2e-3;
-    const LaidProgram whole = laid(GetParam(), test::quick_job());
+    const LaidProgram whole = laid(GetParam(), test::pipe_job());
     std::mt19937 engine(26);
     std::uniform_int_distribution<std::size_t> any(1, whole.blocks.moves() - 1);
     for (int i = 0; i < kBlocks; ++i) {
