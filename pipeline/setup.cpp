@@ -282,6 +282,7 @@ Verification verify_program(const Setup& setup, const BlockList& program, const 
                             .friction = setup.friction,
                             .bridging_tolerance_mm = job.tow.bridging_tolerance_mm,
                             .tow_width_mm = job.tow.width_mm,
+                            .most_twist_per_m = job.tow.most_twist_per_m,
                             .path_mode = setup.dialect->path_mode(setup.machine),
                             .laydown = {.deviation_mm = job.tolerance.laydown_mm,
                                         .angle_rad = rad_from_deg(job.tolerance.laydown_angle_deg)},

@@ -240,11 +240,13 @@ void print_cost(std::ostream& out, const Run& run) {
     std::size_t blocks = 0;
     double least_s = 0.0;
     double corner_s = 0.0;
+    std::size_t turned_over = 0;
     for (const WoundLayer& layer : run.layers) {
         for (const FibreProgram& program : layer.programs) {
             blocks += program.made.blocks.moves();
             least_s += program.made.least_s;
             corner_s += program.made.corner_s;
+            turned_over += program.made.verification.turned_over;
         }
     }
     out << "thickness: " << fixed(all.mean_thickness_mm, 2) << " mm on average, at most "
@@ -260,7 +262,11 @@ void print_cost(std::ostream& out, const Run& run) {
         out << "time: " << fixed(all.time_s / kSPerMin, 1) << " min ("
             << fixed(least_s / kSPerMin, 1) << " at the fibre's full speed"
             << (corner_s > 0.0 ? ", " + fixed(corner_s / kSPerMin, 1) + " for corners" : "")
-            << "), " << counted(blocks, "block") << '\n';
+            << "), " << counted(blocks, "block")
+            << (turned_over > 0 ? "; the head turns over " + counted(turned_over, "time") +
+                                      ", and the band with it"
+                                : "")
+            << '\n';
     }
 }
 

@@ -116,7 +116,8 @@ struct Job {
         double friction = 0.2;       ///< >= 0; dry carbon on a moulded surface, on the safe side
         std::optional<double> friction_on_fibre{};  ///< >= 0; of layers above the first
         double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
-        double density_g_cm3 = 1.55;         ///< > 0; of the laid tow: carbon in epoxy, 60 % fibres
+        std::optional<double> most_twist_per_m{};  ///< >= 0; turns of the band a metre; none: any
+        double density_g_cm3 = 1.55;  ///< > 0; of the laid tow: carbon in epoxy, 60 % fibres
     };
     struct ToleranceJob {
         double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways

@@ -212,6 +212,8 @@ const KeyTable<Job::TowJob>& tow_keys() {
             "it as friction"),
         number("bridging_tolerance", &Owner::bridging_tolerance_mm, kGapRange,
                "mm, largest gap under the fibre"),
+        number("max_twist_per_m", &Owner::most_twist_per_m, kTwistRange,
+               "turns a metre by which the head may twist the band, for a tape; without it any"),
         number("density", &Owner::density_g_cm3, kDensityRange,
                "g/cm3 of the tow as it is laid, resin included; for masses in the report"),
     }};

@@ -45,7 +45,7 @@ struct CheckKind {
     std::string_view meaning;  ///< for somebody who winds, in the summary
     /// From the front, the others are empty. Those that a check lacks are not shown; where it has
     /// none of them, all its numbers are.
-    std::array<CheckMeasure, 4> measures{};
+    std::array<CheckMeasure, 5> measures{};
 };
 
 /// Where a check found what it tells: what fails, or else its worst.

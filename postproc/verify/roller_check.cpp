@@ -14,6 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Turned by more in a block the head goes over to the band's other side.
+constexpr double kTurnedOver_rad = rad_from_deg(120.0);
+
 constexpr std::size_t kChunk = 256;
 
 // Within a degree of a wrist's singular pose its axes turn 57 times as much as the fibre.
@@ -24,11 +27,30 @@ double lean_rad(const Machine& machine, std::span<const double> joints, const Ve
     return std::asin(std::min(1.0, std::abs(roller.dot(fibre))));
 }
 
-// Between roller and band, seen along the fibre.
+// From the band to the roller, about the fibre, -pi to pi.
 double twist_rad(const Machine& machine, std::span<const double> joints, const EyePoint& laid) {
     const Vector3d roller = mandrel_from_eye(machine, joints).linear() * machine.eye.roller;
     const Vector3d across = roller - roller.dot(laid.tangent) * laid.tangent;
-    return std::atan2(across.cross(laid.binormal).norm(), std::abs(across.dot(laid.binormal)));
+    return std::atan2(laid.binormal.cross(across).dot(laid.tangent), across.dot(laid.binormal));
+}
+
+// Between the lines of both, 0 to pi/2.
+double unsigned_rad(double twist_rad) {
+    return std::min(std::abs(twist_rad), kPi - std::abs(twist_rad));
+}
+
+// How the head turns against the band, block by block. \param twist_rad per sample
+void measure_turning(const LaidPath& laid, const std::vector<double>& twist_rad,
+                     RollerFinding& found) {
+    double turned_rad = 0.0;  // within the block
+    for (std::size_t i = 1; i < twist_rad.size(); ++i) {
+        turned_rad += std::remainder(twist_rad[i] - twist_rad[i - 1], 2.0 * kPi);
+        if (i + 1 == twist_rad.size() || laid.block[i] != laid.block[i + 1]) {
+            found.turned_rad += std::abs(turned_rad);
+            found.turned_over += std::abs(turned_rad) > kTurnedOver_rad ? 1U : 0U;
+            turned_rad = 0.0;
+        }
+    }
 }
 
 bool turns_head(const Machine& machine) {
@@ -46,18 +68,23 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
         }
     }
     std::vector<double> lean(ends.size(), 0.0);
-    std::vector<double> twist(ends.size(), 0.0);
     parallel_for(lean.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             lean[k] = lean_rad(machine, laid.joints.row(ends[k]), laid.samples[ends[k]].tangent);
-            twist[k] = twist_rad(machine, laid.joints.row(ends[k]), laid.samples[ends[k]]);
+        }
+    });
+    std::vector<double> twist(laid.samples.size(), 0.0);
+    parallel_for(twist.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            twist[i] = twist_rad(machine, laid.joints.row(i), laid.samples[i]);
         }
     });
     RollerFinding found;
-    for (const double at_end : twist) {
-        found.mean_twist_rad += at_end / static_cast<double>(twist.size());
-        found.worst_twist_rad = std::max(found.worst_twist_rad, at_end);
+    for (const std::size_t i : ends) {
+        found.mean_twist_rad += unsigned_rad(twist[i]) / static_cast<double>(ends.size());
+        found.worst_twist_rad = std::max(found.worst_twist_rad, unsigned_rad(twist[i]));
     }
+    measure_turning(laid, twist, found);
     const auto worst = std::max_element(lean.begin(), lean.end());
     if (worst != lean.end()) {
         found.worst_rad = *worst;

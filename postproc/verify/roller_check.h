@@ -22,6 +22,10 @@ struct RollerFinding {
     /// much the band twists on its way from the eye to the wall.
     double mean_twist_rad = 0.0;
     double worst_twist_rad = 0.0;
+    /// By how much the head turns about the fibre, this way and that, while the band does not: a
+    /// tape is laid with that twist.
+    double turned_rad = 0.0;
+    std::size_t turned_over = 0;  ///< blocks in which it goes over to the band's other side
     std::optional<std::size_t> wrong_sample{};  ///< the first that is off by more than it need be
     double wrong_rad = 0.0;                     ///< how far off the square it is
     double forced_rad = 0.0;                    ///< and the machine forces at this place

@@ -17,6 +17,8 @@
 namespace meshwind {
 namespace {
 
+constexpr double kMmPerM = 1000.0;
+
 // The last landing point may lie so far from the planned one along the fibre: where it is straight
 // the landing point is known no better.
 constexpr double kEndGap_mm = 2.0;
@@ -159,11 +161,18 @@ private:
 
     void check_roller() {
         const RollerFinding roller = find_roller(task_.machine, found_.laid);
+        found_.turned_over = roller.turned_over;
         Check check(check_kind::kRoller);
         check.numbers = {{"worst_deg", deg_from_rad(roller.worst_rad)},
                          {"limit_deg", deg_from_rad(kRollerOff_rad)},
                          {"mean_twist_deg", deg_from_rad(roller.mean_twist_rad)},
-                         {"worst_twist_deg", deg_from_rad(roller.worst_twist_rad)}};
+                         {"worst_twist_deg", deg_from_rad(roller.worst_twist_rad)},
+                         {"turned_over", static_cast<double>(roller.turned_over)}};
+        const double turns_per_m =
+            roller.turned_rad / (2.0 * kPi) / (found_.fibre_length_mm / kMmPerM);
+        if (std::isfinite(turns_per_m)) {
+            check.numbers["twist_per_m"] = turns_per_m;
+        }
         put_at_sample(check, roller.wrong_sample.value_or(roller.worst_sample));
         // Programs from elsewhere may be for an eye without a roller.
         const bool asked = !task_.program.head || keeps_form(task_);
@@ -174,6 +183,16 @@ private:
                      " deg off the square to the roller, " +
                      fixed(deg_from_rad(roller.wrong_rad - roller.forced_rad), 2) +
                      " deg more than the machine forces, first in " + words_of(block));
+        }
+        if (rules_.most_twist_per_m) {
+            check.numbers["limit_twist_per_m"] = *rules_.most_twist_per_m;
+            if (check.ok && turns_per_m > *rules_.most_twist_per_m) {
+                check.ok = false;
+                check.words = "the head twists the band by " + fixed(turns_per_m, 3) +
+                              " turns a metre, more than " + fixed(*rules_.most_twist_per_m, 3) +
+                              ", and goes over to its other side " +
+                              std::to_string(roller.turned_over) + " times";
+            }
         }
         found_.checks.push_back(check);
     }

@@ -24,6 +24,7 @@ struct VerifyRules {
     Friction friction = 0.2;
     double bridging_tolerance_mm = 0.5;
     double tow_width_mm = 6.0;
+    std::optional<double> most_twist_per_m{};  ///< >= 0, turns of the band; none: any
     /// How the machine's own lines make the controller go past corners, Dialect::path_mode.
     PathMode path_mode{};
     LaydownTolerance laydown;
@@ -53,6 +54,7 @@ struct Verification {
     std::optional<Deviation> deviation;
     double fibre_length_mm = 0.0;
     double duration_s = 0.0;
+    std::size_t turned_over = 0;  ///< blocks in which the head goes over to the band's other side
     double shortest_free_mm = 0.0;
     double longest_free_mm = 0.0;
     std::vector<Check> checks;                     ///< by name as verify() lists them
