@@ -33,6 +33,20 @@ std::optional<std::size_t> index_of(std::string_view text) {
                                                                     : std::nullopt;
 }
 
+// A value as people type it: JSON, a number with less than JSON asks for (.5, 3., +2), or a word.
+Json typed(std::string_view value) {
+    Json parsed = Json::parse(value, nullptr, false);
+    if (!parsed.is_discarded()) {
+        return parsed;
+    }
+    const std::string_view digits =
+        value.starts_with('+') && !value.starts_with("+-") ? value.substr(1) : value;
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    const bool whole = error == std::errc() && end == digits.data() + digits.size();
+    return whole && std::isfinite(number) ? Json(number) : Json(std::string(value));
+}
+
 std::string escaped_token(std::string_view key) {
     std::string token;
     for (const char c : key) {
@@ -368,8 +382,7 @@ void JsonDocument::set(std::string_view path, std::string_view value) {
             fail("leads through a value that is neither object nor list");
         }
     }
-    const Json parsed = Json::parse(value, nullptr, false);
-    *node = parsed.is_discarded() ? Json(std::string(value)) : parsed;
+    *node = typed(value);
 }
 
 JsonValue JsonDocument::root() const {

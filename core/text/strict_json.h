@@ -98,7 +98,7 @@ public:
 
     /// Puts a value in its place; objects that are not there are made, and an index that is one
     /// past the end adds to its list. \param path keys and indices, joined by dots
-    /// \param value JSON; what is none is a string
+    /// \param value JSON; what is none is a number where it reads as one (.5), else a string
     /// \throws InputError json.no_such_place where the path leads through something that is
     /// neither object nor list, or beyond the end of one
     void set(std::string_view path, std::string_view value);

@@ -88,8 +88,7 @@ inline constexpr CheckKind kRoller{
     "Roller",
     "the fibre leaves the roller at a right angle",
     {at_most("worst_deg", "limit_deg", "worst"), told("mean_twist_deg", "Band twists"),
-     told("worst_twist_deg", "At most"),
-     at_most("twist_per_m", "limit_twist_per_m", "Turns a metre"),
+     told("worst_twist_deg", "At most"), at_most("twist_per_m", "limit_twist_per_m", "Turns"),
      told("turned_over", "Head turned over")}};
 inline constexpr CheckKind kLimits{
     "limits",

@@ -57,6 +57,7 @@ const kUnits: [RegExp, string][] = [
     [/_deg$/, '°'],
     [/_s$/, 's'],
     [/_g$/, 'g'],
+    [/_per_m$/, '/m'],
     [/_m$/, 'm'],
     [/_ratio$/, '×'],
     [/fraction$/, '%'],

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/text/text_number.h"
 #include "tests/support/tells.h"
 
 namespace meshwind {
@@ -73,6 +74,23 @@ TEST(StrictJson, ReadsWholeNumbersWrittenWithAPoint) {
     const auto document = JsonDocument::parse("[3.0, 3]", "m.json");
     for (const JsonValue& value : document.root().array()) {
         EXPECT_EQ(value.integer(0, 9), 3);
+    }
+}
+
+TEST(StrictJson, TakesValuesAsPeopleTypeThem) {
+    const auto taken = [](const char* value) {
+        JsonDocument document = JsonDocument::parse("{}", "job.json");
+        document.set("a", value);
+        const JsonValue a = document.root().object({"a"}).required("a");
+        return a.is_string() ? a.string() : fixed(a.number({}), 3);
+    };
+    for (const char* same : {"0.5", ".5", "+.5", "5e-1", "0.50"}) {
+        EXPECT_EQ(taken(same), "0.500") << same;
+    }
+    EXPECT_EQ(taken("3."), "3.000");
+    EXPECT_EQ(taken("-.25"), "-0.250");
+    for (const char* word : {"pins", ".", "+", "1.5mm", "--2", "+-2", "nan", "inf", "1e999"}) {
+        EXPECT_EQ(taken(word), word);
     }
 }
 
