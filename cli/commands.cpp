@@ -186,8 +186,7 @@ RunContext context_of(const Common& common, Progress& progress) {
     return context;
 }
 
-// What a program is wound again with.
-Setup setup_of(const VerifyArguments& arguments, const Common& common) {
+Setup setup_of(const ProgramArguments& arguments, const Common& common) {
     const InputFiles files{.machine = find_input(arguments.machine),
                            .job = found_or_none(arguments.job.file)};
     require_machine_file(files.machine);
@@ -198,7 +197,7 @@ Setup setup_of(const VerifyArguments& arguments, const Common& common) {
         machine, job, files);
 }
 
-VerifyInputs program_inputs(const VerifyArguments& arguments) {
+VerifyInputs program_inputs(const ProgramArguments& arguments) {
     VerifyInputs inputs;
     inputs.program = {arguments.program, read_text_file(arguments.program)};
     if (!arguments.tie_on.empty()) {
@@ -273,16 +272,17 @@ int run_resume(const ResumeArguments& arguments, const Common& common) {
         throw InputError("resume.block", "resume",
                          "say by --block or --line how far the program has been run");
     }
-    const VerifyArguments& of = arguments.program;
     Progress progress(common.quiet);
     const RunContext context = context_of(common, progress);
     context.report_progress("import", 0.0);
-    const LaidProgram whole = lay_program(setup_of(of, common), program_inputs(of), context);
+    const LaidProgram whole =
+        lay_program(setup_of(arguments, common), program_inputs(arguments), context);
     const ResumedProgram rest = resume(
         whole, arguments.block ? *arguments.block : block_of_line(whole, *arguments.line), context);
-    const fs::path beside(of.program);
-    fs::path file = of.out.empty() ? beside.parent_path() / ("resume_" + beside.filename().string())
-                                   : fs::path(of.out);
+    const fs::path beside(arguments.program);
+    fs::path file = arguments.out.empty()
+                        ? beside.parent_path() / ("resume_" + beside.filename().string())
+                        : fs::path(arguments.out);
     if (rest.passed() || common.force) {
         write_file(file, rest.text);
     } else {
@@ -290,12 +290,12 @@ int run_resume(const ResumeArguments& arguments, const Common& common) {
     }
     progress.clear();
     if (common.json) {
-        std::cout << resume_json(rest, of.program, file.string());
+        std::cout << resume_json(rest, arguments.program, file.string());
     } else if (!common.quiet) {
-        print_resume(std::cout, rest, of.program);
+        print_resume(std::cout, rest, arguments.program);
         std::cout << (file.empty() ? "no program written" : "program   " + file.string()) << '\n';
     }
-    return exit_code(of.program, rest.verification.checks, common);
+    return exit_code(arguments.program, rest.verification.checks, common);
 }
 
 int run_inspect(const InspectArguments& arguments, const Common& common) {

@@ -53,13 +53,18 @@ struct PostArguments {
     PreviewOptions png;
 };
 
-struct VerifyArguments {
-    std::string program, mandrel, machine, plan, out, tie_on;
+/// What a program is wound again with.
+struct ProgramArguments {
+    std::string program, mandrel, machine, tie_on;
     JobArguments job;
 };
 
-struct ResumeArguments {
-    VerifyArguments program;  ///< `plan` is not read, `out` is a file
+struct VerifyArguments : ProgramArguments {
+    std::string plan, out;
+};
+
+struct ResumeArguments : ProgramArguments {
+    std::string out;
     std::optional<std::size_t> block;
     std::optional<std::int32_t> line;
 };

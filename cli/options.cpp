@@ -172,8 +172,7 @@ void add_post(CLI::App& app, PostArguments& options) {
     add_png(app, options.png);
 }
 
-// What a program is wound again with.
-void add_program(CLI::App& app, VerifyArguments& options) {
+void add_program(CLI::App& app, ProgramArguments& options) {
     app.add_option("program", options.program,
                    "NC program, by meshwind or anybody; the machine file names its language")
         ->type_name("FILE")
@@ -189,14 +188,14 @@ void add_program(CLI::App& app, VerifyArguments& options) {
 }
 
 void add_resume(CLI::App& app, ResumeArguments& options) {
-    add_program(app, options.program);
+    add_program(app, options);
     auto* block = app.add_option("--block", options.block,
                                  "the last block that has been run, counted from 1");
     auto* line =
         app.add_option("--line", options.line, "the same by its line in the program's text");
     block->type_name("N")->excludes(line);
     line->type_name("N");
-    app.add_option("-o,--out", options.program.out,
+    app.add_option("-o,--out", options.out,
                    "program to write; without it resume_ and the program's name, beside it")
         ->type_name("FILE");
 }

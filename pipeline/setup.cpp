@@ -294,6 +294,7 @@ Verification verify_program(const Setup& setup, const BlockList& program, const 
                                  .obstacles = *setup.obstacles,
                                  .rules = rules,
                                  .plan = plan});
+    // What the blocks say is not what a controller takes that slows down at corners.
     found.duration_s = setup.dialect->run_time_s(setup.machine, program);
     return found;
 }

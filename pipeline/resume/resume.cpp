@@ -20,6 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMmPerM = 1000.0;
+
 // A block at the start becomes slower by such a factor at a time. What is behind the first blocks,
 // or does not settle, is the program's own.
 constexpr double kLeastSlowing = 1.01;
@@ -36,11 +37,8 @@ std::string blocks_words(const LaidProgram& program) {
 
 // Stations of the laid fibre up to the end of a block.
 std::size_t laid_until(const LaidPath& laid, std::size_t block) {
-    std::size_t count = 0;
-    while (count < laid.at.size() && laid.at[count].block <= block) {
-        ++count;
-    }
-    return count;
+    const auto behind = std::ranges::upper_bound(laid.at, block, {}, &LaidAt::block);
+    return static_cast<std::size_t>(behind - laid.at.begin());
 }
 
 // The sample at the end of a block. \pre there is one

@@ -103,12 +103,11 @@ std::vector<double> junction_times_s(const Machine& machine, const BlockList& li
         block_of.push_back(b);
     }
     std::vector<double> times(list.blocks.size(), 0.0);
-    const auto ahead = static_cast<std::size_t>(std::max(1, planner.blocks));
     double squared = 0.0;  // of the speed
     for (std::size_t k = 0; k < stretches.size(); ++k) {
         // At the end of the last block that is known it would have to stand.
         double end_squared = 0.0;
-        for (std::size_t i = std::min(stretches.size(), k + ahead); i-- > k + 1;) {
+        for (std::size_t i = std::min(stretches.size(), k + planner.blocks); i-- > k + 1;) {
             const Stretch& next = stretches[i];
             end_squared =
                 std::min(next.entry_squared, end_squared + 2.0 * next.acceleration * next.length);

@@ -1,6 +1,7 @@
 /// How long a controller takes that slows down at corners by junction deviation, as GRBL does.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "machines/machine.h"
@@ -12,7 +13,7 @@ namespace meshwind {
 struct JunctionPlanner {
     /// > 0: the arc that an imagined blend of a corner has stays so near to it. GRBL's $11.
     double deviation_mm = 0.01;
-    int blocks = 15;  ///< > 0: looked ahead over, the running one included; GRBL keeps 15
+    std::size_t blocks = 15;  ///< > 0: looked ahead over, the running one included; GRBL keeps 15
 };
 
 /// Seconds per block, 0 for the first. All axes count alike, in output units (mm and degrees), so

@@ -87,10 +87,10 @@ std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& 
     append_if(lines, std::string(kJobDigest), header.job_digest);
     append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
-    lines.push_back("time: " + fixed(nc_run_time_s(flavour, machine, list), 1) + " s");
+    const double time_s = nc_run_time_s(flavour, machine, list);
+    lines.push_back("time: " + fixed(time_s, 1) + " s");
     if (flavour.junction_deviation_mm > 0.0) {
-        lines.push_back("of these for corners: " +
-                        fixed(nc_run_time_s(flavour, machine, list) - list.duration_s(), 1) +
+        lines.push_back("of these for corners: " + fixed(time_s - list.duration_s(), 1) +
                         " s, at $11=" + short_number(deviation_mm(flavour, machine)));
     }
     lines.push_back("blocks: " + std::to_string(list.moves()));

@@ -22,16 +22,19 @@ constexpr std::size_t kChunk = 256;
 // Within a degree of a wrist's singular pose its axes turn 57 times as much as the fibre.
 constexpr double kSingular_sine = 0.0175;
 
-double lean_rad(const Machine& machine, std::span<const double> joints, const Vector3d& fibre) {
-    const Vector3d roller = mandrel_from_eye(machine, joints).linear() * machine.eye.roller;
+// Off the square to the fibre.
+double lean_rad(const Vector3d& roller, const Vector3d& fibre) {
     return std::asin(std::min(1.0, std::abs(roller.dot(fibre))));
 }
 
 // From the band to the roller, about the fibre, -pi to pi.
-double twist_rad(const Machine& machine, std::span<const double> joints, const EyePoint& laid) {
-    const Vector3d roller = mandrel_from_eye(machine, joints).linear() * machine.eye.roller;
+double twist_rad(const Vector3d& roller, const EyePoint& laid) {
     const Vector3d across = roller - roller.dot(laid.tangent) * laid.tangent;
     return std::atan2(laid.binormal.cross(across).dot(laid.tangent), across.dot(laid.binormal));
+}
+
+Vector3d roller_at(const Machine& machine, std::span<const double> joints) {
+    return mandrel_from_eye(machine, joints).linear() * machine.eye.roller;
 }
 
 // Between the lines of both, 0 to pi/2.
@@ -67,16 +70,13 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
             ends.push_back(i);
         }
     }
-    std::vector<double> lean(ends.size(), 0.0);
-    parallel_for(lean.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            lean[k] = lean_rad(machine, laid.joints.row(ends[k]), laid.samples[ends[k]].tangent);
-        }
-    });
+    std::vector<double> lean(laid.samples.size(), 0.0);
     std::vector<double> twist(laid.samples.size(), 0.0);
     parallel_for(twist.size(), kChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            twist[i] = twist_rad(machine, laid.joints.row(i), laid.samples[i]);
+            const Vector3d roller = roller_at(machine, laid.joints.row(i));
+            lean[i] = lean_rad(roller, laid.samples[i].tangent);
+            twist[i] = twist_rad(roller, laid.samples[i]);
         }
     });
     RollerFinding found;
@@ -85,10 +85,10 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
         found.worst_twist_rad = std::max(found.worst_twist_rad, unsigned_rad(twist[i]));
     }
     measure_turning(laid, twist, found);
-    const auto worst = std::max_element(lean.begin(), lean.end());
-    if (worst != lean.end()) {
-        found.worst_rad = *worst;
-        found.worst_sample = ends[static_cast<std::size_t>(worst - lean.begin())];
+    const auto worst = std::ranges::max_element(ends, {}, [&](std::size_t i) { return lean[i]; });
+    if (worst != ends.end()) {
+        found.worst_rad = lean[*worst];
+        found.worst_sample = *worst;
     }
     if (!turns_head(machine) || found.worst_rad <= kRollerOff_rad) {
         return found;
@@ -96,21 +96,22 @@ RollerFinding find_roller(const Machine& machine, const LaidPath& laid) {
     const std::unique_ptr<EyeInverse> inverse = make_eye_inverse(machine);
     const double sign = spindle_sign(machine).value_or(0.0);  // other chains choose their turn
     std::vector<double> joints(machine.axis_count());
-    for (std::size_t k = 0; k < lean.size() && !found.wrong_sample; ++k) {
-        if (lean[k] <= kRollerOff_rad) {
+    for (const std::size_t i : ends) {
+        if (lean[i] <= kRollerOff_rad) {
             continue;
         }
         check_interrupt();
-        const EyePoint& sample = laid.samples[ends[k]];
-        const std::span<const double> is = laid.joints.row(ends[k]);
+        const EyePoint& sample = laid.samples[i];
+        const std::span<const double> is = laid.joints.row(i);
         const WristState state = inverse->solve(
             {.eye_mm = sample.eye_mm, .tangent = sample.tangent, .binormal = sample.binormal},
             sign * is.front(), is, joints);
-        const double forced = lean_rad(machine, joints, sample.tangent);
-        if (state.singular_sine > kSingular_sine && lean[k] > forced + kRollerOff_rad) {
-            found.wrong_sample = ends[k];
-            found.wrong_rad = lean[k];
+        const double forced = lean_rad(roller_at(machine, joints), sample.tangent);
+        if (state.singular_sine > kSingular_sine && lean[i] > forced + kRollerOff_rad) {
+            found.wrong_sample = i;
+            found.wrong_rad = lean[i];
             found.forced_rad = forced;
+            break;
         }
     }
     return found;

@@ -168,11 +168,10 @@ private:
                          {"mean_twist_deg", deg_from_rad(roller.mean_twist_rad)},
                          {"worst_twist_deg", deg_from_rad(roller.worst_twist_rad)},
                          {"turned_over", static_cast<double>(roller.turned_over)}};
-        const double turns_per_m =
-            roller.turned_rad / (2.0 * kPi) / (found_.fibre_length_mm / kMmPerM);
-        if (std::isfinite(turns_per_m)) {
-            check.numbers["twist_per_m"] = turns_per_m;
-        }
+        // A program that lays no fibre twists none.
+        const double laid_m = found_.fibre_length_mm / kMmPerM;
+        const double turns_per_m = laid_m > 0.0 ? roller.turned_rad / (2.0 * kPi) / laid_m : 0.0;
+        check.numbers["twist_per_m"] = turns_per_m;
         put_at_sample(check, roller.wrong_sample.value_or(roller.worst_sample));
         // Programs from elsewhere may be for an eye without a roller.
         const bool asked = !task_.program.head || keeps_form(task_);

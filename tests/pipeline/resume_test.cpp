@@ -76,7 +76,7 @@ TEST(Resume, RefusesBlocksThatLeaveNothing) {
     EXPECT_EQ(resume_error(whole, whole.blocks.moves() - 1), "resumed");
 }
 
-TEST(Resume, NamesTheBlockBeforeAPin) {
+TEST(Resume, RefusesBlocksThatEndOnAPin) {
     Job job = test::quick_job();
     job.mandrel.turn = TurnKind::Pins;
     const LaidProgram whole = laid("six_axis", job);

@@ -1,22 +1,17 @@
-/// Machines as they are shipped, and random numbers for the tests of machines/.
+/// Random numbers for the tests of machines/.
 #pragma once
 
 #include <algorithm>
 #include <random>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/units.h"
-#include "machines/machine_json.h"
+#include "machines/machine.h"
+#include "tests/support/machine_file.h"
 
 namespace meshwind::test {
-
-/// As it is shipped in machines/, without the triangles of its meshes.
-inline Machine machine_file(const std::string& name) {
-    return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/" + name + ".json");
-}
 
 class Draw {
 public:

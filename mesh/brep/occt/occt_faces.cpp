@@ -253,7 +253,7 @@ OcctMesh OcctFaces::first_mesh() {
     IMeshTools_Parameters wanted;
     wanted.Deflection = kFirstDeflection * std::sqrt(box.SquareExtent());
     wanted.Angle = kFirstTurn_rad;
-    wanted.MinSize = kFirstDeflection * std::sqrt(box.SquareExtent());
+    wanted.MinSize = wanted.Deflection;  // else spline faces with many knots take minutes
     wanted.InParallel = Standard_False;
     const BRepMesh_IncrementalMesh mesher(shape_, wanted);
 

@@ -11,15 +11,11 @@
 
 #include <gtest/gtest.h>
 
-#include "machines/machine_json.h"
 #include "postproc/nc/nc_dialects.h"
+#include "tests/support/machine_file.h"
 
 namespace meshwind {
 namespace {
-
-Machine hobby() {
-    return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/hobby_grbl.json");
-}
 
 double total_s(const Machine& machine, const BlockList& list, const JunctionPlanner& planner) {
     const std::vector<double> times_s = junction_times_s(machine, list, planner);
@@ -54,7 +50,7 @@ constexpr double kX = 500.0;
 constexpr double kY = 720.0;
 
 TEST(JunctionTimes, OneBlockSpeedsUpAndSlowsDown) {
-    const Machine machine = hobby();
+    const Machine machine = test::machine_file("hobby_grbl");
     // 100 mm/s is reached in 10 mm.
     EXPECT_NEAR(total_s(machine, blocks(machine, {{60.0, 0.0}}, 100.0), {}),
                 2.0 * 100.0 / kX + 40.0 / 100.0, 1e-9);
@@ -64,7 +60,7 @@ TEST(JunctionTimes, OneBlockSpeedsUpAndSlowsDown) {
 }
 
 TEST(JunctionTimes, StraightOnNothingIsLostAsFarAsIsLookedAhead) {
-    const Machine machine = hobby();
+    const Machine machine = test::machine_file("hobby_grbl");
     const std::vector<std::pair<double, double>> short_ones(50, {2.0, 0.0});
     const double whole_s = total_s(machine, blocks(machine, {{100.0, 0.0}}, 100.0), {});
     EXPECT_NEAR(total_s(machine, blocks(machine, short_ones, 100.0), {.blocks = 15}), whole_s,
@@ -75,7 +71,7 @@ TEST(JunctionTimes, StraightOnNothingIsLostAsFarAsIsLookedAhead) {
 }
 
 TEST(JunctionTimes, CornerIsPassedWithTheSpeedOfItsArc) {
-    const Machine machine = hobby();
+    const Machine machine = test::machine_file("hobby_grbl");
     constexpr double kDeviation = 0.05;
     // A right angle in X and Y: the bisector is slanted by 45 degrees, and X has least to give.
     const double half_sine = std::sqrt(0.5);
@@ -101,7 +97,7 @@ TEST(JunctionTimes, AreThoseOfTheFirmware) {
     constexpr std::array<std::pair<double, double>, 5> kMeasured = {
         {{0.01, 454.1}, {0.02, 409.3}, {0.05, 385.3}, {0.1, 378.0}, {0.3, 369.6}}};
     constexpr double kApproach_s = 0.5;
-    const Machine machine = hobby();
+    const Machine machine = test::machine_file("hobby_grbl");
     const std::string file = std::string(MESHWIND_SOURCE_DIR) + "/data/programs/hobby_pipe.gcode";
     std::ifstream stream(file);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -2,12 +2,11 @@
 #include "postproc/verify/roller_check.h"
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "machines/machine_json.h"
+#include "tests/support/machine_file.h"
 
 namespace meshwind {
 namespace {
@@ -15,10 +14,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPerBlock = 20;
-
-Machine rolling_head() {
-    return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/six_axis.json");
-}
 
 // Two blocks, in each of which the roll turns by `roll_rad`, and the laid band by `band_rad`.
 LaidPath rolled(const Machine& machine, double roll_rad, double band_rad) {
@@ -40,7 +35,7 @@ LaidPath rolled(const Machine& machine, double roll_rad, double band_rad) {
 }
 
 TEST(RollerCheck, HeadThatFollowsTheBandDoesNotTwistIt) {
-    const Machine machine = rolling_head();
+    const Machine machine = test::machine_file("six_axis");
     const RollerFinding found = find_roller(machine, rolled(machine, 3.0, 3.0));
     EXPECT_NEAR(found.turned_rad, 0.0, 1e-12);
     EXPECT_EQ(found.turned_over, 0U);
@@ -48,7 +43,7 @@ TEST(RollerCheck, HeadThatFollowsTheBandDoesNotTwistIt) {
 }
 
 TEST(RollerCheck, HalfATurnThereAndBackIsAWholeTurnOfTwist) {
-    const Machine machine = rolling_head();
+    const Machine machine = test::machine_file("six_axis");
     LaidPath there = rolled(machine, kPi, 0.0);
     const std::size_t axes = machine.axis_count();
     const std::size_t roll = *machine.joint_of('A');
@@ -64,7 +59,7 @@ TEST(RollerCheck, HalfATurnThereAndBackIsAWholeTurnOfTwist) {
 }
 
 TEST(RollerCheck, BandThatTurnsUnderAStillHeadIsTwistedAsMuch) {
-    const Machine machine = rolling_head();
+    const Machine machine = test::machine_file("six_axis");
     const RollerFinding found = find_roller(machine, rolled(machine, 0.0, rad_from_deg(50.0)));
     EXPECT_NEAR(found.turned_rad, rad_from_deg(100.0), 1e-9);
     EXPECT_EQ(found.turned_over, 0U);
