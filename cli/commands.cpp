@@ -197,11 +197,14 @@ Setup setup_of(const ProgramArguments& arguments, const Common& common) {
         machine, job, files);
 }
 
-VerifyInputs program_inputs(const ProgramArguments& arguments) {
+VerifyInputs program_inputs(const ProgramArguments& arguments, const Mandrel& mandrel) {
     VerifyInputs inputs;
     inputs.program = {arguments.program, read_text_file(arguments.program)};
     if (!arguments.tie_on.empty()) {
         inputs.tie_on_mm = vector_of("--tie-on", arguments.tie_on);
+        if (arguments.frame == "file") {
+            inputs.tie_on_mm = mandrel.file_to_mandrel * *inputs.tie_on_mm;
+        }
     }
     return inputs;
 }
@@ -241,7 +244,7 @@ int run_verify_command(const VerifyArguments& arguments, const Common& common) {
     context.report_progress("import", 0.0);
     const auto begun = std::chrono::steady_clock::now();
     Setup setup = setup_of(arguments, common);
-    VerifyInputs inputs = program_inputs(arguments);
+    VerifyInputs inputs = program_inputs(arguments, setup.mandrel);
     if (!arguments.plan.empty()) {
         inputs.path = plan_table(arguments.plan, arguments.program, "path");
         inputs.motion = plan_table(arguments.plan, arguments.program, "motion");
@@ -275,8 +278,9 @@ int run_resume(const ResumeArguments& arguments, const Common& common) {
     Progress progress(common.quiet);
     const RunContext context = context_of(common, progress);
     context.report_progress("import", 0.0);
-    const LaidProgram whole =
-        lay_program(setup_of(arguments, common), program_inputs(arguments), context);
+    Setup setup = setup_of(arguments, common);
+    const VerifyInputs inputs = program_inputs(arguments, setup.mandrel);
+    const LaidProgram whole = lay_program(std::move(setup), inputs, context);
     const ResumedProgram rest = resume(
         whole, arguments.block ? *arguments.block : block_of_line(whole, *arguments.line), context);
     const fs::path beside(arguments.program);

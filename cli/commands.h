@@ -56,6 +56,7 @@ struct PostArguments {
 /// What a program is wound again with.
 struct ProgramArguments {
     std::string program, mandrel, machine, tie_on;
+    std::string frame = "mandrel";  // of tie_on
     JobArguments job;
 };
 

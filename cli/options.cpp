@@ -182,9 +182,13 @@ void add_program(CLI::App& app, ProgramArguments& options) {
     add_job(app, options.job,
             "job file: tow, friction, extensions, tolerances; without it the defaults hold");
     app.add_option("--tie-on", options.tie_on,
-                   "X,Y,Z in the mandrel frame where the fibre is tied on, if the program does not "
-                   "say it")
+                   "X,Y,Z where the fibre is tied on, if the program does not say it")
         ->type_name("X,Y,Z");
+    app.add_option("--frame", options.frame,
+                   "axes of --tie-on. mandrel: Z along the spindle, in mm; file: those of the "
+                   "mandrel's file, in its unit")
+        ->check(one_of({"file", "mandrel"}))
+        ->capture_default_str();
 }
 
 void add_resume(CLI::App& app, ResumeArguments& options) {

@@ -13,6 +13,10 @@ namespace {
 constexpr double kMmPerM = 1000.0;
 constexpr double kSPerMin = 60.0;
 
+std::vector<std::string> remarks_of(const BlockList& program) {
+    return program.head ? program.head->remarks : std::vector<std::string>{};
+}
+
 }  // namespace
 
 std::string verify_json(const VerifyOutcome& outcome, double reading_s) {
@@ -30,6 +34,7 @@ std::string verify_json(const VerifyOutcome& outcome, double reading_s) {
           {"mean_layers", report_number(coverage.mean_layers)},
           {"max_layers", coverage.max_layers}}},
         {"checks", checks_report(outcome.checks)},
+        {"remarks", remarks_of(outcome.blocks)},
         {"other_job", outcome.other_job},
         {"ok", outcome.passed()},
         {"timing_s", {{"import", reading_s}, {"verify", outcome.verifying_s}}}};
@@ -73,6 +78,9 @@ void print_verify(std::ostream& out, const VerifyOutcome& outcome) {
     out << "covered " << percent(outcome.coverage.fraction) << " of the wall, "
         << fixed(outcome.coverage.mean_layers, 2) << " layers on average, at most "
         << outcome.coverage.max_layers << '\n';
+    for (const std::string& remark : remarks_of(outcome.blocks)) {
+        out << "remark: " << remark << '\n';
+    }
     if (outcome.other_job) {
         out << "remark: the program was written for another job than the one given here; where "
                "checks fail, give by --job and --set what it was wound with\n";

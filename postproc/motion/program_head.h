@@ -48,6 +48,8 @@ struct ProgramHead {
     /// Of the stop M0 behind the last rapid move and before the first feed move; 0: there is none.
     std::int32_t stop_line = 0;
     std::vector<PathModeFrom> path_modes{};  ///< changes, in order; none: no words were said
+    /// One line each: what a program by others leaves open, and how it was taken.
+    std::vector<std::string> remarks{};
 };
 
 }  // namespace meshwind

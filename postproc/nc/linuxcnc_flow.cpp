@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "postproc/motion/block.h"
+#include "postproc/nc/foreign_notes.h"
 #include "postproc/nc/linuxcnc_words.h"
 
 namespace meshwind {
@@ -117,7 +118,7 @@ private:
     }
 
     void check_percent() const {
-        if (!percent_ || !closed_) {
+        if ((!percent_ || !closed_) && is_by_meshwind(lines_)) {
             line_.fail("nc.no_end", std::string("no % ") + (percent_ ? "closes" : "opens") +
                                         " the program; the file may be cut off");
         }

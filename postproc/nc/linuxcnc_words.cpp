@@ -144,7 +144,7 @@ std::int64_t NcLine::nano(const NcWord& word) const {
         } else if (c < '0' || c > '9') {
             bad_number(word);
         } else if (decimals == kNanoDecimals) {
-            if (c != '0') {
+            if (c != '0' && !drops_digits) {
                 bad_number(word);
             }
         } else {

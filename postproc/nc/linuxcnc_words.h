@@ -28,6 +28,7 @@ struct NcLine {
     std::vector<NcWord> words{};
     NcComments style = NcComments::BracketsOrSemicolon;
     std::vector<std::string_view> comments{};  ///< in order; behind ; where there is no ( )
+    bool drops_digits = false;                 ///< of numbers, what is finer than 1e-9
 
     /// Replaces words and comments by those of `text`, which must outlive them.
     /// \throws InputError nc.comment, nc.not_understood, nc.number, nc.word_twice
@@ -41,7 +42,8 @@ struct NcLine {
     [[noreturn]] void not_understood(const NcWord& word) const;
     [[noreturn]] void bad_number(const NcWord& word) const;
 
-    /// The word's number in 1e-9 units, exactly. \throws InputError nc.number
+    /// The word's number in 1e-9 units, exactly but for what drops_digits. \throws InputError
+    /// nc.number
     [[nodiscard]] std::int64_t nano(const NcWord& word) const;
 
     /// The number of a G or M word in tenths: G61.1 gives 611. \throws InputError nc.number,

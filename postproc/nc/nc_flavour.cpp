@@ -184,6 +184,7 @@ const NcFlavour& marlin_flavour() {
         .per_minute = true,
         .has_feed_modes = false,
         .feed_rule = FeedRule::Nist,
+        .rapid_by_feed = true,
         .slow_linear = kMarlinSlow,
         .end = "",
         .end_comment = "end of program",

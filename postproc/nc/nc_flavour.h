@@ -74,6 +74,7 @@ struct NcFlavour {
     bool per_minute = false;         ///< G94, or nothing else, may be written
     bool has_feed_modes = true;      ///< G93 and G94 are known
     FeedRule feed_rule = FeedRule::Euclid;
+    bool rapid_by_feed = false;        ///< G0 runs at F as G1 does
     std::string_view no_per_minute{};  ///< why not, in a message
     /// Of a controller that slows down at corners by it (junction_time.h), where nothing is said;
     /// 0: it keeps the durations.

@@ -10,8 +10,11 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/text/text_number.h"
+#include "core/units.h"
 #include "postproc/nc/float32_steps.h"
+#include "postproc/nc/foreign_notes.h"
 #include "postproc/nc/header_lines.h"
+#include "postproc/nc/nc_form.h"
 
 namespace meshwind {
 namespace {
@@ -20,6 +23,19 @@ constexpr double kSecondsPerMinute = 60.0;
 
 // A program needs two to get to its start; each that is kept takes some hundred bytes.
 constexpr std::size_t kMostRapidMoves = 1000;
+
+// An inch is 25.4 mm.
+constexpr std::int64_t kTenthsOfMmPerInch = 254;
+
+// Words of others that say nothing of axes, where no axis has their letter: tools, spindles,
+// parameters of M words.
+constexpr std::string_view kIdleWords = "DHKLOPQRST";
+
+// Codes of others that move no axis, in tenths: a pause, look-ahead, planes, mm, offsets and cycles
+// off, the workpiece's zero, which is the operator's, words on corners.
+constexpr int kPause = 40;
+constexpr std::array kIdleG = {kPause, 80,  90,  170, 180, 190, 210, 400, 490, 540,
+                               550,    560, 570, 580, 590, 610, 640, 710, 800};
 
 // Lines are run between two looks at whether an end is asked for: some milliseconds.
 constexpr std::int64_t kLinesPerLook = 4096;
@@ -33,7 +49,7 @@ const NcHarmless* harmless(std::span<const NcHarmless> codes, int tenths) {
 class Reader {
 public:
     Reader(const NcFlavour& flavour, std::string file, const Machine& machine)
-        : flavour_(flavour), file_(std::move(file)), machine_name_(machine.name) {
+        : flavour_(flavour), file_(std::move(file)), machine_(machine) {
         line_.file = &file_;
         line_.style = flavour.comments;
         axis_of_.fill(-1);
@@ -41,8 +57,11 @@ public:
             const Axis& axis = machine.axis(a);
             list_.axes.push_back({axis.letter, axis.type, axis.resolution_nano});
             axis_of_[static_cast<std::size_t>(axis.letter - 'A')] = static_cast<int>(a);
+            axis_letters_ += axis.letter;
         }
         position_.assign(list_.axes.size(), 0);
+        exact_.assign(list_.axes.size(), 0);
+        origin_.assign(list_.axes.size(), 0);
         placed_.assign(list_.axes.size(), false);
         list_.head.emplace().has_approach = true;
     }
@@ -55,6 +74,8 @@ public:
 
     BlockList program(std::string_view text) && {
         const std::vector<std::string_view> lines = lines_of_text(text);
+        from_ = origin_of(flavour_.comments, lines);
+        line_.drops_digits = is_foreign();
         const ProgramFlow flow = flow_of(lines);
         std::int64_t run = 0;
         run_flow(flow, file_, [&](std::int32_t number, FlowLine kind) {
@@ -66,13 +87,15 @@ public:
             if (kind == FlowLine::Code) {
                 line(words);
             } else {
-                check_length(words);
+                check_length(flavour_, is_foreign(), words, line_);
                 (void)line_.split_comments(words);
                 comments();
             }
             return !ended_ || flavour_.runs_on;
         });
-        if (!ended_) {
+        if (!ended_ && is_foreign() && moved()) {
+            notes_.no_end(end_words());
+        } else if (!ended_) {
             fail("nc.no_end", "the program has no " + end_words() + "; the file may be cut off");
         }
         if (list_.blocks.size() < 2) {
@@ -81,21 +104,27 @@ public:
         if (flavour_.float32 != Float32Text::None) {
             set_binary_steps(list_);
         }
+        list_.head->remarks = notes_.words(!from_.feeds);
         return std::move(list_);
     }
 
     void line(std::string_view text) {
-        check_length(text);
+        check_length(flavour_, is_foreign(), text, line_);
         if (text == "%" && flavour_.flow != nullptr) {
             ended_ = list_.blocks.empty() ? ended_ : true;
             return;
         }
-        line_.split(flavour_.harmless_words.empty() ? text : without_words(text));
+        if (flavour_.harmless_words.empty()) {
+            line_.split(text);
+        } else {
+            kept_ = without_harmless_words(flavour_, text);
+            line_.split(kept_);
+        }
         if (ended_ && flavour_.runs_on && !line_.words.empty()) {
             fail("nc.not_understood", "code behind the end would be run; remove it");
         }
         comments();
-        check_form(text);
+        check_form(flavour_, is_foreign(), text, line_, axis_letters_);
         execute();
     }
 
@@ -104,6 +133,9 @@ public:
     }
 
 private:
+    // A line of the controller's own is read as if it were ours.
+    [[nodiscard]] bool is_foreign() const { return !from_.by_meshwind; }
+
     [[noreturn]] void fail(const std::string& code, const std::string& words) const {
         line_.fail(code, words);
     }
@@ -122,96 +154,12 @@ private:
         return flow;
     }
 
-    // Without what the controller drops before it counts.
-    void check_length(std::string_view text) {
-        std::size_t length = text.size();
-        if (length > flavour_.line_length && flavour_.counted == NcCounted::Code) {
-            length = line_.split_comments(text).size();
-        } else if (length > flavour_.line_length && flavour_.counted == NcCounted::UpToComment) {
-            length = std::min(text.find(';'), length);
-        }
-        if (length > flavour_.line_length) {
-            fail("nc.long_line", "has " + std::to_string(length) +
-                                     " characters; the controller reads at most " +
-                                     std::to_string(flavour_.line_length));
-        }
-    }
-
-    // The line without the words of letters alone that are known to be harmless.
-    std::string_view without_words(std::string_view text) {
-        std::size_t code = std::min(text.find(';'), text.size());
-        kept_.clear();
-        for (std::size_t i = 0; i < code;) {
-            const std::size_t end = std::min(text.find_first_of(" \t", i), code);
-            const std::string_view word = text.substr(i, end - i);
-            kept_ += is_harmless(word) ? std::string() : std::string(word) + ' ';
-            i = end + (end < code ? 1 : 0);
-        }
-        kept_ += text.substr(code);
-        return kept_;
-    }
-
-    [[nodiscard]] bool is_harmless(std::string_view word) const {
-        return std::any_of(
-            flavour_.harmless_words.begin(), flavour_.harmless_words.end(),
-            [&](std::string_view known) {
-                const bool number = known.back() == '=';
-                const std::string_view rest = word.substr(std::min(known.size(), word.size()));
-                return word.substr(0, known.size()) == known &&
-                       (number ? !rest.empty() && rest.find_first_not_of("0123456789.") == rest.npos
-                               : rest.empty());
-            });
-    }
-
     void comments() {
         marks_.read(line_, list_);
         const auto& found = line_.comments;
         const std::string_view end = flavour_.end_comment;
         ended_ =
             ended_ || (!end.empty() && std::find(found.begin(), found.end(), end) != found.end());
-    }
-
-    // What the language asks of the text itself.
-    void check_form(std::string_view text) {
-        if (flavour_.one_command) {
-            check_command(text.substr(0, text.find(';')));
-        }
-        for (const NcWord& word : line_.words) {
-            const auto digits = std::count_if(word.number.begin(), word.number.end(),
-                                              [](char c) { return c >= '0' && c <= '9'; });
-            if (flavour_.most_digits > 0 && digits > static_cast<long>(flavour_.most_digits)) {
-                fail("nc.digits", std::string("\"") + word.letter + std::string(word.number) +
-                                      "\" has more than the " +
-                                      std::to_string(flavour_.most_digits) +
-                                      " digits that the controller reads");
-            }
-            const bool value = word.letter == 'F' || axis_of(word) >= 0;
-            if (flavour_.needs_point && value && word.number.find('.') == std::string_view::npos) {
-                fail("nc.number",
-                     std::string("\"") + word.letter + std::string(word.number) +
-                         "\" has no point and may mean thousandths; write it with one");
-            }
-        }
-    }
-
-    void check_command(std::string_view code) const {
-        if (std::any_of(code.begin(), code.end(), [](char c) { return c >= 'a' && c <= 'z'; })) {
-            fail("nc.not_understood", "the controller knows no small letters");
-        }
-        const auto is_command = [](const NcWord& w) { return w.letter == 'G' || w.letter == 'M'; };
-        const auto& words = line_.words;
-        const auto commands = std::count_if(words.begin(), words.end(), is_command);
-        if (!words.empty() && (commands != 1 || !is_command(words.front()))) {
-            fail(
-                "nc.not_understood",
-                "the controller runs one command a line, which stands in front; give each its own");
-        }
-        const bool takes_words = !words.empty() && (words.front().letter == 'M' ||
-                                                    words.front().number.find_first_not_of("01") ==
-                                                        std::string_view::npos);
-        if (words.size() > 1 && !takes_words) {
-            line_.not_understood(words[1]);
-        }
     }
 
     [[nodiscard]] int axis_of(const NcWord& word) const {
@@ -234,6 +182,8 @@ private:
         parameters_.clear();
         path_code_ = nullptr;
         stops_ = false;
+        idles_ = false;
+        sets_place_ = false;
         int motions = 0;
         for (const NcWord& word : line_.words) {
             if (word.letter == 'G') {
@@ -248,11 +198,13 @@ private:
         for (const NcWord& word : line_.words) {
             if (parameters_.find(word.letter) != std::string::npos || word.letter == 'N') {
                 (void)line_.nano(word);
-            } else if (word.letter == 'F') {
+            } else if (word.letter == 'F' && !idles_) {
                 feed_word_ = feed(word);
             } else if (axis_of(word) >= 0) {
                 axes = true;
-            } else if (word.letter != 'G' && word.letter != 'M') {
+            } else if (is_foreign() && kIdleWords.find(word.letter) != std::string_view::npos) {
+                notes_.skipped(word);
+            } else if (word.letter != 'G' && word.letter != 'M' && word.letter != 'F') {
                 no_such_word(word);
             }
         }
@@ -261,16 +213,20 @@ private:
         }
         if (feed_word_ && !inverse_time_) {
             feed_per_minute_ = *feed_word_;
+            feed_in_inches_ = inches_;
         }
         if (path_code_ != nullptr) {
             set_path_mode();
         }
-        if (axes) {
+        if (sets_place_) {
+            set_place();
+        } else if (axes && !(idles_ && motions == 0)) {
             move();
         }
         if (stops_ && list_.blocks.empty()) {
             list_.head->stop_line = line_.number;
         }
+        stop_seen_ = stop_seen_ || stops_;
     }
 
     [[noreturn]] void no_such_word(const NcWord& word) const {
@@ -278,7 +234,7 @@ private:
             line_.not_understood(word);
         }
         fail("nc.no_axis", std::string("\"") + word.letter + std::string(word.number) +
-                               "\" moves an axis that the machine \"" + machine_name_ +
+                               "\" moves an axis that the machine \"" + machine_.name +
                                "\" does not have; is it the machine of this program?");
     }
 
@@ -310,6 +266,7 @@ private:
     }
 
     void g_code(int number, const NcWord& word) {
+        inches_ = inches_ && number != 210 && number != 710;
         const NcHarmless* known = harmless(flavour_.harmless_g, number);
         if (known != nullptr) {
             parameters_ += known->parameters;
@@ -323,10 +280,32 @@ private:
         } else if ((number == 930 || number == 940) && flavour_.has_feed_modes) {
             inverse_time_ = number == 930;
             feed_per_minute_ = 0.0;  // a change of mode asks for a fresh F
-        } else {
+        } else if (!is_foreign() || !foreign_g_code(number, word)) {
             line_.not_understood(word);
         }
     }
+
+    // Of a program of others: codes that say where an axis stands, units, and what moves no axis.
+    [[nodiscard]] bool foreign_g_code(int number, const NcWord& word) {
+        if (number == 920) {
+            sets_place_ = true;
+        } else if (number == 921) {
+            notes_.set_place(line_.number);
+            std::fill(origin_.begin(), origin_.end(), 0);
+        } else if (number == 200 || number == 700) {
+            inches_ = true;
+            notes_.inches(line_.number);
+        } else if (std::find(kIdleG.begin(), kIdleG.end(), number) != kIdleG.end()) {
+            idles_ = idles_ || number == kPause;
+            notes_.skipped(word);
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    // All but calls of subprograms and their ends.
+    [[nodiscard]] static bool is_idle_m(int tenths) { return tenths < 960 || tenths > 999; }
 
     void m_code(const NcWord& word) {
         const int number = line_.code(word);
@@ -335,6 +314,9 @@ private:
             parameters_ += known->parameters;
         } else if ((number == 20 || number == 300) && !flavour_.end.empty()) {
             ended_ = true;
+        } else if (number != 0 && number != 10 && is_foreign() && is_idle_m(number)) {
+            idles_ = idles_ || flavour_.one_command;
+            notes_.skipped(word);
         } else if (number != 0 && number != 10) {
             line_.not_understood(word);
         }
@@ -345,7 +327,8 @@ private:
         if (motion_ == Motion::None) {
             fail("nc.no_motion_mode", "axis words before any G0 or G1");
         }
-        if (motion_ == Motion::Feed && list_.blocks.empty()) {
+        const bool feeds = motion_ == Motion::Feed || winds_rapidly();
+        if (feeds && list_.blocks.empty()) {
             start();
         }
         const std::vector<std::int64_t> before = position_;
@@ -355,16 +338,26 @@ private:
                 place(static_cast<std::size_t>(axis), word);
             }
         }
-        if (motion_ == Motion::Rapid) {
+        if (!feeds) {
             rapid();
             return;
         }
-        if (!inverse_time_ && position_ == before) {
+        if ((!inverse_time_ || motion_ == Motion::Rapid) && position_ == before) {
             return;  // no way, no time: nothing is run
         }
         list_.blocks.push_back(
             {.duration_s = duration_s(before), .piece = marks_.piece(), .line = line_.number});
         list_.nano.insert(list_.nano.end(), position_.begin(), position_.end());
+    }
+
+    // Whether a rapid move of others has the fibre on: behind a feed move, or where there is none
+    // behind the stop for the tie-on, or without one behind the move to the start.
+    [[nodiscard]] bool winds_rapidly() const {
+        if (motion_ != Motion::Rapid || !is_foreign()) {
+            return false;
+        }
+        const bool started = from_.stops ? stop_seen_ : !list_.head->approach.empty();
+        return !list_.blocks.empty() || (!from_.feeds && started);
     }
 
     void rapid() {
@@ -390,7 +383,9 @@ private:
     // The place where the first feed move begins is block 0.
     void start() {
         for (std::size_t a = 0; a < placed_.size(); ++a) {
-            if (!placed_[a]) {
+            if (!placed_[a] && is_foreign()) {
+                notes_.unplaced(list_.axes[a].letter, line_.number);
+            } else if (!placed_[a]) {
                 fail("nc.unknown_start", std::string("axis ") + list_.axes[a].letter +
                                              " has no absolute position before the first feed "
                                              "move; place it with G90 G0");
@@ -401,16 +396,21 @@ private:
     }
 
     void place(std::size_t axis, const NcWord& word) {
-        const std::int64_t value = line_.nano(word);
+        const std::int64_t value = axis_value(axis, word);
+        const std::int64_t step = list_.axes[axis].resolution_nano;
         const bool binary =
             flavour_.float32 != Float32Text::None && value % kFinestBinary_nano == 0;
-        if (value % list_.axes[axis].resolution_nano != 0 && !binary) {
+        if (value % step != 0 && !binary && !is_foreign()) {
             fail("nc.resolution", std::string("\"") + word.letter + std::string(word.number) +
                                       "\" is not a multiple of the axis' resolution");
         }
         std::int64_t sum = value;
-        if (incremental_ && __builtin_add_overflow(position_[axis], value, &sum)) {
+        if (__builtin_add_overflow(incremental_ ? exact_[axis] : origin_[axis], value, &sum)) {
             line_.bad_number(word);
+        }
+        exact_[axis] = sum;
+        if (is_foreign()) {
+            sum = nearest_step(axis, sum);
         }
         if (const std::string words =
                 beyond_one_block(list_.axes[axis], placed_[axis] ? position_[axis] : sum, sum);
@@ -421,7 +421,65 @@ private:
         placed_[axis] = placed_[axis] || !incremental_;
     }
 
-    [[nodiscard]] double duration_s(const std::vector<std::int64_t>& before) const {
+    // A word of an axis in nano units of the machine.
+    [[nodiscard]] std::int64_t axis_value(std::size_t axis, const NcWord& word) const {
+        std::int64_t value = line_.nano(word);
+        if (inches_ && list_.axes[axis].type == AxisType::Linear) {
+            if (__builtin_mul_overflow(value, kTenthsOfMmPerInch, &value)) {
+                line_.bad_number(word);
+            }
+            value /= 10;
+        }
+        return value;
+    }
+
+    [[nodiscard]] std::int64_t nearest_step(std::size_t axis, std::int64_t exact) {
+        const std::int64_t step = list_.axes[axis].resolution_nano;
+        const std::int64_t left = exact % step;
+        if (left == 0) {
+            return exact;
+        }
+        const std::int64_t off =
+            std::abs(left) * 2 <= step ? -left : (left < 0 ? -step : step) - left;
+        notes_.rounded(list_.axes[axis], off);
+        return exact + off;
+    }
+
+    // G92: the axes stand where they are, and their words count from elsewhere.
+    void set_place() {
+        notes_.set_place(line_.number);
+        for (const NcWord& word : line_.words) {
+            const int found = axis_of(word);
+            if (found >= 0) {
+                const auto axis = static_cast<std::size_t>(found);
+                if (__builtin_sub_overflow(exact_[axis], axis_value(axis, word), &origin_[axis])) {
+                    line_.bad_number(word);
+                }
+                placed_[axis] = true;
+            }
+        }
+    }
+
+    // As fast as the slowest of the axes can, without ramps.
+    [[nodiscard]] double rapid_s(const std::vector<std::int64_t>& before) const {
+        double longest_s = 0.0;
+        for (std::size_t a = 0; a < before.size(); ++a) {
+            const double way = std::abs(static_cast<double>(position_[a] - before[a])) /
+                               static_cast<double>(kNanoPerUnit);
+            const bool rotary = list_.axes[a].type == AxisType::Rotary;
+            longest_s =
+                std::max(longest_s, (rotary ? rad_from_deg(way) : way) / machine_.axis(a).velocity);
+        }
+        return longest_s;
+    }
+
+    [[nodiscard]] double duration_s(const std::vector<std::int64_t>& before) {
+        if (motion_ == Motion::Rapid) {
+            notes_.rapid_with_fibre(flavour_.rapid_by_feed, line_.number);
+            if (!flavour_.rapid_by_feed) {
+                return rapid_s(before);
+            }
+        }
         if (inverse_time_) {
             if (!feed_word_) {
                 fail("nc.feed", "a G93 feed move without F; write F in every line");
@@ -431,19 +489,25 @@ private:
         if (!(feed_per_minute_ > 0.0)) {
             fail("nc.feed", "a feed move before any F; write F");
         }
-        return kSecondsPerMinute *
-               feed_length(flavour_.feed_rule, move_lengths(list_.axes, before, position_)) /
-               feed_per_minute_;
+        const MoveLengths way = move_lengths(list_.axes, before, position_);
+        const double per_minute = feed_in_inches_ && way.linear() > 0.0
+                                      ? kTenthsOfMmPerInch * feed_per_minute_ / 10.0
+                                      : feed_per_minute_;
+        return kSecondsPerMinute * feed_length(flavour_.feed_rule, way) / per_minute;
     }
 
     enum class Motion { None, Rapid, Feed };
 
     const NcFlavour& flavour_;
     const std::string file_;
-    const std::string machine_name_;
+    const Machine& machine_;
     BlockList list_;
     std::array<int, 26> axis_of_{};
-    std::vector<std::int64_t> position_;
+    ProgramOrigin from_{.by_meshwind = true};  // of lines outside a program
+    ForeignNotes notes_;
+    std::vector<std::int64_t> position_;  // on the axes' steps
+    std::vector<std::int64_t> exact_;     // as the text has it
+    std::vector<std::int64_t> origin_;    // from which absolute words count
     std::vector<bool> placed_;
     NcLine line_;
     Motion motion_ = Motion::None;
@@ -455,8 +519,14 @@ private:
     std::optional<double> feed_word_;
     const NcHarmless* path_code_ = nullptr;  // of the line
     bool stops_ = false;                     // the line has M0
-    std::string parameters_;                 // letters that belong to a harmless code of the line
-    std::string kept_;                       // the line without harmless words
+    bool stop_seen_ = false;                 // a line before had
+    bool idles_ = false;                     // the line has a pause, or an M word that is left out
+    bool sets_place_ = false;                // it has G92
+    bool inches_ = false;
+    bool feed_in_inches_ = false;
+    std::string parameters_;  // letters that belong to a harmless code of the line
+    std::string kept_;        // the line without harmless words
+    std::string axis_letters_;
     NcMarks marks_;
 };
 

@@ -13,7 +13,8 @@
 namespace meshwind {
 
 /// The blocks that the controller would run. Taken are G0 G1 G90 G91 G93 G94, F, N, M0 M1, the ends
-/// and what the flavour calls harmless.
+/// and what the flavour calls harmless; of programs that are not by meshwind more
+/// (foreign_notes.h), with a remark of the list's head for what was taken as meant.
 /// \param file name used in messages
 /// \throws InputError nc.* with the place "file:line" for anything else
 [[nodiscard]] BlockList read_nc(const NcFlavour& flavour, std::string_view text,

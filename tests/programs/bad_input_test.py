@@ -400,8 +400,8 @@ class BadInput(program.ProgramTest):
         job = self.write("job.json", '{"mandrel": {"extension": 0}}')
         world = ["--mandrel", "cylinder.stl", "--machine", "six_axis.json", "--job", job]
         helix = (program.SOURCE / "data/programs/pipe_helix.ngc").read_text()
-        for text, code, word in (("", "nc.no_end", ""), ("\0\1\2", "nc.not_understood", "broken.ngc:1"), ("G91 G93\nG1 C5 F20\nM2\n", "nc.unknown_start", "axis"),
-                           (helix.replace("M2\n", ""), "nc.no_end", ":8"),
+        for text, code, word in (("", "nc.no_end", ""), ("\0\1\2", "nc.not_understood", "broken.ngc:1"), ("(meshwind 1)\nG91 G93\nG1 C5 F20\nM2\n", "nc.unknown_start", "axis"),
+                           ("(meshwind 1)\n" + helix.replace("M2\n", ""), "nc.no_end", ":9"),
                            (helix.replace("F20", ""), "nc.feed", "broken.ngc:8"),
                            (helix.replace("C-90", "C#5"), "nc.not_understood", "broken.ngc:8"),
                            (helix.replace("C-90", "C-9e99"), "nc.not_understood", "broken.ngc:8"),

@@ -1,7 +1,11 @@
 #include "tests/support/block_lists.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iomanip>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "core/units.h"
@@ -45,6 +49,58 @@ BlockList random_list(const Machine& machine, unsigned seed, int n) {
         add(list, steps, std::pow(10.0, exponent(engine)), i / 100);
     }
     return list;
+}
+
+std::string as_ours(std::string text, char opens) {
+    const std::string comment = opens == '(' ? " (meshwind 1.0)" : " ; meshwind 1.0";
+    const std::size_t from = text.rfind("%\n", 0) == 0 ? 2 : 0;
+    return text.empty() ? text : text.insert(std::min(text.find('\n', from), text.size()), comment);
+}
+
+std::string foreign_program(const Machine& machine, unsigned seed, int n) {
+    std::mt19937 random(seed);
+    const auto below = [&](unsigned count) { return static_cast<unsigned>(random() % count); };
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(6) << "G21 G90 G94\nG0 X1\nG1 F3000\n";
+    const auto some_axes = [&] {
+        const std::size_t at_least = below(static_cast<unsigned>(machine.axis_count()));
+        for (std::size_t a = 0; a < machine.axis_count(); ++a) {
+            if (a == at_least || below(2) == 0) {
+                text << ' ' << machine.axis(a).letter
+                     << 0.2 * (static_cast<double>(below(10'000)) / 7.0 - 700.0);
+            }
+        }
+        text << '\n';
+    };
+    constexpr std::array kIdle = {"G4 P0.1", "M8", "G17", "S200 M3", "M9", "(a comment)"};
+    for (int line = 0; line < n; ++line) {
+        switch (below(12)) {
+            case 0:
+                text << (below(2) == 0 ? "G90\n" : "G91\n");
+                break;
+            case 1:
+                text << (below(2) == 0 ? "G20\n" : "G21\n");
+                break;
+            case 2:
+                text << "G92 C0 X" << 0.01 * below(10'000) << '\n';
+                break;
+            case 3:
+                text << "G92.1\n";
+                break;
+            case 4:
+                text << kIdle[below(kIdle.size())] << '\n';
+                break;
+            case 5:
+                text << "G0";
+                some_axes();
+                break;
+            default:
+                text << "G1 F" << 100 + below(5000);
+                some_axes();
+        }
+    }
+    text << "M2\n";
+    return text.str();
 }
 
 BlockList pattern(const Machine& machine, const PatternOptions& options) {

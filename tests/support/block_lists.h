@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "machines/machine.h"
@@ -20,6 +21,14 @@ void add(BlockList& list, const std::vector<std::int64_t>& steps, double duratio
 
 /// A start and n blocks, each moving some axes.
 [[nodiscard]] BlockList random_list(const Machine& machine, unsigned seed, int n);
+
+/// The text with the comment, in its first line but "%", that makes it one of ours. \param opens
+/// what opens a comment, "(" or ";"
+[[nodiscard]] std::string as_ours(std::string text, char opens = '(');
+
+/// A program of n lines for LinuxCNC as others write them: G90 and G91, mm and inches, G92, rapid
+/// moves with the fibre on, codes that move nothing, six decimals, no axis placed before.
+[[nodiscard]] std::string foreign_program(const Machine& machine, unsigned seed, int n);
 
 /// Circuits of a carriage (Z) that goes there and back, X and A with it, `length` blocks each
 /// (even,

@@ -46,7 +46,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 std::string refusal(const std::string& dialect, const std::string& text) {
     try {
-        (void)read(dialect, text);
+        (void)read(dialect, test::as_ours(text));
     } catch (const InputError& error) {
         return error.code() + " " + error.place() + " " + error.what();
     }

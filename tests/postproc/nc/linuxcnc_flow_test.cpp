@@ -33,7 +33,7 @@ std::string x(int length) {
 
 std::string refusal(const std::string& text) {
     try {
-        (void)LinuxCnc().read(text, "p.ngc", six_axis());
+        (void)LinuxCnc().read(test::as_ours(text), "p.ngc", six_axis());
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
         return error.code() + " " + error.place();

@@ -2,10 +2,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -110,6 +113,48 @@ protected:
 
 TEST_F(LinuxCncOracle, ProgramWrittenByHand) {
     compare(six_axis_, read_text_file(kSource + "/data/programs/pipe_helix.ngc"));
+}
+
+// Absolute and incremental words in mm and inches, G92 among them, rapid moves with the fibre on,
+// digits finer than the axes' steps: programs as others write them.
+TEST_F(LinuxCncOracle, ProgramsOfOthers) {
+    const Machine machine = read_machine(six_axis_);
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::string text = test::foreign_program(machine, seed, 400);
+        const BlockList ours = LinuxCnc().read(text, "program.ngc", machine);
+        save(folder_ / "program.ngc", text);
+        ASSERT_EQ(run(kSource + "/tests/tools/run_rs274.sh " + (folder_ / "program.ngc").string() +
+                      " > " + (folder_ / "moves.csv").string()),
+                  0);
+        std::map<std::int32_t, std::array<double, 9>> theirs;  // by line: x y z a b c u v w
+        std::istringstream rows(read_text_file(folder_ / "moves.csv"));
+        std::string row;
+        std::getline(rows, row);
+        while (std::getline(rows, row)) {
+            std::istringstream cells(row);
+            std::string cell;
+            std::getline(cells, cell, ',');
+            std::array<double, 9>& place = theirs[std::stoi(cell)];
+            std::getline(cells, cell, ',');  // kind
+            std::getline(cells, cell, ',');  // feed
+            for (double& value : place) {
+                std::getline(cells, cell, ',');
+                value = std::stod(cell);
+            }
+        }
+        ASSERT_GT(ours.blocks.size(), 100u);
+        for (std::size_t i = 1; i < ours.blocks.size(); ++i) {
+            const auto& place = theirs.at(ours.blocks[i].line);
+            for (std::size_t a = 0; a < ours.axes.size(); ++a) {
+                const BlockAxis& axis = ours.axes[a];
+                const double step = static_cast<double>(axis.resolution_nano) / kNanoPerUnit;
+                EXPECT_NEAR(ours.value(i, a), place[std::string("XYZABCUVW").find(axis.letter)],
+                            0.5 * step + 1e-6)
+                    << axis.letter << " in line " << ours.blocks[i].line;
+            }
+        }
+    }
 }
 
 TEST_F(LinuxCncOracle, HelixForwardAndReturn) {

@@ -35,7 +35,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 std::string refusal(const std::string& text) {
     try {
-        (void)LinuxCnc().read(text, "p.ngc", six_axis());
+        (void)LinuxCnc().read(test::as_ours(text), "p.ngc", six_axis());
     } catch (const InputError& error) {
         return error.code() + " " + error.place();
     }

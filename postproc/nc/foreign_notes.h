@@ -1,0 +1,71 @@
+/// Programs that are not by meshwind: what is read in them as the controller would take it, and
+/// told.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "postproc/motion/block.h"
+#include "postproc/nc/linuxcnc_words.h"
+
+namespace meshwind {
+
+/// Whether a comment in the first lines says so.
+[[nodiscard]] bool is_by_meshwind(std::span<const std::string_view> lines);
+
+/// What a whole text tells before its lines are run.
+struct ProgramOrigin {
+    bool by_meshwind = false;
+    bool feeds = false;  ///< it has G1: else its rapid moves wind
+    bool stops = false;  ///< it has M0: else the first of those moves leads to the start
+};
+
+[[nodiscard]] ProgramOrigin origin_of(NcComments comments, std::span<const std::string_view> lines);
+
+/// Counts what a program leaves open or says beside its motion.
+class ForeignNotes {
+public:
+    /// Of one kind, with the line where it is first met; `what` ends the sentence in words().
+    struct Seen {
+        std::size_t times = 0;
+        std::int32_t line = 0;
+    };
+
+    void unplaced(char axis, std::int32_t line) { unplaced_.emplace(axis, line); }
+    /// \param off_nano from the position that the text has to the axis' nearest step
+    void rounded(const BlockAxis& axis, std::int64_t off_nano);
+    /// \param by_feed whether the controller runs it at F
+    void rapid_with_fibre(bool by_feed, std::int32_t line);
+    void set_place(std::int32_t line) { see(set_place_, line); }
+    void inches(std::int32_t line) { see(inches_, line); }
+    void skipped(const NcWord& word);
+    void no_end(const std::string& end_words) { no_end_ = end_words; }
+
+    /// A remark for each kind. \param wound_by_rapids whether the program has no feed move
+    [[nodiscard]] std::vector<std::string> words(bool wound_by_rapids) const;
+
+private:
+    struct Rounding {
+        std::size_t times = 0;
+        std::int64_t most_nano = 0;
+        AxisType type = AxisType::Linear;
+    };
+
+    static void see(Seen& seen, std::int32_t line);
+
+    std::map<char, std::int32_t> unplaced_;
+    std::map<char, Rounding> rounded_;
+    std::map<std::string, std::size_t> skipped_;
+    Seen rapid_;
+    bool rapid_by_feed_ = false;
+    Seen set_place_;
+    Seen inches_;
+    std::string no_end_;
+};
+
+}  // namespace meshwind

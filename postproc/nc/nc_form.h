@@ -1,0 +1,26 @@
+/// What a controller asks of the text of a line, whatever it says.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "postproc/nc/linuxcnc_words.h"
+#include "postproc/nc/nc_flavour.h"
+
+namespace meshwind {
+
+/// A line has no more characters than the controller reads, without what it drops before it counts.
+/// \param foreign of a program that is not by meshwind: comments and blanks do not count at all
+/// \throws InputError nc.long_line, nc.comment
+void check_length(const NcFlavour& flavour, bool foreign, std::string_view text, NcLine& line);
+
+/// The text without the words of letters alone that are known to be harmless.
+[[nodiscard]] std::string without_harmless_words(const NcFlavour& flavour, std::string_view text);
+
+/// Numbers have a point and few digits where the controller wants that, commands stand alone.
+/// \param line of the text \param axes letters of the machine \throws InputError nc.digits,
+/// nc.number, nc.not_understood
+void check_form(const NcFlavour& flavour, bool foreign, std::string_view text, const NcLine& line,
+                std::string_view axes);
+
+}  // namespace meshwind
