@@ -138,7 +138,10 @@ int run_main_job(const WindArguments& arguments, const PostArguments* post, cons
     if (post != nullptr) {
         options.import = ImportRequest{.points = read_landing_points(post->points),
                                        .mandrel_frame = post->frame == "mandrel",
-                                       .farthest_mm = post->within_mm};
+                                       .farthest_mm = post->within_mm,
+                                       .circuits = post->circuits,
+                                       .turn_rad = rad_from_deg(post->turn_deg),
+                                       .smooth_mm = post->smooth_mm};
     }
     const MandrelOf mandrel =
         mandrel_reader(mandrel_file, unit_mm(common.units), options.mandrel_digest);

@@ -50,6 +50,9 @@ struct PostArguments {
     std::string frame = "file";  ///< "file" or "mandrel"
     std::string out = "meshwind-out";
     double within_mm = 1.0;  ///< > 0; a coarse mesh of the same part is nearer than that
+    int circuits = 1;
+    double turn_deg = 0.0;
+    double smooth_mm = 0.0;
     PreviewOptions png;
 };
 

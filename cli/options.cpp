@@ -166,6 +166,20 @@ void add_post(CLI::App& app, PostArguments& options) {
         ->type_name("MM")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    auto* circuits = app.add_option("--circuits", options.circuits,
+                                    "wind the table so many times, turned on each time")
+                         ->type_name("N")
+                         ->check(CLI::Range(1, 100'000))
+                         ->capture_default_str();
+    app.add_option("--turn", options.turn_deg,
+                   "degrees about the spindle from one circuit to the next")
+        ->type_name("DEG")
+        ->needs(circuits);
+    app.add_option("--smooth", options.smooth_mm,
+                   "mm that the fibre may pass by a point so that it runs smoothly; without it "
+                   "through all of them")
+        ->type_name("MM")
+        ->check(CLI::PositiveNumber);
     app.add_option("-o,--out", options.out, "output folder")
         ->type_name("DIR")
         ->capture_default_str();

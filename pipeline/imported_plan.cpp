@@ -10,6 +10,7 @@
 #include "geodesic/biarc.h"
 #include "geodesic/field_walk.h"
 #include "geodesic/measure.h"
+#include "postproc/tables/landing_circuits.h"
 #include "postproc/tables/landing_path.h"
 #include "winding/laminate/measure_plan.h"
 
@@ -40,12 +41,17 @@ public:
         : setup_(setup), request_(request), wall_(setup.wall->surface()), seed_(seed), fit_(fit) {}
 
     Plan run() {
-        const LandingTable table =
-            read_landing_csv(request_.points.text, request_.points.file.string());
-        LandingPaths paths(
-            wall_, {.mandrel_from_table = mandrel_from_table(setup_.mandrel, request_, table.in_mm),
-                    .farthest_mm = request_.farthest_mm,
-                    .file = request_.points.file.string()});
+        LandingTable table = read_landing_csv(request_.points.text, request_.points.file.string());
+        const Eigen::Affine3d from_table =
+            mandrel_from_table(setup_.mandrel, request_, table.in_mm);
+        table = repeated(std::move(table), request_.circuits, request_.turn_rad, from_table);
+        if (request_.smooth_mm > 0.0) {
+            table = joined(std::move(table), kMeets_mm, from_table);
+        }
+        LandingPaths paths(wall_, {.mandrel_from_table = from_table,
+                                   .farthest_mm = request_.farthest_mm,
+                                   .smooth_mm = request_.smooth_mm,
+                                   .file = request_.points.file.string()});
         plan_.planner = Planner::Imported;
         for (std::size_t i = 0; i < table.courses.size(); ++i) {
             const LandingCourse& course = table.courses[i];
@@ -74,6 +80,8 @@ private:
         fit_.mean_mm = moves.sum_mm / static_cast<double>(moves.points);
         fit_.worst_line = moves.worst_line;
         fit_.limit_mm = request_.farthest_mm;
+        fit_.circuits = request_.circuits;
+        fit_.smoothed_mm = moves.smoothed_mm;
     }
 
     void add(PieceKind kind, SurfacePath path, TautString string) {

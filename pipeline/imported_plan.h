@@ -13,6 +13,9 @@ struct ImportRequest {
     LandingText points;
     bool mandrel_frame = false;  ///< else the axes of the mandrel's file
     double farthest_mm = 1.0;    ///< > 0; points further off the mandrel are refused
+    int circuits = 1;            ///< how many times the table is wound, >= 1
+    double turn_rad = 0.0;       ///< about the spindle from one to the next
+    double smooth_mm = 0.0;      ///< how far the fibre may pass by the points to be smooth; 0: not
 };
 
 /// How the points fit the mandrel, for the report.
@@ -26,6 +29,8 @@ struct ImportFit {
     double mean_mm = 0.0;
     int worst_line = 0;  ///< of the file
     double limit_mm = 0.0;
+    int circuits = 1;
+    double smoothed_mm = 0.0;  ///< how far the furthest point on the wall is from the fibre
 };
 
 /// The courses of the table as one fibre on the mandrel with its extensions. Where a course does

@@ -309,7 +309,9 @@ json import_report(const ImportFit& fit) {
             {"worst_mm", report_number(fit.worst_mm)},
             {"worst_line", fit.worst_line},
             {"mean_mm", report_number(fit.mean_mm)},
-            {"limit_mm", report_number(fit.limit_mm)}};
+            {"limit_mm", report_number(fit.limit_mm)},
+            {"circuits", fit.circuits},
+            {"smoothed_mm", report_number(fit.smoothed_mm)}};
 }
 
 // What a layer is and what came of it.

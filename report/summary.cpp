@@ -201,7 +201,11 @@ void print_plan(std::ostream& out, const WoundLayer& layer, Detail detail) {
         const ImportFit& fit = *layer.import;
         out << fit.points << " landing points of " << fit.file << ", off the mandrel by "
             << fixed(fit.mean_mm, 4) << " mm on average, at most " << fixed(fit.worst_mm, 4)
-            << " mm in line " << fit.worst_line << '\n';
+            << " mm in line " << fit.worst_line
+            << (fit.smoothed_mm > 0.0 ? "; smoothed, the fibre passes them by " +
+                                            fixed(fit.smoothed_mm, 3) + " mm at most"
+                                      : "")
+            << '\n';
     }
 }
 

@@ -11,6 +11,8 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "geodesic/field_walk.h"
+#include "postproc/tables/smooth_course.h"
+#include "postproc/tables/wall_place.h"
 
 namespace meshwind {
 namespace {
@@ -81,26 +83,6 @@ Vector3d parabola_end_tangent(const Vector3d& here, const Vector3d& next,
     return (first - (d1 / (d1 + d2)) * (second - first)).normalized();
 }
 
-namespace {
-
-// The place of the wall that is nearest to a point.
-FieldWalker nearest(const Surface& wall, const RayQuery& facets, const Vector3d& point_mm) {
-    double reach_mm = 1.0;
-    ClosestPoint closest = facets.closest(point_mm, reach_mm);
-    while (closest.part < 0) {
-        reach_mm *= 10.0;
-        closest = facets.closest(point_mm, reach_mm);
-    }
-    const SurfacePoint on_facet{closest.face, closest.bary};
-    FieldWalker walker(wall, on_facet);
-    if (!walker.move_under(point_mm)) {
-        walker.move_to(on_facet);
-    }
-    return walker;
-}
-
-}  // namespace
-
 // A row on the wall.
 struct LandingPaths::Landing {
     int line;
@@ -125,7 +107,7 @@ LandingPaths::Landing LandingPaths::landing_of(const LandingRow& row) const {
     if (!(given.norm() < kFarAway_mm)) {
         fail("import.too_far", row.line, "the point lies beyond any part; give one near it");
     }
-    const FieldWalker walker = nearest(wall_, facets_, given);
+    const FieldWalker walker = wall_place(wall_, facets_, given);
     Landing landing{row.line, walker.position_mm(), (walker.position_mm() - given).norm(), {}, {}};
     if (landing.moved_mm > options_.farthest_mm) {
         fail("import.too_far", row.line,
@@ -233,14 +215,16 @@ void LandingPaths::check_normal(const Landing& landing, const Vector3d& normal) 
              "them out");
 }
 
-void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path) const {
+SurfacePath LandingPaths::path_of(const std::vector<Landing>& stretch, double start_mm) {
     const std::vector<Vector3d> tangents = tangents_of(stretch);
-    double s_mm = path.empty() ? 0.0 : path.back().s_mm;
+    SurfacePath path;
+    std::vector<std::size_t> rows{0};  // their stations
+    double s_mm = start_mm;
     const auto add = [&](const FieldWalker& place, const Vector3d& tangent) {
         path.push_back(place.station(tangent));
         path.back().s_mm = s_mm;
     };
-    const auto at = [&](const Vector3d& place_mm) { return nearest(wall_, facets_, place_mm); };
+    const auto at = [&](const Vector3d& place_mm) { return wall_place(wall_, facets_, place_mm); };
     const auto at_row = [&](std::size_t i) {
         FieldWalker best = at(stretch[i].position_mm);
         for (const std::size_t neighbour : {i - 1, i + 1}) {
@@ -267,28 +251,35 @@ void LandingPaths::append(const std::vector<Landing>& stretch, SurfacePath& path
     for (std::size_t i = 1; i < stretch.size(); ++i) {
         const Cubic cubic(stretch[i - 1].position_mm, tangents[i - 1], stretch[i].position_mm,
                           tangents[i]);
-        const double start_mm = s_mm;
+        const double row_mm = s_mm;
         const double whole_mm = cubic.length_mm(0.0, 1.0);
         const int parts = std::max(1, static_cast<int>(whole_mm / kLandingStation_mm));
         for (int k = 1; k < parts; ++k) {
             const double share = static_cast<double>(k) / parts;
-            s_mm = start_mm + cubic.length_mm(0.0, share);
+            s_mm = row_mm + cubic.length_mm(0.0, share);
             add(at(cubic.place(share)), cubic.rate(share));
         }
-        s_mm = start_mm + whole_mm;
+        s_mm = row_mm + whole_mm;
         if (i + 1 < stretch.size()) {
             add(at_row(i), tangents[i]);
             check_normal(stretch[i], path.back().normal);
         } else {
             add_end(stretch[i], stretch[i - 1], tangents[i]);
         }
+        rows.push_back(path.size() - 1);
     }
+    if (options_.smooth_mm > 0.0) {
+        const double off_mm = smooth_course(wall_, facets_, rows, options_.smooth_mm, path);
+        moves_.smoothed_mm = std::max(moves_.smoothed_mm, off_mm);
+    }
+    return path;
 }
 
 SurfacePath LandingPaths::through(const LandingCourse& course) {
     SurfacePath path;
     for (const std::vector<Landing>& stretch : stretches_of(course)) {
-        append(stretch, path);
+        const SurfacePath next = path_of(stretch, path.empty() ? 0.0 : path.back().s_mm);
+        path.insert(path.end(), next.begin(), next.end());
     }
     return path;
 }
@@ -304,7 +295,8 @@ TautString LandingPaths::string_over(const SurfacePath& path) const {
             const Cubic cubic(path[i - 1].position_mm, path[i - 1].tangent, path[i].position_mm,
                               path[i].tangent);
             const double share = static_cast<double>(k) / parts;
-            dense.push_back(nearest(wall_, facets_, cubic.place(share)).station(cubic.rate(share)));
+            dense.push_back(
+                wall_place(wall_, facets_, cubic.place(share)).station(cubic.rate(share)));
             dense.back().s_mm = before_mm + share * whole_mm;
             station.push_back(i);
         }

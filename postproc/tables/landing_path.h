@@ -18,6 +18,9 @@ struct LandingOptions {
     Eigen::Affine3d mandrel_from_table = Eigen::Affine3d::Identity();
     /// > 0; points further off the wall are refused: they belong to another part or frame.
     double farthest_mm = 1.0;
+    /// Each course is made as smooth as curves within this of its points are (smooth_course.h); 0:
+    /// it passes through them.
+    double smooth_mm = 0.0;
     std::string file;  ///< name for messages
 };
 
@@ -26,8 +29,9 @@ struct LandingMoves {
     std::size_t points = 0;    ///< rows that were looked at, repeated ones among them
     std::size_t repeated = 0;  ///< rows left out: the same place as the row before
     double worst_mm = 0.0;
-    double sum_mm = 0.0;  ///< over the points
-    int worst_line = 0;   ///< of the file
+    double sum_mm = 0.0;       ///< over the points
+    int worst_line = 0;        ///< of the file
+    double smoothed_mm = 0.0;  ///< how far the furthest point on the wall is from its course
 };
 
 /// Puts landing points on the curved patches of a wall and lays paths through them.
@@ -67,7 +71,7 @@ private:
     void check_turns(const std::vector<Landing>& stretch,
                      const std::vector<Eigen::Vector3d>& tangents) const;
     void check_normal(const Landing& landing, const Eigen::Vector3d& normal) const;
-    void append(const std::vector<Landing>& stretch, SurfacePath& path) const;
+    [[nodiscard]] SurfacePath path_of(const std::vector<Landing>& stretch, double start_mm);
     [[noreturn]] void fail(const char* code, int line, const std::string& words) const;
 
     const Surface& wall_;

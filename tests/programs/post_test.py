@@ -2,6 +2,7 @@
 import csv
 import json
 import math
+import random
 import sys
 
 import program
@@ -375,6 +376,46 @@ class Post(program.ProgramTest):
                           if 60 <= float(r["s_mm"]) <= 130}, {250.0})
         _, checks = wind({"rule": "adaptive"}, 0)
         self.assertGreaterEqual(checks["collision"]["min_clearance_mm"], 5.0)
+
+
+    def test_one_circuit_whose_points_scatter(self):
+        """A pattern given as one circuit of some forty points, each off by some hundredths of a mm: it slips, and smoothed it
+        does not."""
+        self.done("make", "vessel", "--radius", "60", "--cylinder-length", "150", "--dome-height", "40", "--opening-radius",
+                  "20", "-o", "vessel.stl")
+        job = self.write("polar.json", '{"tow": {"width": 6, "friction": 0.2}, "layers": [{"kind": "polar"}]}')
+        self.done("vessel.stl", "--machine", "six_axis.json", "--job", job, "-o", "planned")
+        courses = {}
+        with (self.folder / "planned/path.csv").open() as file:
+            for row in csv.DictReader(file):
+                courses.setdefault(row["course"], []).append(row)
+        place = lambda row: [float(row[f"{c}_mm"]) for c in "xyz"]
+        around = lambda row: math.degrees(math.atan2(float(row["y_mm"]), float(row["x_mm"])))
+        there, back, after = list(courses.values())[:3]
+        circuit = there + back[1:]
+        points = [place(circuit[0])]
+        direction = [float(circuit[0][f"t{c}"]) for c in "xyz"]
+        scatter = random.Random(1)
+        for row in circuit[1:-1]:
+            now = [float(row[f"t{c}"]) for c in "xyz"]
+            turned = math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(now, direction)))))
+            if math.dist(place(row), points[-1]) > 14.0 or turned > 0.3:
+                points.append([c + scatter.gauss(0.0, 0.05) for c in place(row)])
+                direction = now
+        points.append(place(circuit[-1]))
+        self.assertLess(len(points), 50)
+        self.write("circuit.csv", "x_mm,y_mm,z_mm\n" + "".join("%.4f,%.4f,%.4f\n" % tuple(p) for p in points))
+        post = ["post", "circuit.csv", "--mandrel", "vessel.stl", "--machine", "six_axis.json", "--job", job, "--frame", "mandrel",
+                "--circuits", len(list(courses)) // 2, "--turn", around(after[0]) - around(there[0]), "--json"]
+        rough = self.run_program(*post, "-o", "rough")
+        self.assertEqual(rough.returncode, 1)
+        self.assertFalse(json.loads(rough.stdout)["checks"]["slip"]["ok"])
+        smooth = json.loads(self.done(*post, "--smooth", "0.2", "-o", "smooth").stdout)
+        self.assertTrue(smooth["ok"])
+        self.assertLessEqual(smooth["import"]["smoothed_mm"], 0.202)
+        planned = json.loads((self.folder / "planned/report.json").read_text())
+        self.assertAlmostEqual(smooth["plan"]["fibre_length_mm"] / planned["plan"]["fibre_length_mm"], 1.0, 2)
+        self.assertLessEqual(smooth["checks"]["slip"]["worst"], 0.2)
 
 
 if __name__ == "__main__":
