@@ -39,6 +39,7 @@
 #include "report/folder/output_files.h"
 #include "report/folder/run_files.h"
 #include "report/inspection.h"
+#include "report/page/verified_run.h"
 #include "report/report.h"
 #include "report/report_carry.h"
 #include "report/report_checks.h"
@@ -257,20 +258,30 @@ int run_verify_command(const VerifyArguments& arguments, const Common& common) {
         folder.emplace(arguments.out);  // unusable: better known now
     }
     const double reading_s = seconds_since(begun);
-    const VerifyOutcome outcome = verify_text(std::move(setup), inputs, context);
+    VerifyOutcome outcome = verify_text(std::move(setup), inputs, context);
     const std::string report = verify_json(outcome, reading_s);
+    std::ostringstream said;
+    print_verify(said, outcome);
+    const std::vector<Check> checks = outcome.checks;
     if (folder) {
         folder->add("verify.json", report);
         folder->add("laid.csv", laid_csv(outcome.verification, outcome.blocks));
+        context.report_progress("write", 0.0);
+        const std::string page =
+            run_page(run_of(std::move(outcome), inputs.program.text, common.seed));
+        if (!page.empty()) {
+            folder->add("verify.html", page);
+            said << "page:    " << (fs::path(arguments.out) / "verify.html").string() << '\n';
+        }
         folder->publish();
     }
     progress.clear();
     if (common.json) {
         std::cout << report;
     } else if (!common.quiet) {
-        print_verify(std::cout, outcome);
+        std::cout << said.str();
     }
-    return exit_code(arguments.program, outcome.checks, common);
+    return exit_code(arguments.program, checks, common);
 }
 
 int run_resume(const ResumeArguments& arguments, const Common& common) {
@@ -290,6 +301,11 @@ int run_resume(const ResumeArguments& arguments, const Common& common) {
     fs::path file = arguments.out.empty()
                         ? beside.parent_path() / ("resume_" + beside.filename().string())
                         : fs::path(arguments.out);
+    std::error_code absent;
+    if (fs::equivalent(file, beside, absent)) {
+        throw InputError("output.holds_input", file.string(),
+                         "this is the program that is resumed; give another name");
+    }
     if (rest.passed() || common.force) {
         write_file(file, rest.text);
     } else {

@@ -225,7 +225,8 @@ void add_verify(CLI::App& app, VerifyArguments& options) {
            "folder with path.csv and motion.csv, to compare with at the end; for program-2.ngc "
            "path-2.csv and motion-2.csv")
         ->type_name("DIR");
-    app.add_option("-o,--out", options.out, "folder for verify.json and laid.csv")
+    app.add_option("-o,--out", options.out,
+                   "folder for verify.json, laid.csv and verify.html, the page")
         ->type_name("DIR");
 }
 

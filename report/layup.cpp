@@ -29,7 +29,9 @@ Layup::Layup(const Run& run)
         const Surface& surface = layer.setup.mandrel.surface;
         OfLayer& of = layers_.emplace_back(
             OfLayer{&surface,
-                    plies_of(surface, layer.import ? layer.setup.wall->surface() : surface,
+                    plies_of(surface,
+                             layer.plan.planner == Planner::Imported ? layer.setup.wall->surface()
+                                                                     : surface,
                              layer.plan.pieces,
                              {.tow_width_mm = layer.setup.job.tow.width_mm,
                               .seed = run.seed,

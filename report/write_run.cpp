@@ -62,6 +62,15 @@ bool has_page(const Run& run) {
     return !(run.planned() ? report_page_template() : part_page_template()).empty();
 }
 
+std::string run_page(const Run& run) {
+    if (!has_page(run)) {
+        return {};
+    }
+    return run.planned() ? packed_page(report_page_template(),
+                                       page_data(run, Layup(run), report_of(run, run.timing_s)))
+                         : page_of_part(run);
+}
+
 std::string write_run(const Run& run, OutputFolder& folder) {
     const auto begun = std::chrono::steady_clock::now();
     folder.withdraw_earlier_run();

@@ -12,6 +12,9 @@ namespace meshwind {
 /// Whether report.html is written: not where the program was built without its pages.
 [[nodiscard]] bool has_page(const Run& run);
 
+/// That page; nothing where the program was built without it.
+[[nodiscard]] std::string run_page(const Run& run);
+
 /// Writes a run, whole or not at all: path.csv, motion.csv, report.json, report.html, lay-up and
 /// fibre (layup_files.h), and the programs if the run is usable. What could not be planned has
 /// report.json and a page of the part that says why (inspection.h). Each further layer and fibre

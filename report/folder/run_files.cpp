@@ -57,7 +57,8 @@ std::vector<std::string> files_of_carry(const std::filesystem::path& report) {
 }  // namespace
 
 FileRole role_of(const fs::path& name) {
-    if (name == "report.json" || name == "report.html" || name == "verify.json") {
+    if (name == "report.json" || name == "report.html" || name == "verify.json" ||
+        name == "verify.html") {
         return FileRole::Report;
     }
     return has_program_extension(name) ? FileRole::Program : FileRole::Table;
@@ -86,6 +87,7 @@ std::vector<std::string> files_of_earlier_run(const fs::path& folder) {
     const std::vector<std::string> carried = files_of_carry(folder / "report.json");
     std::for_each(carried.begin(), carried.end(), add_if_there);
     add_if_there("verify.json");
+    add_if_there("verify.html");
     add_if_there("laid.csv");
     fs::directory_iterator entries(folder, error);
     if (error) {

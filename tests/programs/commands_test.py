@@ -314,6 +314,9 @@ class Commands(program.ProgramTest):
             self.assertEqual(result.returncode, 2)
             self.assertEqual(json.loads(result.stdout)["error"]["code"], code)
         self.assertFalse((self.folder / "none.ngc").exists())
+        result = self.run_program("resume", "out/program.ngc", *with_mandrel, "--block", "150", "-o", "out/../out/program.ngc")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("give another name", result.stderr)
 
     def test_verify_of_a_program_from_elsewhere(self):
         """The laid length is that of the helix, pi / 2 * 50 mm / sin 45 deg."""
@@ -331,6 +334,7 @@ class Commands(program.ProgramTest):
         share = report["verification"]["fibre_length_mm"] * width / wall
         self.assertAlmostEqual(report["coverage"]["fraction"], share, delta=0.03 * share)
         self.assertEqual(report["coverage"]["max_layers"], 1)
+        self.assertIn("</html>", (self.folder / "out/verify.html").read_text())
         with open(self.folder / "out/laid.csv", newline="") as table:
             rows = list(csv.DictReader(table))
         for row in rows:

@@ -1,9 +1,12 @@
 """Programs as other makers write them, wound again."""
+import csv
 import json
+import math
 import re
 import sys
 
 import program
+from page_data import Page
 
 
 class Foreign(program.ProgramTest):
@@ -48,7 +51,7 @@ class Foreign(program.ProgramTest):
         # The moves to the start are the first ones of ours: rotary axes, then the linear one.
         text.insert(6, "M0")
         self.write("foreign.gcode", "\n".join(text) + "\n")
-        found = self.verify("foreign.gcode", "marlin.json", "--tie-on", ",".join(self.tie_on))
+        found = self.verify("foreign.gcode", "marlin.json", "--tie-on", ",".join(self.tie_on), "-o", "seen")
         laid = found["verification"]
         self.assertAlmostEqual(laid["fibre_length_mm"], self.ours["verification"]["fibre_length_mm"], 1)
         head = (self.folder / "out/program.gcode").read_text()
@@ -60,6 +63,24 @@ class Foreign(program.ProgramTest):
         for words in ("no G1 is in the program", "G92 says", "end with the file"):
             self.assertIn(words, remarks)
         self.assertEqual(self.ours["remarks"], [])
+        self.check_page(Page((self.folder / "seen/verify.html").read_text()), found, text)
+
+    def check_page(self, page, found, text):
+        """The page of the laid fibre has the table's places, the program's lines and its checks."""
+        self.assertEqual(page.header["report"]["checks"].keys(), found["checks"].keys())
+        self.assertEqual(len(page.header["layers"][0]["fibres"][0]["pieces"]), 1)  # there are no course marks
+        with (self.folder / "seen/laid.csv").open() as file:
+            laid = list(csv.DictReader(file))
+        at = "layer1/fibre1/"
+        self.assertEqual(len(page[at + "position_mm"]), len(laid))
+        for shown, row in zip(page[at + "position_mm"], laid):
+            self.assertLess(math.dist(shown, [float(row[c + "_mm"]) for c in "xyz"]), 1e-3)
+        self.assertEqual(len(page[at + "time_s"]), found["verification"]["blocks"] + 1)
+        lines = page[at + "line"]
+        self.assertTrue(all(text[line - 1].startswith("G0 ") for line in lines[1:]))
+        stations = page[at + "station"]
+        self.assertEqual(stations, sorted(stations))
+        self.assertEqual(stations[-1], len(laid) - 1)
 
     def test_tie_on_in_the_frame_of_the_file(self):
         """The mandrel's file with X along its axis: the place as its CAD program says it."""

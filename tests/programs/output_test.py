@@ -69,7 +69,7 @@ class StalePrograms(OutputTest):
         self.out.mkdir(exist_ok=True)
         stale = ["program" + suffix + extension for extension in set(EXTENSIONS.values())
                  for suffix in ("", "-2", "-layer-2", "-layer-12-3")]
-        stale += ["mine.src", "mine_back.src", "rings.csv", "fibre.csv", "verify.json", "laid.csv"]
+        stale += ["mine.src", "mine_back.src", "rings.csv", "fibre.csv", "verify.json", "verify.html", "laid.csv"]
         for name in stale:
             (self.out / name).write_text("stale")
         (self.out / "report.json").write_text(

@@ -1,0 +1,16 @@
+/// What a program lays, as a run that the page can show.
+#pragma once
+
+#include <string>
+
+#include "pipeline/verify_text.h"
+#include "pipeline/wind.h"
+
+namespace meshwind {
+
+/// A run of one layer, whose pieces are what the program lays between its course marks, all of it
+/// without any. Where it lays nothing the layer has no plan, and the reason.
+/// \param text of the program
+[[nodiscard]] Run run_of(VerifyOutcome outcome, std::string text, std::uint64_t seed);
+
+}  // namespace meshwind
