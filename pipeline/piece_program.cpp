@@ -447,7 +447,7 @@ private:
     void make_blocks() {
         make_blocks(1.0);
         const double whole_s = found_.duration_s;
-        if (found_.corner_s > kMostCorners * whole_s) {
+        if (setup_.dialect->has_junction_deviation() && found_.corner_s > kMostCorners * whole_s) {
             make_blocks(kFinerForCorners);
             if (found_.duration_s > kWorthwhile * whole_s) {
                 make_blocks(1.0);

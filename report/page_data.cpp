@@ -310,10 +310,11 @@ private:
         std::vector<Vector3d> eye;
         std::vector<std::int32_t> station;
         std::vector<std::uint32_t> line;
+        const std::vector<double> times_s = first_.dialect->run_times_s(first_.machine, list);
         double now_s = 0.0;
         for (std::size_t b = 0; b < list.blocks.size(); ++b) {
             const Block& block = list.blocks[b];
-            now_s += block.duration_s;
+            now_s += times_s[b];
             if (b % block_every_ != 0 && b + 1 < list.blocks.size()) {
                 continue;
             }

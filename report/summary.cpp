@@ -265,7 +265,7 @@ void print_cost(std::ostream& out, const Run& run) {
     if (blocks > 0) {
         out << "time: " << fixed(all.time_s / kSPerMin, 1) << " min ("
             << fixed(least_s / kSPerMin, 1) << " at the fibre's full speed"
-            << (corner_s > 0.0 ? ", " + fixed(corner_s / kSPerMin, 1) + " for corners" : "")
+            << (corner_s > 0.0 ? ", " + fixed(corner_s / kSPerMin, 1) + " where blocks meet" : "")
             << "), " << counted(blocks, "block")
             << (turned_over > 0 ? "; the head turns over " + counted(turned_over, "time") +
                                       ", and the band with it"

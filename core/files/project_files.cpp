@@ -48,7 +48,8 @@ fs::path find_input(const std::string& name) {
             return candidate;
         }
     }
-    return name;
+    const fs::path machine = project_home() / "machines" / (name + ".json");
+    return fs::is_regular_file(machine, ignored) ? machine : fs::path(name);
 }
 
 std::vector<std::string> shipped_machines() {

@@ -14,7 +14,7 @@ namespace meshwind {
 
 /// The file a user means by `name`: that path when it exists; else, for a bare name such as
 /// "tee.stl", the file of this name in data/meshes, data, data/materials or machines of
-/// `project_home()`; else `name` as given.
+/// `project_home()`, or the machine of this name there, "six_axis"; else `name` as given.
 [[nodiscard]] std::filesystem::path find_input(const std::string& name);
 
 /// Names of the machine files that come with the program, in their order.

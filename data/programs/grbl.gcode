@@ -7,7 +7,7 @@
 (111111)
 (fibre: 12.345 m)
 (time: 40.3 s)
-(of these for corners: 0.4 s, at $11=0.01)
+(of these where blocks meet: 0.4 s, at $11=0.01)
 (blocks: 99)
 (tie on at X70.000 Y0.000 Z-1.500 on the mandrel)
 (axis C is off by up to 0.0009 at the controller, which adds in 32-bit floats)

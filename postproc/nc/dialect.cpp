@@ -1,12 +1,27 @@
 #include "postproc/nc/dialect.h"
 
 #include <memory>
+#include <numeric>
 
 #include "core/error.h"
 #include "postproc/nc/nc_dialects.h"
 #include "postproc/nc/pulses.h"
 
 namespace meshwind {
+
+std::vector<double> Dialect::run_times_s(const Machine& /*machine*/, const BlockList& list) const {
+    std::vector<double> times_s;
+    for (const Block& block : list.blocks) {
+        times_s.push_back(block.duration_s);
+    }
+    return times_s;
+}
+
+double Dialect::run_time_s(const Machine& machine, const BlockList& list) const {
+    const std::vector<double> times_s = run_times_s(machine, list);
+    return std::accumulate(times_s.begin(), times_s.end(), 0.0);
+}
+
 void Dialect::check(const Machine& machine) const {
     if (machine.controller.junction_deviation_mm && !has_junction_deviation()) {
         throw InputError(

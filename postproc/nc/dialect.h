@@ -52,11 +52,12 @@ public:
     }
     /// Whether it slows down at corners by a junction deviation.
     [[nodiscard]] virtual bool has_junction_deviation() const { return false; }
-    /// How long the controller takes for the blocks: their durations, and what it adds at corners.
-    /// \pre list has the axes of the machine
-    [[nodiscard]] virtual double run_time_s(const Machine&, const BlockList& list) const {
-        return list.duration_s();
-    }
+    /// How long the controller takes for each block: its duration, and what is added where it meets
+    /// the next. \pre list has the axes of the machine
+    [[nodiscard]] virtual std::vector<double> run_times_s(const Machine& machine,
+                                                          const BlockList& list) const;
+    /// The sum.
+    [[nodiscard]] double run_time_s(const Machine& machine, const BlockList& list) const;
     /// Blocks last whole ticks of this length; 0: any time.
     [[nodiscard]] virtual double tick_s() const { return 0.0; }
 

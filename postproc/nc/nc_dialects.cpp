@@ -53,8 +53,8 @@ PathMode NcDialect::path_mode(const Machine& machine) const {
     return path_mode_of(flavour_, machine);
 }
 
-double NcDialect::run_time_s(const Machine& machine, const BlockList& list) const {
-    return nc_run_time_s(flavour_, machine, list);
+std::vector<double> NcDialect::run_times_s(const Machine& machine, const BlockList& list) const {
+    return nc_run_times_s(flavour_, machine, list);
 }
 
 }  // namespace meshwind

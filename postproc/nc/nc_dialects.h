@@ -30,7 +30,8 @@ public:
     [[nodiscard]] bool has_junction_deviation() const override {
         return flavour_.junction_deviation_mm > 0.0;
     }
-    [[nodiscard]] double run_time_s(const Machine& machine, const BlockList& list) const override;
+    [[nodiscard]] std::vector<double> run_times_s(const Machine& machine,
+                                                  const BlockList& list) const override;
     [[nodiscard]] BlockList prepare(BlockList list) const override;
     [[nodiscard]] FoldedProgram fold(BlockList list) const override;
     using Dialect::write;

@@ -77,6 +77,7 @@ const NcFlavour& linuxcnc_flavour() {
         .winding_modes = "G91 ",
         .feed_rule = FeedRule::Nist,
         .no_per_minute = "whose F leaves the rotary axes out",
+        .blends_blocks = true,
         .slow_linear = kLinuxCncSlow,
         .end = "M2\n",
         .repeats = NcRepeats::Subprograms,

@@ -79,6 +79,7 @@ struct NcFlavour {
     /// Of a controller that slows down at corners by it (junction_time.h), where nothing is said;
     /// 0: it keeps the durations.
     double junction_deviation_mm = 0.0;
+    bool blends_blocks = false;  ///< it runs each from rest to rest and blends them (blend_time.h)
     SlowLinear slow_linear{};
 
     // End.

@@ -2,8 +2,10 @@
 
 #include "core/text/text_number.h"
 #include "core/units.h"
+#include "postproc/motion/blend_time.h"
 #include "postproc/motion/junction_time.h"
 #include "postproc/nc/float32_steps.h"
+#include "postproc/nc/nc_reader.h"
 #include "postproc/nc/nc_writer.h"
 
 namespace meshwind {
@@ -40,6 +42,11 @@ std::string short_number(double value) {
     return digits;
 }
 
+double run_time_s(const NcFlavour& flavour, const Machine& machine, const BlockList& list) {
+    const std::vector<double> times_s = nc_run_times_s(flavour, machine, list);
+    return std::accumulate(times_s.begin(), times_s.end(), 0.0);
+}
+
 double deviation_mm(const NcFlavour& flavour, const Machine& machine) {
     return machine.controller.junction_deviation_mm.value_or(flavour.junction_deviation_mm);
 }
@@ -69,13 +76,21 @@ void append_float32(std::vector<std::string>& to, const Machine& machine, const 
 
 }  // namespace
 
-double nc_run_time_s(const NcFlavour& flavour, const Machine& machine, const BlockList& list) {
-    if (!(flavour.junction_deviation_mm > 0.0)) {
-        return list.duration_s();
+std::vector<double> nc_run_times_s(const NcFlavour& flavour, const Machine& machine,
+                                   const BlockList& list) {
+    if (flavour.blends_blocks) {
+        const PathMode mode = path_mode_of(flavour, machine);
+        return blend_times_s(
+            machine, list, {.stops = mode.words.rfind("G61", 0) == 0, .corner_mm = mode.corner_mm});
     }
-    const std::vector<double> times_s =
-        junction_times_s(machine, list, {.deviation_mm = deviation_mm(flavour, machine)});
-    return std::accumulate(times_s.begin(), times_s.end(), 0.0);
+    if (flavour.junction_deviation_mm > 0.0) {
+        return junction_times_s(machine, list, {.deviation_mm = deviation_mm(flavour, machine)});
+    }
+    std::vector<double> times_s;
+    for (const Block& block : list.blocks) {
+        times_s.push_back(block.duration_s);
+    }
+    return times_s;
 }
 
 std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& machine,
@@ -87,10 +102,13 @@ std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& 
     append_if(lines, std::string(kJobDigest), header.job_digest);
     append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
-    const double time_s = nc_run_time_s(flavour, machine, list);
+    const double time_s = run_time_s(flavour, machine, list);
     lines.push_back("time: " + fixed(time_s, 1) + " s");
-    if (flavour.junction_deviation_mm > 0.0) {
-        lines.push_back("of these for corners: " + fixed(time_s - list.duration_s(), 1) +
+    if (flavour.blends_blocks) {
+        lines.push_back("of these where blocks meet: " + fixed(time_s - list.duration_s(), 1) +
+                        " s");
+    } else if (flavour.junction_deviation_mm > 0.0) {
+        lines.push_back("of these where blocks meet: " + fixed(time_s - list.duration_s(), 1) +
                         " s, at $11=" + short_number(deviation_mm(flavour, machine)));
     }
     lines.push_back("blocks: " + std::to_string(list.moves()));
@@ -120,7 +138,7 @@ LineValues line_values(const NcFlavour& flavour, const Machine& machine, const B
     return {.program = std::to_string(machine.controller.program_number.value_or(1)),
             .mandrel = plain(header.mandrel),
             .machine = plain(machine.name),
-            .time_s = fixed(nc_run_time_s(flavour, machine, list), 1),
+            .time_s = fixed(run_time_s(flavour, machine, list), 1),
             .fibre_m = fixed(header.fibre_length_mm / kMmPerM, 3),
             .blocks = std::to_string(list.moves()),
             .version = plain(header.version)};

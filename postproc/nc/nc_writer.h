@@ -20,9 +20,9 @@ namespace meshwind {
                                    const BlockList& list, const ProgramLayout& layout,
                                    const ProgramHeader& header);
 
-/// Dialect::run_time_s of the flavour.
-[[nodiscard]] double nc_run_time_s(const NcFlavour& flavour, const Machine& machine,
-                                   const BlockList& list);
+/// Dialect::run_times_s of the flavour.
+[[nodiscard]] std::vector<double> nc_run_times_s(const NcFlavour& flavour, const Machine& machine,
+                                                 const BlockList& list);
 
 /// The head's comments, one entry each and of any length: who made the program, of what, how long
 /// it takes, where the fibre is tied on, what float sums ask for, notes.

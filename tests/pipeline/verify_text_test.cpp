@@ -92,8 +92,8 @@ TEST(VerifyText, TheProgramAsWrittenPassesAndIsThePlan) {
     EXPECT_EQ(outcome.blocks.nano, w.made.blocks.nano);
     EXPECT_EQ(outcome.verification.first_wrong_block, std::nullopt);
     // F has six digits.
-    EXPECT_NEAR(outcome.verification.duration_s, w.made.blocks.duration_s(),
-                1e-5 * w.made.blocks.duration_s());
+    EXPECT_NEAR(outcome.verification.duration_s, w.made.verification.duration_s,
+                1e-5 * w.made.verification.duration_s);
     // The place of the tie-on has three decimals, and the laid fibre forgets where it began.
     EXPECT_NEAR(outcome.verification.fibre_length_mm, w.made.verification.fibre_length_mm, 0.01);
     // Bands of the laid fibre run on over the rims, as those of the plan do.

@@ -55,7 +55,7 @@ class Foreign(program.ProgramTest):
         laid = found["verification"]
         self.assertAlmostEqual(laid["fibre_length_mm"], self.ours["verification"]["fibre_length_mm"], 1)
         head = (self.folder / "out/program.gcode").read_text()
-        time_s, corners_s = (float(re.search(words + r": (\S+) s", head).group(1)) for words in ("time", "corners"))
+        time_s, corners_s = (float(re.search(words + r": (\S+) s", head).group(1)) for words in ("time", "blocks meet"))
         self.assertAlmostEqual(laid["duration_s"], time_s - corners_s, delta=0.11)  # Marlin's are not known
         for figure, value in self.ours["coverage"].items():
             self.assertAlmostEqual(found["coverage"][figure], value, 3)

@@ -40,7 +40,7 @@ class Words(program.ProgramTest):
                 (("make", "tee", "--run-radus", "5", *out), "make.unknown_parameter",
                  ["meshwind make tee --help"]),
                 (("inspect", "tee.stl", "--units", "inch"), "cli.usage", ['"in"', "inspect --help"]),
-                (("tee.stl", "--machine", "six_axis"), "io.cannot_read",
+                (("tee.stl", "--machine", "sixaxis"), "io.cannot_read",
                  ["six_axis.json", "hobby_grbl.json"]),
                 (("tee.stl", "--machine", "six_axes.json"), "io.cannot_read", ['"six_axis.json"']),
                 (("none.stl",), "mesh.missing_file", ["none.stl"])):

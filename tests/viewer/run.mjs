@@ -19,6 +19,9 @@ header.layers.forEach((layer, l) => {
     layer.fibres.forEach((fibre, f) => {
         const suffix = `${l ? `-layer-${l + 1}` : ''}${f ? `-${f + 1}` : ''}`;
         const time = arrayOf(payload, `${fibre.prefix}time_s`);
+        const rows = readCsv(readFileSync(join(dirname(file), `motion${suffix}.csv`), 'utf8'));
+        // The page's clock is the controller's, the table's that of the program's words.
+        if (rows.length === time.length) rows.forEach((row, k) => { row.time_s = time[k]; });
         const start = programs.length ? programs[programs.length - 1].end : 0;
         programs.push({
             fibre,
@@ -26,7 +29,7 @@ header.layers.forEach((layer, l) => {
             end: start + time[time.length - 1],
             time,
             line: arrayOf(payload, `${fibre.prefix}line`),
-            rows: readCsv(readFileSync(join(dirname(file), `motion${suffix}.csv`), 'utf8')),
+            rows,
         });
     });
 });

@@ -39,6 +39,7 @@ TEST_F(ProjectFiles, BareNamesAreLookedUp) {
     write_file(home_ / "machines" / "a machine.json", "");
     EXPECT_EQ(find_input("a part.stl"), home_ / "data" / "meshes" / "a part.stl");
     EXPECT_EQ(find_input("a machine.json"), home_ / "machines" / "a machine.json");
+    EXPECT_EQ(find_input("a machine"), home_ / "machines" / "a machine.json");
 }
 
 TEST_F(ProjectFiles, OtherNamesStayAsTheyAre) {
