@@ -304,8 +304,10 @@ private:
         return true;
     }
 
-    // All but calls of subprograms and their ends.
-    [[nodiscard]] static bool is_idle_m(int tenths) { return tenths < 960 || tenths > 999; }
+    // All but calls of subprograms and their ends, and M47, which starts again.
+    [[nodiscard]] static bool is_idle_m(int tenths) {
+        return tenths != 470 && (tenths < 960 || tenths > 999);
+    }
 
     void m_code(const NcWord& word) {
         const int number = line_.code(word);
@@ -410,7 +412,7 @@ private:
         }
         exact_[axis] = sum;
         if (is_foreign()) {
-            sum = nearest_step(axis, sum);
+            sum = nearest_step(axis, sum, word);
         }
         if (const std::string words =
                 beyond_one_block(list_.axes[axis], placed_[axis] ? position_[axis] : sum, sum);
@@ -433,7 +435,8 @@ private:
         return value;
     }
 
-    [[nodiscard]] std::int64_t nearest_step(std::size_t axis, std::int64_t exact) {
+    [[nodiscard]] std::int64_t nearest_step(std::size_t axis, std::int64_t exact,
+                                            const NcWord& word) {
         const std::int64_t step = list_.axes[axis].resolution_nano;
         const std::int64_t left = exact % step;
         if (left == 0) {
@@ -442,7 +445,11 @@ private:
         const std::int64_t off =
             std::abs(left) * 2 <= step ? -left : (left < 0 ? -step : step) - left;
         notes_.rounded(list_.axes[axis], off);
-        return exact + off;
+        std::int64_t rounded = 0;
+        if (__builtin_add_overflow(exact, off, &rounded)) {
+            line_.bad_number(word);
+        }
+        return rounded;
     }
 
     // G92: the axes stand where they are, and their words count from elsewhere.

@@ -40,7 +40,8 @@ Piece piece_of(const Verification& found, const Stretch& stretch) {
         const LaidAt& at = found.laid.at[i];
         piece.string.gap_mm.push_back(at.lifted ? at.gap_mm : 0.0);
         piece.string.slope.push_back(0.0);
-        piece.slip.push_back(std::isfinite(found.slip[i]) ? found.slip[i] : 0.0);
+        const bool known = i < found.slip.size() && std::isfinite(found.slip[i]);
+        piece.slip.push_back(known ? found.slip[i] : 0.0);
     }
     const auto worst = std::max_element(piece.string.gap_mm.begin(), piece.string.gap_mm.end());
     piece.string.worst_gap_mm = *worst;
@@ -95,7 +96,7 @@ Run run_of(VerifyOutcome outcome, std::string text, std::uint64_t seed) {
     layer.setup = std::move(outcome.setup);
     const Verification& found = outcome.verification;
     const std::vector<Stretch> stretches = stretches_of(outcome.blocks, found.laid);
-    if (stretches.empty()) {
+    if (stretches.empty() || found.laid.samples.empty()) {
         layer.plan.failure = "the program lays no fibre on the part";
         return run;
     }
