@@ -56,6 +56,12 @@ std::string page_of_part(const Run& run) {
     return part_page(found);
 }
 
+// \param layup of what was planned
+std::string page_of(const Run& run, const std::optional<Layup>& layup, nlohmann::json report) {
+    return layup ? packed_page(report_page_template(), page_data(run, *layup, std::move(report)))
+                 : page_of_part(run);
+}
+
 }  // namespace
 
 bool has_page(const Run& run) {
@@ -66,9 +72,11 @@ std::string run_page(const Run& run) {
     if (!has_page(run)) {
         return {};
     }
-    return run.planned() ? packed_page(report_page_template(),
-                                       page_data(run, Layup(run), report_of(run, run.timing_s)))
-                         : page_of_part(run);
+    std::optional<Layup> layup;
+    if (run.planned()) {
+        layup.emplace(run);
+    }
+    return page_of(run, layup, report_of(run, run.timing_s));
 }
 
 std::string write_run(const Run& run, OutputFolder& folder) {
@@ -92,9 +100,7 @@ std::string write_run(const Run& run, OutputFolder& folder) {
     std::string text = json_text(report);
     folder.add("report.json", text);
     if (has_page(run)) {
-        folder.add("report.html", layup ? packed_page(report_page_template(),
-                                                      page_data(run, *layup, std::move(report)))
-                                        : page_of_part(run));
+        folder.add("report.html", page_of(run, layup, std::move(report)));
     }
     folder.publish();
     return text;

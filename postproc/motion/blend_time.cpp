@@ -20,8 +20,8 @@ constexpr double kEnd = 1e-9;
 // Of the acceleration, for each of two blocks that run at once.
 constexpr double kShareInBlends = 0.5;
 
-// Of a block that takes long several cycles are run as one.
-constexpr double kCyclesOfBlock = 300.0;
+// Where a block speeds up for long several cycles are run as one: so many of a ramp are enough.
+constexpr double kCyclesOfRamp = 300.0;
 
 // Where corners turn back on themselves a blend has no side to leave them on.
 constexpr double kLeastCosine = 1e-3;
@@ -142,7 +142,8 @@ std::vector<double> blended_s(const std::vector<Segment>& segments, const BlendP
         Running next;
         double begun_at = 0.0;  // speed when the blend begins; 0: it has not
         double& time_s = times_s.emplace_back(0.0);
-        const double cycle_s = std::max(planner.cycle_s, stopped_s(here) / kCyclesOfBlock);
+        const double ramp_s = here.top_speed() / here.acceleration;
+        const double cycle_s = std::max(planner.cycle_s, ramp_s / kCyclesOfRamp);
         while (here.length - state.way > kEnd * here.length) {
             const double cycles = cruising_cycles(here, cycle_s, state);
             state.way += cycles * state.speed * cycle_s;

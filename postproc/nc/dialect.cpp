@@ -9,14 +9,6 @@
 
 namespace meshwind {
 
-std::vector<double> Dialect::run_times_s(const Machine& /*machine*/, const BlockList& list) const {
-    std::vector<double> times_s;
-    for (const Block& block : list.blocks) {
-        times_s.push_back(block.duration_s);
-    }
-    return times_s;
-}
-
 double Dialect::run_time_s(const Machine& machine, const BlockList& list) const {
     const std::vector<double> times_s = run_times_s(machine, list);
     return std::accumulate(times_s.begin(), times_s.end(), 0.0);

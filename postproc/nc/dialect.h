@@ -55,7 +55,7 @@ public:
     /// How long the controller takes for each block: its duration, and what is added where it meets
     /// the next. \pre list has the axes of the machine
     [[nodiscard]] virtual std::vector<double> run_times_s(const Machine& machine,
-                                                          const BlockList& list) const;
+                                                          const BlockList& list) const = 0;
     /// The sum.
     [[nodiscard]] double run_time_s(const Machine& machine, const BlockList& list) const;
     /// Blocks last whole ticks of this length; 0: any time.

@@ -9,7 +9,7 @@
 namespace meshwind {
 namespace {
 
-// A program says in so many lines by whom it is: behind "%" and the title.
+// A program says in so many lines by whom it is: behind "%" and the title at most.
 constexpr std::size_t kLinesOfMaker = 3;
 
 constexpr std::string_view kMadeBy = "meshwind ";
@@ -29,7 +29,8 @@ bool has_word(std::string_view code, char letter, char digit) {
     return false;
 }
 
-// Small letters without blanks and comments, closed or not.
+// Small letters without blanks and comments. NcLine refuses comments that are not closed, and lines
+// are looked at here that are never run.
 std::string code_alone(NcComments comments, std::string_view text) {
     std::string code;
     bool inside = false;

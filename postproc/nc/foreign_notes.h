@@ -30,7 +30,7 @@ struct ProgramOrigin {
 /// Counts what a program leaves open or says beside its motion.
 class ForeignNotes {
 public:
-    /// Of one kind, with the line where it is first met; `what` ends the sentence in words().
+    /// How often something is met, and in which line first.
     struct Seen {
         std::size_t times = 0;
         std::int32_t line = 0;

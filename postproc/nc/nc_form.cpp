@@ -74,16 +74,18 @@ void check_form(const NcFlavour& flavour, bool foreign, std::string_view text, c
     for (const NcWord& word : line.words) {
         const auto digits = std::count_if(word.number.begin(), word.number.end(),
                                           [](char c) { return c >= '0' && c <= '9'; });
-        const std::string shown = std::string("\"") + word.letter + std::string(word.number) + '"';
+        const auto shown = [&word] {
+            return std::string("\"") + word.letter + std::string(word.number) + '"';
+        };
         if (flavour.most_digits > 0 && digits > static_cast<long>(flavour.most_digits)) {
-            line.fail("nc.digits", shown + " has more than the " +
+            line.fail("nc.digits", shown() + " has more than the " +
                                        std::to_string(flavour.most_digits) +
                                        " digits that the controller reads");
         }
         const bool value = word.letter == 'F' || axes.find(word.letter) != std::string_view::npos;
         if (flavour.needs_point && value && word.number.find('.') == std::string_view::npos) {
             line.fail("nc.number",
-                      shown + " has no point and may mean thousandths; write it with one");
+                      shown() + " has no point and may mean thousandths; write it with one");
         }
     }
 }

@@ -42,11 +42,6 @@ std::string short_number(double value) {
     return digits;
 }
 
-double run_time_s(const NcFlavour& flavour, const Machine& machine, const BlockList& list) {
-    const std::vector<double> times_s = nc_run_times_s(flavour, machine, list);
-    return std::accumulate(times_s.begin(), times_s.end(), 0.0);
-}
-
 double deviation_mm(const NcFlavour& flavour, const Machine& machine) {
     return machine.controller.junction_deviation_mm.value_or(flavour.junction_deviation_mm);
 }
@@ -93,8 +88,14 @@ std::vector<double> nc_run_times_s(const NcFlavour& flavour, const Machine& mach
     return times_s;
 }
 
+double nc_run_time_s(const NcFlavour& flavour, const Machine& machine, const BlockList& list) {
+    const std::vector<double> times_s = nc_run_times_s(flavour, machine, list);
+    return std::accumulate(times_s.begin(), times_s.end(), 0.0);
+}
+
 std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& machine,
-                                       const BlockList& list, const ProgramHeader& header) {
+                                       const BlockList& list, const ProgramHeader& header,
+                                       double time_s) {
     std::vector<std::string> lines{"meshwind " + header.version};
     append_if(lines, "mandrel: ", header.mandrel);
     append_if(lines, "mandrel digest: ", header.mandrel_digest);
@@ -102,14 +103,12 @@ std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& 
     append_if(lines, std::string(kJobDigest), header.job_digest);
     append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
-    const double time_s = run_time_s(flavour, machine, list);
     lines.push_back("time: " + fixed(time_s, 1) + " s");
-    if (flavour.blends_blocks) {
-        lines.push_back("of these where blocks meet: " + fixed(time_s - list.duration_s(), 1) +
-                        " s");
-    } else if (flavour.junction_deviation_mm > 0.0) {
-        lines.push_back("of these where blocks meet: " + fixed(time_s - list.duration_s(), 1) +
-                        " s, at $11=" + short_number(deviation_mm(flavour, machine)));
+    const bool plans_corners = flavour.junction_deviation_mm > 0.0;
+    if (flavour.blends_blocks || plans_corners) {
+        lines.push_back(
+            "of these where blocks meet: " + fixed(time_s - list.duration_s(), 1) + " s" +
+            (plans_corners ? ", at $11=" + short_number(deviation_mm(flavour, machine)) : ""));
     }
     lines.push_back("blocks: " + std::to_string(list.moves()));
     if (header.tie_on_mm) {
@@ -129,7 +128,7 @@ std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& 
 }
 
 LineValues line_values(const NcFlavour& flavour, const Machine& machine, const BlockList& list,
-                       const ProgramHeader& header) {
+                       const ProgramHeader& header, double time_s) {
     const auto plain = [&](const std::string& words) {
         std::string line = words.substr(0, flavour.line_length);
         make_plain(flavour, line);
@@ -138,7 +137,7 @@ LineValues line_values(const NcFlavour& flavour, const Machine& machine, const B
     return {.program = std::to_string(machine.controller.program_number.value_or(1)),
             .mandrel = plain(header.mandrel),
             .machine = plain(machine.name),
-            .time_s = fixed(run_time_s(flavour, machine, list), 1),
+            .time_s = fixed(time_s, 1),
             .fibre_m = fixed(header.fibre_length_mm / kMmPerM, 3),
             .blocks = std::to_string(list.moves()),
             .version = plain(header.version)};

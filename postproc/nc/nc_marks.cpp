@@ -37,7 +37,7 @@ void NcMarks::read(const NcLine& line, BlockList& list) {
     for (std::string_view comment : line.comments) {
         tie_on(line, comment, list);
         pins(line, comment, list);
-        head(line, comment, list);
+        head(comment, list);
         constexpr std::string_view kCourse = "course ";
         if (comment.substr(0, kCourse.size()) == kCourse) {
             comment.remove_prefix(kCourse.size());
@@ -51,15 +51,9 @@ void NcMarks::read(const NcLine& line, BlockList& list) {
     }
 }
 
-void NcMarks::head(const NcLine& line, std::string_view comment, BlockList& list) {
+void NcMarks::head(std::string_view comment, BlockList& list) {
     if (!list.head) {
         return;
-    }
-    constexpr std::string_view kMadeBy = "meshwind ";
-    // Behind "%" and the title at most.
-    constexpr std::int32_t kLastOfMaker = 3;
-    if (line.number <= kLastOfMaker && comment.substr(0, kMadeBy.size()) == kMadeBy) {
-        list.head->by_meshwind = true;
     }
     if (begins_with(comment, kCodeDigest)) {
         list.head->code_digest = comment.substr(kCodeDigest.size());

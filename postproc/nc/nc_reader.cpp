@@ -75,6 +75,7 @@ public:
     BlockList program(std::string_view text) && {
         const std::vector<std::string_view> lines = lines_of_text(text);
         from_ = origin_of(flavour_.comments, lines);
+        list_.head->by_meshwind = from_.by_meshwind;
         line_.drops_digits = is_foreign();
         const ProgramFlow flow = flow_of(lines);
         std::int64_t run = 0;

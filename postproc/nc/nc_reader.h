@@ -36,7 +36,7 @@ void check_own_line(const NcFlavour& flavour, const Machine& machine, const std:
 [[nodiscard]] std::vector<std::string_view> lines_of_text(std::string_view text);
 
 /// The comments with a meaning: "course 3", "tie on at X1.000 Y2.000 Z3.000 on the mandrel",
-/// "code digest: 0f.." and, in the first line, "meshwind 1.0".
+/// "code digest: 0f..".
 class NcMarks {
 public:
     /// \throws InputError nc.tie_on, nc.pins
@@ -46,7 +46,7 @@ public:
 private:
     static void tie_on(const NcLine& line, std::string_view comment, BlockList& list);
     static void pins(const NcLine& line, std::string_view comment, BlockList& list);
-    static void head(const NcLine& line, std::string_view comment, BlockList& list);
+    static void head(std::string_view comment, BlockList& list);
     std::int32_t piece_ = -1;
 };
 

@@ -64,7 +64,11 @@ class Writer {
 public:
     Writer(const NcFlavour& flavour, const Machine& machine, const BlockList& list,
            const ProgramHeader& header)
-        : flavour_(flavour), machine_(machine), list_(list), header_(header) {
+        : flavour_(flavour),
+          machine_(machine),
+          list_(list),
+          header_(header),
+          time_s_(nc_run_time_s(flavour, machine, list)) {
         for (const BlockAxis& axis : list.axes) {
             decimals_.push_back(decimals_of(axis.resolution_nano));
         }
@@ -134,7 +138,7 @@ private:
             }
             text_ += "O" + number + ' ' + comment_lines(flavour_, title);
         }
-        for (std::string& words : head_comments(flavour_, machine_, list_, header_)) {
+        for (std::string& words : head_comments(flavour_, machine_, list_, header_, time_s_)) {
             comment(std::move(words));
         }
     }
@@ -142,7 +146,7 @@ private:
     void comment(std::string words) { text_ += comment_lines(flavour_, std::move(words)); }
 
     void own_lines(const std::vector<std::string>& lines) {
-        const LineValues values = line_values(flavour_, machine_, list_, header_);
+        const LineValues values = line_values(flavour_, machine_, list_, header_, time_s_);
         for (const std::string& line : filled_lines(lines, values, machine_.name)) {
             check_own_line(flavour_, machine_, line);
             text_ += line + '\n';
@@ -344,6 +348,7 @@ private:
     const Machine& machine_;
     const BlockList& list_;
     const ProgramHeader& header_;
+    double time_s_;
     const ProgramLayout* layout_ = nullptr;
     std::int32_t number_ = 1;
     std::size_t first_subprogram_ = kFirstSubprogram;

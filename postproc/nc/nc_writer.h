@@ -24,15 +24,22 @@ namespace meshwind {
 [[nodiscard]] std::vector<double> nc_run_times_s(const NcFlavour& flavour, const Machine& machine,
                                                  const BlockList& list);
 
+/// Their sum.
+[[nodiscard]] double nc_run_time_s(const NcFlavour& flavour, const Machine& machine,
+                                   const BlockList& list);
+
 /// The head's comments, one entry each and of any length: who made the program, of what, how long
 /// it takes, where the fibre is tied on, what float sums ask for, notes.
+/// \param time_s nc_run_time_s, which takes longer than the rest
 [[nodiscard]] std::vector<std::string> head_comments(const NcFlavour& flavour,
                                                      const Machine& machine, const BlockList& list,
-                                                     const ProgramHeader& header);
+                                                     const ProgramHeader& header, double time_s);
 
 /// What the controller's own lines may ask for, such that it can stand in a comment of the flavour.
+/// \param time_s as for the head
 [[nodiscard]] LineValues line_values(const NcFlavour& flavour, const Machine& machine,
-                                     const BlockList& list, const ProgramHeader& header);
+                                     const BlockList& list, const ProgramHeader& header,
+                                     double time_s);
 
 /// Words as comments of the flavour, a line each or as many as it takes.
 [[nodiscard]] std::string comment_lines(const NcFlavour& flavour, std::string words);

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/text/decimal_text.h"
 #include "core/text/text_number.h"
+#include "postproc/nc/foreign_notes.h"
 #include "postproc/nc/nc_reader.h"
 #include "postproc/nc/nc_writer.h"
 #include "postproc/nc/program_flow.h"
@@ -59,7 +60,9 @@ public:
     }
 
     BlockList program(std::string_view text) && {
-        for (const std::string_view words : lines_of_text(text)) {
+        const std::vector<std::string_view> lines = lines_of_text(text);
+        list_.head->by_meshwind = is_by_meshwind(lines);
+        for (const std::string_view words : lines) {
             ++line_.number;
             if (line_.number > kMostLinesRun) {
                 line_.fail("nc.too_many_lines", "more than " + std::to_string(kMostLinesRun) +
@@ -281,7 +284,8 @@ public:
         : machine_(machine), list_(list), header_(header), flavour_(text_flavour()) {}
 
     std::string program() && {
-        for (std::string& words : head_comments(flavour_, machine_, list_, header_)) {
+        for (std::string& words :
+             head_comments(flavour_, machine_, list_, header_, list_.duration_s())) {
             text_ += comment_lines(flavour_, std::move(words));
         }
         own_lines(machine_.controller.header);
@@ -310,7 +314,8 @@ public:
 
 private:
     void own_lines(const std::vector<std::string>& lines) {
-        const LineValues values = line_values(flavour_, machine_, list_, header_);
+        const LineValues values =
+            line_values(flavour_, machine_, list_, header_, list_.duration_s());
         for (const std::string& line : filled_lines(lines, values, machine_.name)) {
             try {
                 Reader(machine_.name, machine_).comment_only(line);
@@ -367,6 +372,10 @@ private:
 };
 
 }  // namespace
+
+std::vector<double> Pulses::run_times_s(const Machine& machine, const BlockList& list) const {
+    return nc_run_times_s(text_flavour(), machine, list);
+}
 
 BlockList Pulses::prepare(BlockList list) const {
     for (std::size_t i = 1; i < list.blocks.size(); ++i) {

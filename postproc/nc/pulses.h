@@ -43,6 +43,8 @@ public:
     [[nodiscard]] std::string name() const override { return "pulses"; }
     [[nodiscard]] std::string extension() const override { return ".pulses"; }
     [[nodiscard]] double tick_s() const override { return kPulseTick_s; }
+    [[nodiscard]] std::vector<double> run_times_s(const Machine& machine,
+                                                  const BlockList& list) const override;
     [[nodiscard]] BlockList prepare(BlockList list) const override;
     using Dialect::write;
     [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,

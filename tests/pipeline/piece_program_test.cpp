@@ -129,7 +129,7 @@ TEST(PieceProgram, TimesAddUpAndSlowFibreTakesItsLength) {
         sum_s += block.duration_s;
     }
     EXPECT_NEAR(made.verification.duration_s, sum_s + made.corner_s, 1e-9 * sum_s);
-    EXPECT_LT(std::abs(made.corner_s), 0.005 * sum_s);  // blocks this slow are blended in no time
+    EXPECT_LT(std::abs(made.corner_s), 0.001 * sum_s);  // blocks this slow are blended in no time
     // What starting and stopping add: v / a at most of an axis that is at 16.7 mm/s of fibre no
     // faster than 40 deg/s, at 1800 deg/s^2 or more.
     EXPECT_GE(made.duration_s - made.corner_s, sum_s);

@@ -334,9 +334,6 @@ class Commands(program.ProgramTest):
         share = report["verification"]["fibre_length_mm"] * width / wall
         self.assertAlmostEqual(report["coverage"]["fraction"], share, delta=0.03 * share)
         self.assertEqual(report["coverage"]["max_layers"], 1)
-        page = self.folder / "out/verify.html"
-        if page.exists():  # a program that was built with npm at hand
-            self.assertIn("</html>", page.read_text())
         with open(self.folder / "out/laid.csv", newline="") as table:
             rows = list(csv.DictReader(table))
         for row in rows:

@@ -63,9 +63,8 @@ class Foreign(program.ProgramTest):
         for words in ("no G1 is in the program", "G92 says", "end with the file"):
             self.assertIn(words, remarks)
         self.assertEqual(self.ours["remarks"], [])
-        page = self.folder / "seen/verify.html"
-        if page.exists():  # a program that was built with npm at hand
-            self.check_page(Page(page.read_text()), found, text)
+        if (self.folder / "out/report.html").exists():  # a program that was built with npm at hand
+            self.check_page(Page((self.folder / "seen/verify.html").read_text()), found, text)
 
     def check_page(self, page, found, text):
         """The page of the laid fibre has the table's places, the program's lines and its checks."""
