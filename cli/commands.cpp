@@ -1,23 +1,17 @@
 #include "cli/commands.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <sstream>
 #include <utility>
-
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
+#include "cli/inputs.h"
 #include "cli/phases.h"
 #include "cli/progress.h"
-#include "cli/streams.h"
 #include "core/error.h"
 #include "core/files/project_files.h"
 #include "core/files/write_file.h"
@@ -30,22 +24,17 @@
 #include "mesh/mandrel/load_mandrel.h"
 #include "pipeline/check_controller.h"
 #include "pipeline/load_inputs.h"
-#include "pipeline/resume/resume.h"
-#include "pipeline/run_names.h"
 #include "pipeline/trials/trials.h"
-#include "pipeline/verify_text.h"
 #include "pipeline/wind.h"
 #include "postproc/nc/dialect.h"
 #include "report/folder/output_files.h"
 #include "report/folder/run_files.h"
 #include "report/inspection.h"
-#include "report/page/verified_run.h"
 #include "report/report.h"
 #include "report/report_carry.h"
 #include "report/report_checks.h"
 #include "report/report_design.h"
 #include "report/report_study.h"
-#include "report/report_verify.h"
 #include "report/summary.h"
 #include "report/write_run.h"
 #include "study/study_run.h"
@@ -55,64 +44,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double unit_mm(const std::string& name) {
-    return name.empty() ? 0.0 : mm_per(name).value();
-}
-
-// What takes seconds at most tells of its phases on a terminal alone: a log needs no line of them.
-bool shows_bar(const Common& common) {
-    return !common.quiet && ::isatty(STDERR_FILENO) != 0;
-}
-
-// A line on stderr for each check that failed, unless the summary has told it on the same terminal.
-int exit_code(const std::string& file, const std::vector<Check>& checks, const Common& common) {
-    const bool told = !common.json && !common.quiet && ::isatty(STDOUT_FILENO) != 0 &&
-                      ::isatty(STDERR_FILENO) != 0;
-    int code = kDone;
-    for (const Check& check : checks) {
-        if (!check.ok) {
-            code = kCheckFailed;
-        }
-        if (!check.ok && !told) {
-            std::cerr << one_line("meshwind: " + file + ": check failed: " + check.name + ": " +
-                                  check.words)
-                      << '\n';
-        }
-    }
-    return code;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point begun) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
-fs::path found_or_none(const std::string& name) {
-    return name.empty() ? fs::path() : find_input(name);
-}
-
 // Returns the number of triangles.
 std::size_t write_refined(const Mandrel& mandrel, double edge_mm, const fs::path& file) {
     const MeshFormat format = mesh_format_of(file);  // before anything is made
     const TriangleSoup soup = refined_wall(mandrel, edge_mm);
     write_file(file, mesh_file_bytes(soup, format));
     return soup.faces.size();
-}
-
-// \param file of the arguments, as it was found \param points of imported layers are read
-Job job_of(const JobArguments& arguments, const fs::path& file, bool points) {
-    std::vector<JobSetting> settings;
-    for (const std::string& text : arguments.settings) {
-        const std::size_t equals = text.find('=');
-        if (equals == std::string::npos || equals == 0) {
-            throw InputError("cli.usage", "--set " + text,
-                             "is no setting; write a job's key and value, --set tow.width=8");
-        }
-        settings.push_back({text.substr(0, equals), text.substr(equals + 1)});
-    }
-    if (points) {
-        return load_job(file, settings);
-    }
-    return file.empty() ? parse_job("{}", "job", settings) : read_job(file, settings);
 }
 
 // Reads the inputs, runs the main job, writes what came of it and shows it.
@@ -183,50 +120,7 @@ std::vector<StudyMandrel> mandrels_of(const StudyArguments& arguments, double fi
     return mandrels;
 }
 
-RunContext context_of(const Common& common, Progress& progress) {
-    RunContext context;
-    context.seed = common.seed;
-    context.progress = [&](const std::string& step, double share) { progress.show(step, share); };
-    return context;
-}
-
-Setup setup_of(const ProgramArguments& arguments, const Common& common) {
-    const InputFiles files{.machine = find_input(arguments.machine),
-                           .job = found_or_none(arguments.job.file)};
-    require_machine_file(files.machine);
-    const Machine machine = load_machine(files.machine);
-    const Job job = job_of(arguments.job, files.job, false);
-    return make_setup(
-        load_mandrel(find_input(arguments.mandrel), mandrel_options(job, unit_mm(common.units))),
-        machine, job, files);
-}
-
-VerifyInputs program_inputs(const ProgramArguments& arguments, const Mandrel& mandrel) {
-    VerifyInputs inputs;
-    inputs.program = {arguments.program, read_text_file(arguments.program)};
-    if (!arguments.tie_on.empty()) {
-        inputs.tie_on_mm = vector_of("--tie-on", arguments.tie_on);
-        if (arguments.frame == "file") {
-            inputs.tie_on_mm = mandrel.file_to_mandrel * *inputs.tie_on_mm;
-        }
-    }
-    return inputs;
-}
-
 }  // namespace
-
-Eigen::Vector3d vector_of(const std::string& option, const std::string& text) {
-    Eigen::Vector3d v;
-    std::istringstream in(text);
-    std::array<char, 2> comma{};
-    std::string rest;
-    if (!(in >> v.x() >> comma[0] >> v.y() >> comma[1] >> v.z()) || comma[0] != ',' ||
-        comma[1] != ',' || in >> rest || !v.allFinite()) {
-        throw InputError("cli.vector", option,
-                         "'" + text + "' is not three numbers; write them as X,Y,Z without blanks");
-    }
-    return v;
-}
 
 int run_wind(const WindArguments& arguments, const Common& common) {
     return run_main_job(arguments, nullptr, common);
@@ -240,85 +134,6 @@ int run_post(const PostArguments& arguments, const Common& common) {
     wind.out = arguments.out;
     wind.png = arguments.png;
     return run_main_job(wind, &arguments, common);
-}
-
-int run_verify_command(const VerifyArguments& arguments, const Common& common) {
-    Progress progress(common.quiet);
-    const RunContext context = context_of(common, progress);
-    context.report_progress("import", 0.0);
-    const auto begun = std::chrono::steady_clock::now();
-    Setup setup = setup_of(arguments, common);
-    VerifyInputs inputs = program_inputs(arguments, setup.mandrel);
-    if (!arguments.plan.empty()) {
-        inputs.path = plan_table(arguments.plan, arguments.program, "path");
-        inputs.motion = plan_table(arguments.plan, arguments.program, "motion");
-    }
-    std::optional<OutputFolder> folder;
-    if (!arguments.out.empty()) {
-        folder.emplace(arguments.out);  // unusable: better known now
-    }
-    const double reading_s = seconds_since(begun);
-    VerifyOutcome outcome = verify_text(std::move(setup), inputs, context);
-    const std::string report = verify_json(outcome, reading_s);
-    std::ostringstream said;
-    print_verify(said, outcome);
-    const std::vector<Check> checks = outcome.checks;
-    if (folder) {
-        folder->add("verify.json", report);
-        folder->add("laid.csv", laid_csv(outcome.verification, outcome.blocks));
-        context.report_progress("write", 0.0);
-        const std::string page =
-            run_page(run_of(std::move(outcome), inputs.program.text, common.seed));
-        if (!page.empty()) {
-            folder->add("verify.html", page);
-            said << "page:    " << (fs::path(arguments.out) / "verify.html").string() << '\n';
-        }
-        folder->publish();
-    }
-    progress.clear();
-    if (common.json) {
-        std::cout << report;
-    } else if (!common.quiet) {
-        std::cout << said.str();
-    }
-    return exit_code(arguments.program, checks, common);
-}
-
-int run_resume(const ResumeArguments& arguments, const Common& common) {
-    if (arguments.block.has_value() == arguments.line.has_value()) {
-        throw InputError("resume.block", "resume",
-                         "say by --block or --line how far the program has been run");
-    }
-    Progress progress(common.quiet);
-    const RunContext context = context_of(common, progress);
-    context.report_progress("import", 0.0);
-    Setup setup = setup_of(arguments, common);
-    const VerifyInputs inputs = program_inputs(arguments, setup.mandrel);
-    const LaidProgram whole = lay_program(std::move(setup), inputs, context);
-    const ResumedProgram rest = resume(
-        whole, arguments.block ? *arguments.block : block_of_line(whole, *arguments.line), context);
-    const fs::path beside(arguments.program);
-    fs::path file = arguments.out.empty()
-                        ? beside.parent_path() / ("resume_" + beside.filename().string())
-                        : fs::path(arguments.out);
-    std::error_code absent;
-    if (fs::equivalent(file, beside, absent)) {
-        throw InputError("output.holds_input", file.string(),
-                         "this is the program that is resumed; give another name");
-    }
-    if (rest.passed() || common.force) {
-        write_file(file, rest.text);
-    } else {
-        file.clear();
-    }
-    progress.clear();
-    if (common.json) {
-        std::cout << resume_json(rest, arguments.program, file.string());
-    } else if (!common.quiet) {
-        print_resume(std::cout, rest, arguments.program);
-        std::cout << (file.empty() ? "no program written" : "program   " + file.string()) << '\n';
-    }
-    return exit_code(arguments.program, rest.verification.checks, common);
 }
 
 int run_inspect(const InspectArguments& arguments, const Common& common) {
@@ -354,12 +169,12 @@ int run_inspect(const InspectArguments& arguments, const Common& common) {
     return kDone;
 }
 
-int run_trace_command(TraceArguments& arguments, bool has_angle, const Common& common) {
+int run_trace_command(TraceArguments& arguments, const Common& common) {
     TraceRequest& request = arguments.request;
     request.start = vector_of("--start", arguments.start);
     request.method = arguments.method == "walk" ? TraceMethod::Walk : TraceMethod::Patches;
     request.file_frame = arguments.frame == "file";
-    if (has_angle) {
+    if (arguments.angle_deg) {
         request.angle_deg = arguments.angle_deg;
     } else if (!arguments.direction.empty()) {
         request.direction = vector_of("--direction", arguments.direction);

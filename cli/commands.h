@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "cli/exit_codes.h"
 #include "pipeline/trace_table.h"
+#include "pipeline/verify_text.h"
 #include "postproc/ringhead/carry.h"
 #include "report/picture/preview.h"
 #include "study/mesh_size.h"
@@ -32,6 +31,8 @@ struct Common {
 struct JobArguments {
     std::string file;                   ///< empty: the defaults
     std::vector<std::string> settings;  ///< "tow.width=8"
+    /// Of a program's head, where no file is given.
+    std::optional<NamedText> of_program{};
 };
 
 struct WindArguments {
@@ -56,23 +57,6 @@ struct PostArguments {
     PreviewOptions png;
 };
 
-/// What a program is wound again with.
-struct ProgramArguments {
-    std::string program, mandrel, machine, tie_on;
-    std::string frame = "mandrel";  // of tie_on
-    JobArguments job;
-};
-
-struct VerifyArguments : ProgramArguments {
-    std::string plan, out;
-};
-
-struct ResumeArguments : ProgramArguments {
-    std::string out;
-    std::optional<std::size_t> block;
-    std::optional<std::int32_t> line;
-};
-
 // The schemas that `validate --schema` prints.
 inline constexpr const char* kJobSchema = "job";
 inline constexpr const char* kMachineSchema = "machine";
@@ -94,7 +78,7 @@ struct InspectArguments {
 struct TraceArguments {
     std::string mandrel, start, direction, to, frame = "mandrel", method = "patches";
     std::string out;
-    double angle_deg = 0.0;
+    std::optional<double> angle_deg;
     TraceRequest request;
 };
 
@@ -114,21 +98,13 @@ struct CarryArguments {
     CarryRequest request;
 };
 
-/// Three numbers, "X,Y,Z". \param option that has them, for the words
-/// \throws InputError cli.vector
-[[nodiscard]] Eigen::Vector3d vector_of(const std::string& option, const std::string& text);
-
 /// Each runs one command: files are looked up as find_input() does, summary or JSON go to stdout,
 /// progress and a line for each failed check to stderr. Return the exit code.
 /// \throws Error for input that cannot be used
 [[nodiscard]] int run_wind(const WindArguments& arguments, const Common& common);
 [[nodiscard]] int run_post(const PostArguments& arguments, const Common& common);
-[[nodiscard]] int run_verify_command(const VerifyArguments& arguments, const Common& common);
-[[nodiscard]] int run_resume(const ResumeArguments& arguments, const Common& common);
 [[nodiscard]] int run_inspect(const InspectArguments& arguments, const Common& common);
-/// \param has_angle the angle was given
-[[nodiscard]] int run_trace_command(TraceArguments& arguments, bool has_angle,
-                                    const Common& common);
+[[nodiscard]] int run_trace_command(TraceArguments& arguments, const Common& common);
 [[nodiscard]] int run_mesh_size(StudyArguments& arguments, const Common& common);
 [[nodiscard]] int run_carry_command(CarryArguments& arguments, const Common& common);
 [[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);

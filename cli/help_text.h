@@ -60,14 +60,14 @@ constexpr const char* kPostHelp =
     "five_axis.json -o five";
 
 constexpr const char* kVerifyHelp =
-    "Nothing but the program, the machine and the mandrel says where the fibre goes. It is then\n"
+    "Nothing but the program, the machine and the mandrel says where the fibre goes. Programs by\n"
+    "meshwind name both in their head, and have the job there. The fibre is then\n"
     "checked for slip, bridging, collisions, free length, axis limits and pay-out, and with "
     "--plan\n"
     "compared with what was planned: exit code 1 and the first wrong block where anything fails.\n"
     "\n"
     "Examples:\n"
-    "  meshwind verify meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json "
-    "--plan meshwind-out\n"
+    "  meshwind verify meshwind-out/program.ngc --plan meshwind-out\n"
     "  meshwind verify other.ngc --mandrel part.stl --machine my_machine.json --job my_job.json "
     "--tie-on 50,0,-120 -o laid";
 
@@ -77,10 +77,41 @@ constexpr const char* kResumeHelp =
     "be tied on. It is wound again, and must lay what the whole program lays from there on.\n"
     "\n"
     "Examples:\n"
-    "  meshwind resume meshwind-out/program.ngc --mandrel tee.stl --machine six_axis.json --block "
-    "3120\n"
+    "  meshwind resume meshwind-out/program.ngc --block 3120\n"
     "  meshwind resume other.ngc --mandrel part.stl --machine my_machine.json --line 5340 -o "
     "rest.ngc";
+
+constexpr const char* kDryRunHelp =
+    "The same increments from a start farther out, so that nothing can meet the part: for the "
+    "first\n"
+    "run on a machine, without fibre. What is wrong in the machine file, as the sign of an axis, "
+    "is\n"
+    "seen there.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind dry-run meshwind-out/program.ngc\n"
+    "  meshwind dry-run meshwind-out/program.ngc --clearance 150 -o air.ngc";
+
+constexpr const char* kRepeatHelp =
+    "The head of a program says of what mandrel, by what job, machine file, seed and effort it "
+    "was\n"
+    "made. All of it is done again; the same version of meshwind gives the same blocks. A value "
+    "of\n"
+    "the job, the mandrel or the machine may be another one.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind repeat meshwind-out/program.ngc\n"
+    "  meshwind repeat meshwind-out/program.ngc --set tow.width=12 -o wider";
+
+constexpr const char* kShowHelp =
+    "Of a run: its report.html where that is, else what its first program lays. Of a program: "
+    "what\n"
+    "it lays, and where it first goes wrong. Of a mesh: what is read from it, as inspect --page.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind show meshwind-out\n"
+    "  meshwind show meshwind-out/program.ngc -o laid.html\n"
+    "  meshwind show part.stl";
 
 constexpr const char* kInspectHelp =
     "Prints what is read from the file and what can be done with it: unit and size, repairs,\n"

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <limits>
-#include <map>
+#include <memory>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "cli/interrupt.h"
 #include "cli/make_command.h"
 #include "cli/options.h"
+#include "cli/program_commands.h"
 #include "cli/shell_commands.h"
 #include "cli/streams.h"
 #include "cli/usage.h"
@@ -29,6 +31,8 @@
 
 namespace meshwind {
 namespace {
+
+constexpr const char* kEvery = "Options of every command";
 
 // More than any machine has cores.
 constexpr std::uint64_t kMostThreads = 1024;
@@ -52,11 +56,10 @@ CommandWords command_words(const CLI::App& app) {
 
 // Behind the name of a command the parser takes the program's options as well, those of the main
 // job among them: the command would not hear of them.
-void refuse_options_of_wind(const CLI::App& app, const std::string& group_of_every_command) {
+void refuse_options_of_wind(const CLI::App& app) {
     const std::vector<const CLI::Option*> options = app.get_options();
     const auto ignored = std::find_if(options.begin(), options.end(), [&](const auto* option) {
-        return !option->get_positional() && option->count() > 0 &&
-               option->get_group() != group_of_every_command;
+        return !option->get_positional() && option->count() > 0 && option->get_group() != kEvery;
     });
     if (ignored != options.end()) {
         const std::string command = app.get_subcommands().front()->get_name();
@@ -66,16 +69,7 @@ void refuse_options_of_wind(const CLI::App& app, const std::string& group_of_eve
     }
 }
 
-int run(const std::vector<std::string>& arguments) {
-    CLI::App app(
-        "Filament winding on triangulated mandrels: mesh and machine in, checked NC code out.\n"
-        "Without a command it runs the main job, the same as meshwind wind.",
-        "meshwind");
-    app.set_version_flag("--version", std::string("meshwind ") + kVersion);
-    Common common;
-    WindArguments wind_options;
-    add_wind_options(app, wind_options, false);
-    constexpr const char* kEvery = "Options of every command";
+void add_common(CLI::App& app, Common& common) {
     app.add_option("--threads", common.threads, "threads to use; 0: one per core")
         ->group(kEvery)
         ->type_name("N")
@@ -99,104 +93,125 @@ int run(const std::vector<std::string>& arguments) {
     app.add_flag("--force", common.force,
                  "write the program although a check failed; its head says so")
         ->group(kEvery);
+}
 
-    WindArguments named_wind_options;
-    CLI::App* wind_command =
-        app.add_subcommand("wind", "the main job: plan, post-process, check, write");
-    add_wind_options(*wind_command, named_wind_options, true);
-    PostArguments post_options;
-    CLI::App* post_command =
-        app.add_subcommand("post", "a program for landing points made elsewhere");
-    add_post(*post_command, post_options);
-    VerifyArguments verify_options;
-    CLI::App* verify_command =
-        app.add_subcommand("verify", "wind a program again from its text, and check it");
-    add_verify(*verify_command, verify_options);
-    ResumeArguments resume_options;
-    CLI::App* resume_command =
-        app.add_subcommand("resume", "what is left of a program that stopped, as a program");
-    add_resume(*resume_command, resume_options);
-    InspectArguments inspect_options;
-    CLI::App* inspect = app.add_subcommand(
-        "inspect", "what is read from a mandrel file: units, repairs, regions, rims, axis");
-    add_inspect(*inspect, inspect_options);
-    MakeRequest make_request;
-    std::map<std::string, double> make_values;
-    CLI::App* make = app.add_subcommand(
-        "make", "write the mesh of a parametric mandrel: pipe, vessel, elbow, tee");
-    add_make(*make, make_request, make_values);
-    TraceArguments trace_text;
-    CLI::App* trace_command =
-        app.add_subcommand("trace", "one fibre path over a mandrel, as a table");
-    CLI::Option* angle = add_trace(*trace_command, trace_text);
-    CLI::App* machines =
-        app.add_subcommand("machines", "the machine files that come with meshwind");
-    ValidateArguments validate_options;
-    CLI::App* validate = app.add_subcommand("validate", "check a machine or job file");
-    validate->add_option("file", validate_options.file, "JSON file")->type_name("FILE");
-    validate
-        ->add_option(
-            "--schema", validate_options.schema,
-            "print the JSON Schema of job or machine files instead, or of the results report.json "
-            "and layup.json")
-        ->expected(0, 1)
-        ->default_str(kJobSchema)
-        ->check(one_of({kJobSchema, kMachineSchema, kReportSchema, kLayupSchema}));
-    CarryArguments carry_text;
-    CLI::App* carry = app.add_subcommand(
-        "carry", "a program for a robot that carries a frame through a fixed ring head");
-    add_carry(*carry, carry_text);
-    DesignRequest design_request;
-    CLI::App* design = app.add_subcommand("design", "numbers of a part before it has a mesh");
-    design->require_subcommand(1);
-    CLI::App* design_vessel = design->add_subcommand(
-        "vessel", "a cylinder with isotensoid domes: what each winding angle gives");
-    add_design_vessel(*design_vessel, design_request);
-    StudyArguments study_request;
-    CaseArguments case_arguments;
-    CLI::App* study = app.add_subcommand("study", "studies of accuracy, and of many cases");
-    study->require_subcommand(1);
-    CLI::App* mesh_size =
-        study->add_subcommand("mesh-size", "accuracy of paths and motion against mesh size");
-    add_mesh_size(*mesh_size, study_request);
-    CLI::App* one_case = study->add_subcommand("cases", "the main job for one row of a table");
-    add_case(*one_case, case_arguments);
-    CLI::App* merge = study->add_subcommand("merge", "what came of all rows, in one table");
-    add_merge(*merge, case_arguments);
-    ShellArguments shell_arguments;
-    CLI::App* exporting = app.add_subcommand("export", "a run for other programs");
-    exporting->require_subcommand(1);
-    CLI::App* export_fe =
-        exporting->add_subcommand("fe", "the wall as shells with plies, for finite elements");
-    add_export_fe(*export_fe, shell_arguments);
-    CLI::App* strength =
-        app.add_subcommand("strength", "where a wound wall fails first, by CalculiX");
-    add_strength(*strength, shell_arguments);
+// Commands in the order of the help, each with the arguments that it reads.
+class Commands {
+public:
+    Commands(CLI::App& app, const Common& common) : app_(app), common_(common) {}
+
+    // \param add_options (CLI::App&, Arguments&) \param run (Arguments&, const Common&), the exit
+    // code
+    template <typename Arguments, typename AddOptions, typename Run>
+    void add(CLI::App& parent, const char* name, const char* words, const char* help,
+             AddOptions add_options, Run run) {
+        CLI::App* command = parent.add_subcommand(name, words);
+        const auto arguments = std::make_shared<Arguments>();
+        add_options(*command, *arguments);
+        command->fallthrough();
+        command->footer(std::string(help) + "\n\n" + kCommonHelp);
+        runs_.emplace_back(command, [this, arguments, run] { return run(*arguments, common_); });
+    }
+
+    template <typename Arguments, typename AddOptions, typename Run>
+    void add(const char* name, const char* words, const char* help, AddOptions add_options,
+             Run run) {
+        add<Arguments>(app_, name, words, help, add_options, run);
+    }
+
+    // Commands below a word of their own.
+    CLI::App& group(const char* name, const char* words) {
+        CLI::App* group = app_.add_subcommand(name, words);
+        group->require_subcommand(1);
+        group->fallthrough();
+        group->footer(std::string("\n") + kCommonHelp);
+        return *group;
+    }
+
+    // The one that the command line names; nothing where it names none.
+    [[nodiscard]] std::optional<int> run_named() const {
+        for (const auto& [command, run] : runs_) {
+            if (command->parsed()) {
+                return run();
+            }
+        }
+        return std::nullopt;
+    }
+
+private:
+    CLI::App& app_;
+    const Common& common_;
+    std::vector<std::pair<const CLI::App*, std::function<int()>>> runs_;
+};
+
+struct NoArguments {};
+
+void add_commands(Commands& commands) {
+    commands.add<WindArguments>(
+        "wind", "the main job: plan, post-process, check, write", kWindHelp,
+        [](CLI::App& app, WindArguments& wind) { add_wind_options(app, wind, true); }, run_wind);
+    commands.add<PostArguments>("post", "a program for landing points made elsewhere", kPostHelp,
+                                add_post, run_post);
+    commands.add<VerifyArguments>("verify", "wind a program again from its text, and check it",
+                                  kVerifyHelp, add_verify, run_verify_command);
+    commands.add<ResumeArguments>("resume", "what is left of a program that stopped, as a program",
+                                  kResumeHelp, add_resume, run_resume);
+    commands.add<DryRunArguments>("dry-run", "a program for a first run in the air", kDryRunHelp,
+                                  add_dry_run, run_dry_run);
+    commands.add<RepeatArguments>("repeat", "the main job that made a program, once more",
+                                  kRepeatHelp, add_repeat, run_repeat);
+    commands.add<ShowArguments>("show", "a page for the browser, of a run, a program or a mesh",
+                                kShowHelp, add_show, run_show);
+    commands.add<InspectArguments>(
+        "inspect", "what is read from a mandrel file: units, repairs, regions, rims, axis",
+        kInspectHelp, add_inspect, run_inspect);
+    commands.add<MakeRequest>("make",
+                              "write the mesh of a parametric mandrel: pipe, vessel, elbow, tee",
+                              kMakeHelp, add_make, run_make_command);
+    commands.add<TraceArguments>("trace", "one fibre path over a mandrel, as a table", kTraceHelp,
+                                 add_trace, run_trace_command);
+    commands.add<NoArguments>(
+        "machines", "the machine files that come with meshwind", kMachinesHelp,
+        [](CLI::App&, NoArguments&) {},
+        [](NoArguments&, const Common& common) { return run_machines(common); });
+    commands.add<ValidateArguments>("validate", "check a machine or job file", kValidateHelp,
+                                    add_validate, run_validate);
+    commands.add<CarryArguments>(
+        "carry", "a program for a robot that carries a frame through a fixed ring head", kCarryHelp,
+        add_carry, run_carry_command);
+    CLI::App& design = commands.group("design", "numbers of a part before it has a mesh");
+    commands.add<DesignRequest>(design, "vessel",
+                                "a cylinder with isotensoid domes: what each winding angle gives",
+                                kDesignHelp, add_design_vessel, run_design_command);
+    CLI::App& study = commands.group("study", "studies of accuracy, and of many cases");
+    commands.add<StudyArguments>(study, "mesh-size",
+                                 "accuracy of paths and motion against mesh size", kMeshSizeHelp,
+                                 add_mesh_size, run_mesh_size);
+    commands.add<CaseArguments>(study, "cases", "the main job for one row of a table", kCaseHelp,
+                                add_case, run_case);
+    commands.add<CaseArguments>(study, "merge", "what came of all rows, in one table", kMergeHelp,
+                                add_merge, run_merge);
+    CLI::App& exports = commands.group("export", "a run for other programs");
+    commands.add<ShellArguments>(exports, "fe",
+                                 "the wall as shells with plies, for finite elements",
+                                 kExportFeHelp, add_export_fe, run_export_fe);
+    commands.add<ShellArguments>("strength", "where a wound wall fails first, by CalculiX",
+                                 kStrengthHelp, add_strength, run_strength);
+}
+
+int run(const std::vector<std::string>& arguments) {
+    CLI::App app(
+        "Filament winding on triangulated mandrels: mesh and machine in, checked NC code out.\n"
+        "Without a command it runs the main job, the same as meshwind wind.",
+        "meshwind");
+    app.set_version_flag("--version", std::string("meshwind ") + kVersion);
     app.footer(kMainHelp);
-    for (CLI::App* command : {design, study, exporting}) {
-        command->fallthrough();
-        command->footer(std::string("\n") + kCommonHelp);
-    }
-    for (const auto& [command, more] : {std::pair(wind_command, kWindHelp),
-                                        {post_command, kPostHelp},
-                                        {verify_command, kVerifyHelp},
-                                        {resume_command, kResumeHelp},
-                                        {inspect, kInspectHelp},
-                                        {make, kMakeHelp},
-                                        {trace_command, kTraceHelp},
-                                        {machines, kMachinesHelp},
-                                        {validate, kValidateHelp},
-                                        {carry, kCarryHelp},
-                                        {design_vessel, kDesignHelp},
-                                        {mesh_size, kMeshSizeHelp},
-                                        {one_case, kCaseHelp},
-                                        {merge, kMergeHelp},
-                                        {export_fe, kExportFeHelp},
-                                        {strength, kStrengthHelp}}) {
-        command->fallthrough();
-        command->footer(std::string(more) + "\n\n" + kCommonHelp);
-    }
-
+    Common common;
+    WindArguments wind;
+    add_wind_options(app, wind, false);
+    add_common(app, common);
+    Commands commands(app, common);
+    add_commands(commands);
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
@@ -207,79 +222,24 @@ int run(const std::vector<std::string>& arguments) {
     }
     set_thread_count(common.threads);
     if (!app.get_subcommands().empty()) {
-        refuse_options_of_wind(app, kEvery);
-        if (!wind_options.mandrel.empty()) {
+        refuse_options_of_wind(app);
+        if (!wind.mandrel.empty()) {
             throw usage_error(command_words(app), arguments,
-                              "'" + wind_options.mandrel + "' is one argument too many");
+                              "'" + wind.mandrel + "' is one argument too many");
         }
     }
-    if (wind_command->parsed()) {
-        return run_wind(named_wind_options, common);
+    if (const std::optional<int> code = commands.run_named()) {
+        return *code;
     }
-    if (post_command->parsed()) {
-        return run_post(post_options, common);
-    }
-    if (verify_command->parsed()) {
-        return run_verify_command(verify_options, common);
-    }
-    if (resume_command->parsed()) {
-        return run_resume(resume_options, common);
-    }
-    if (inspect->parsed()) {
-        return run_inspect(inspect_options, common);
-    }
-    if (make->parsed()) {
-        make_request.kind = make->get_subcommands().front()->get_name();
-        make_request.shown_values.insert(make_values.begin(), make_values.end());
-        make_request.options.seed = common.seed;
-        if (make_request.output.empty()) {
-            throw InputError("cli.output", "make", "name the mesh file to write with -o FILE");
-        }
-        const std::string line = run_make(make_request);
-        if (!common.quiet) {
-            std::cout << line << '\n';
-        }
-        return kDone;
-    }
-    if (trace_command->parsed()) {
-        return run_trace_command(trace_text, angle->count() > 0, common);
-    }
-    if (carry->parsed()) {
-        return run_carry_command(carry_text, common);
-    }
-    if (design_vessel->parsed()) {
-        return run_design_command(design_request, common);
-    }
-    if (mesh_size->parsed()) {
-        return run_mesh_size(study_request, common);
-    }
-    if (one_case->parsed()) {
-        return run_case(case_arguments, common);
-    }
-    if (merge->parsed()) {
-        return run_merge(case_arguments, common);
-    }
-    if (export_fe->parsed()) {
-        return run_export_fe(shell_arguments, common);
-    }
-    if (strength->parsed()) {
-        return run_strength(shell_arguments, common);
-    }
-    if (machines->parsed()) {
-        return run_machines(common);
-    }
-    if (validate->parsed()) {
-        return run_validate(validate_options, common);
-    }
-    if (wind_options.mandrel.empty()) {
+    if (wind.mandrel.empty()) {
         std::cerr << app.help();
         return kBadInput;
     }
-    if (!std::filesystem::exists(find_input(wind_options.mandrel)) &&
-        !command_meant(command_words(app), wind_options.mandrel).empty()) {
+    if (!std::filesystem::exists(find_input(wind.mandrel)) &&
+        !command_meant(command_words(app), wind.mandrel).empty()) {
         throw usage_error(command_words(app), arguments, "");
     }
-    return run_wind(wind_options, common);
+    return run_wind(wind, common);
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "cli/make_command.h"
 
+#include <iostream>
+
+#include "core/error.h"
 #include "core/files/write_file.h"
 #include "core/text/text_number.h"
 #include "mesh/io/export.h"
@@ -41,6 +44,18 @@ std::string run_make(const MakeRequest& request) {
     write_file(request.output, mesh_file_bytes(soup, mesh_format_of(request.output)));
     return request.output.string() + ": " + std::to_string(soup.points_mm.size()) + " points, " +
            std::to_string(soup.faces.size()) + " triangles, " + fixed(area_mm2(soup), 1) + " mm^2";
+}
+
+int run_make_command(MakeRequest& request, const Common& common) {
+    if (request.output.empty()) {
+        throw InputError("cli.output", "make", "name the mesh file to write with -o FILE");
+    }
+    request.options.seed = common.seed;
+    const std::string line = run_make(request);
+    if (!common.quiet) {
+        std::cout << line << '\n';
+    }
+    return kDone;
 }
 
 }  // namespace meshwind

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "cli/commands.h"
 #include "mesh/shapes/make_kinds.h"
 
 namespace meshwind {
@@ -23,5 +24,8 @@ struct MakeRequest {
 /// \return one line about it: file, points, triangles, area
 /// \throws InputError make.*, export.unknown_format; IoError export.unwritable
 [[nodiscard]] std::string run_make(const MakeRequest& request);
+
+/// The command: the line goes to stdout. \throws InputError cli.output, and as run_make()
+[[nodiscard]] int run_make_command(MakeRequest& request, const Common& common);
 
 }  // namespace meshwind

@@ -5,11 +5,14 @@
 _meshwind_common='--threads --seed --units --json --verbose --quiet --force'
 # Options and commands by command; - is the program itself.
 declare -gA _meshwind_words=(
-    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify resume inspect make trace machines validate carry design study export strength'
+    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify resume dry-run repeat show inspect make trace machines validate carry design study export strength'
     [wind]='-h --help --machine --job --set -o --out --effort --png --png-size --png-colour'
     [post]='-h --help --mandrel --machine --job --set --frame --within --circuits --turn --smooth -o --out --png --png-size --png-colour'
     [verify]='-h --help --mandrel --machine --job --set --tie-on --frame --plan -o --out'
     [resume]='-h --help --mandrel --machine --job --set --tie-on --frame --block --line -o --out'
+    [dry-run]='-h --help --mandrel --machine --job --set --tie-on --frame --clearance -o --out'
+    [repeat]='-h --help --mandrel --machine --set -o --out --png --png-size --png-colour'
+    [show]='-h --help --mandrel --machine -o --out'
     [inspect]='-h --help --job --set --refine -o --out --page'
     [make]='-h --help -o --out --edge --irregular --solid --wall cylinder cone vessel isotensoid elbow tee combination frame torus ellipsoid'
     [make cylinder]='-h --help --radius --length'
@@ -36,7 +39,7 @@ declare -gA _meshwind_words=(
     [export fe]='-h --help --material --pressure --axial --moment --rims --merge --plies --format -o --out'
     [strength]='-h --help --material --pressure --axial --moment --rims --merge --plies -o --out'
 )
-# What an option takes: words, or mesh, machine, job, json, table, axis, program, folder, or - for anything else.
+# What an option takes: words, or mesh, machine, job, json, table, axis, program, shown, folder, or - for anything else.
 declare -gA _meshwind_takes=(
     [- --machine]='machine'
     [- --job]='job'
@@ -92,6 +95,27 @@ declare -gA _meshwind_takes=(
     [resume --line]='-'
     [resume -o]='mesh'
     [resume --out]='mesh'
+    [dry-run --mandrel]='mesh'
+    [dry-run --machine]='machine'
+    [dry-run --job]='job'
+    [dry-run --set]='-'
+    [dry-run --tie-on]='-'
+    [dry-run --frame]='file mandrel'
+    [dry-run --clearance]='-'
+    [dry-run -o]='mesh'
+    [dry-run --out]='mesh'
+    [repeat --mandrel]='mesh'
+    [repeat --machine]='machine'
+    [repeat --set]='-'
+    [repeat -o]='folder'
+    [repeat --out]='folder'
+    [repeat --png]='-'
+    [repeat --png-size]='-'
+    [repeat --png-colour]='course layers slip angle'
+    [show --mandrel]='mesh'
+    [show --machine]='machine'
+    [show -o]='-'
+    [show --out]='-'
     [inspect --job]='job'
     [inspect --set]='-'
     [inspect --refine]='-'
@@ -234,6 +258,9 @@ declare -gA _meshwind_first=(
     [post]='table'
     [verify]='program'
     [resume]='program'
+    [dry-run]='program'
+    [repeat]='program'
+    [show]='shown'
     [inspect]='mesh'
     [trace]='mesh'
     [validate]='json'
@@ -307,6 +334,7 @@ _meshwind_fill() {
         _meshwind_named "$current" '*_axis.csv' data
         ;;
     program) _meshwind_files "$current" ngc nc mpf gcode pulses ;;
+    shown) _meshwind_files "$current" stl STL obj ply off csv dxf ngc nc mpf gcode pulses ;;
     folder)
         COMPREPLY+=($(compgen -d -- "$current"))
         compopt -o filenames 2>/dev/null

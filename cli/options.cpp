@@ -27,13 +27,17 @@ void add_png(CLI::App& app, PreviewOptions& options) {
         ->capture_default_str();
 }
 
-void add_job(CLI::App& app, JobArguments& job, const char* meaning) {
-    app.add_option("--job", job.file, meaning)->type_name("FILE");
+void add_settings(CLI::App& app, JobArguments& job) {
     app.add_option("--set", job.settings,
                    "a value over that of the job, as often as wanted: tow.width=8, "
                    "layers.0.angle=55")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
+}
+
+void add_job(CLI::App& app, JobArguments& job, const char* meaning) {
+    app.add_option("--job", job.file, meaning)->type_name("FILE");
+    add_settings(app, job);
 }
 
 void add_effort(CLI::App& app, double& effort) {
@@ -102,6 +106,35 @@ void add_shell(CLI::App& app, ShellArguments& arguments) {
                    "most plies of an element; the nearest angles of more are merged")
         ->type_name("N")
         ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+}
+
+// Where they are not given the head of the program names them.
+void add_named_by_head(CLI::App& app, std::string& mandrel, std::string& machine) {
+    app.add_option("--mandrel", mandrel,
+                   "mesh of the part; without it the one that the program's head names, beside the "
+                   "program, in the folder above or in this one")
+        ->type_name("FILE");
+    app.add_option("--machine", machine, "machine file; without it as --mandrel")
+        ->type_name("FILE");
+}
+
+void add_program(CLI::App& app, ProgramArguments& options) {
+    app.add_option("program", options.program,
+                   "NC program, by meshwind or anybody; the machine file names its language")
+        ->type_name("FILE")
+        ->required();
+    add_named_by_head(app, options.mandrel, options.machine);
+    add_job(app, options.job,
+            "job file: tow, friction, extensions, tolerances; without it the job in the program's "
+            "head, else the defaults");
+    app.add_option("--tie-on", options.tie_on,
+                   "X,Y,Z where the fibre is tied on, if the program does not say it")
+        ->type_name("X,Y,Z");
+    app.add_option("--frame", options.frame,
+                   "axes of --tie-on. mandrel: Z along the spindle, in mm; file: those of the "
+                   "mandrel's file, in its unit")
+        ->check(one_of({"file", "mandrel"}))
         ->capture_default_str();
 }
 
@@ -186,25 +219,6 @@ void add_post(CLI::App& app, PostArguments& options) {
     add_png(app, options.png);
 }
 
-void add_program(CLI::App& app, ProgramArguments& options) {
-    app.add_option("program", options.program,
-                   "NC program, by meshwind or anybody; the machine file names its language")
-        ->type_name("FILE")
-        ->required();
-    app.add_option("--mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
-    app.add_option("--machine", options.machine, "machine file")->type_name("FILE")->required();
-    add_job(app, options.job,
-            "job file: tow, friction, extensions, tolerances; without it the defaults hold");
-    app.add_option("--tie-on", options.tie_on,
-                   "X,Y,Z where the fibre is tied on, if the program does not say it")
-        ->type_name("X,Y,Z");
-    app.add_option("--frame", options.frame,
-                   "axes of --tie-on. mandrel: Z along the spindle, in mm; file: those of the "
-                   "mandrel's file, in its unit")
-        ->check(one_of({"file", "mandrel"}))
-        ->capture_default_str();
-}
-
 void add_resume(CLI::App& app, ResumeArguments& options) {
     add_program(app, options);
     auto* block = app.add_option("--block", options.block,
@@ -230,6 +244,40 @@ void add_verify(CLI::App& app, VerifyArguments& options) {
         ->type_name("DIR");
 }
 
+void add_dry_run(CLI::App& app, DryRunArguments& options) {
+    add_program(app, options);
+    app.add_option("--clearance", options.clearance_mm,
+                   "mm that the head stays off the part, its extensions and bodies")
+        ->type_name("MM")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("-o,--out", options.out,
+                   "program to write; without it air_PROGRAM beside the program")
+        ->type_name("FILE");
+}
+
+void add_repeat(CLI::App& app, RepeatArguments& options) {
+    app.add_option("program", options.program, "NC program that the main job has made")
+        ->type_name("FILE")
+        ->required();
+    add_named_by_head(app, options.mandrel, options.machine);
+    add_settings(app, options.job);
+    app.add_option("-o,--out", options.out, "output folder")
+        ->type_name("DIR")
+        ->capture_default_str();
+    add_png(app, options.png);
+}
+
+void add_show(CLI::App& app, ShowArguments& options) {
+    app.add_option("what", options.what, "output folder of a run, NC program, or mesh of a part")
+        ->type_name("FILE")
+        ->required();
+    add_named_by_head(app, options.program.mandrel, options.program.machine);
+    app.add_option("-o,--out", options.out,
+                   "page to write; without it a name like that of the file, in this folder")
+        ->type_name("FILE");
+}
+
 void add_inspect(CLI::App& app, InspectArguments& options) {
     app.add_option("mandrel", options.mandrel, "mesh of the part")->type_name("FILE")->required();
     add_job(app, options.job,
@@ -246,7 +294,7 @@ void add_inspect(CLI::App& app, InspectArguments& options) {
 }
 
 // One subcommand per kind, with an option for each of its parameters.
-void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>& values) {
+void add_make(CLI::App& app, MakeRequest& request) {
     app.require_subcommand(1);
     app.fallthrough();
     app.add_option("-o,--out", request.output, "mesh file to write: .stl, .obj, .ply or .off")
@@ -263,17 +311,19 @@ void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>
     for (const MakeKind& kind : make_kinds()) {
         CLI::App* sub = app.add_subcommand(std::string(kind.name), std::string(kind.meaning));
         sub->fallthrough();
+        sub->callback([&request, sub] { request.kind = sub->get_name(); });
         for (const MakeParameter& parameter : kind.parameters) {
             const std::string name(parameter.name);
             sub->add_option_function<double>(
-                   "--" + name, [&values, name](const double& value) { values[name] = value; },
+                   "--" + name,
+                   [&request, name](const double& value) { request.shown_values[name] = value; },
                    help_of(parameter))
                 ->type_name(name_of_unit(parameter));
         }
     }
 }
 
-CLI::Option* add_trace(CLI::App& app, TraceArguments& text) {
+void add_trace(CLI::App& app, TraceArguments& text) {
     app.add_option("mandrel", text.mandrel, "mesh of the part")->type_name("FILE")->required();
     app.add_option("--start", text.start, "X,Y,Z in the file's frame; snapped to the surface")
         ->type_name("X,Y,Z")
@@ -304,7 +354,16 @@ CLI::Option* add_trace(CLI::App& app, TraceArguments& text) {
         ->check(one_of({"mandrel", "file"}))
         ->capture_default_str();
     app.add_option("-o,--out", text.out, "table to write")->type_name("FILE")->required();
-    return angle;
+}
+
+void add_validate(CLI::App& app, ValidateArguments& options) {
+    app.add_option("file", options.file, "JSON file")->type_name("FILE");
+    app.add_option("--schema", options.schema,
+                   "print the JSON Schema of job or machine files instead, or of the results "
+                   "report.json and layup.json")
+        ->expected(0, 1)
+        ->default_str(kJobSchema)
+        ->check(one_of({kJobSchema, kMachineSchema, kReportSchema, kLayupSchema}));
 }
 
 void add_mesh_size(CLI::App& app, StudyArguments& request) {

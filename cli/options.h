@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "cli/case_commands.h"
 #include "cli/commands.h"
 #include "cli/make_command.h"
+#include "cli/program_commands.h"
 #include "cli/shell_commands.h"
 
 namespace meshwind {
@@ -26,10 +26,13 @@ void add_wind_options(CLI::App& app, WindArguments& options, bool required);
 void add_post(CLI::App& app, PostArguments& options);
 void add_verify(CLI::App& app, VerifyArguments& options);
 void add_resume(CLI::App& app, ResumeArguments& options);
+void add_dry_run(CLI::App& app, DryRunArguments& options);
+void add_repeat(CLI::App& app, RepeatArguments& options);
+void add_show(CLI::App& app, ShowArguments& options);
 void add_inspect(CLI::App& app, InspectArguments& options);
-void add_make(CLI::App& app, MakeRequest& request, std::map<std::string, double>& values);
-/// \return --angle
-CLI::Option* add_trace(CLI::App& app, TraceArguments& text);
+void add_make(CLI::App& app, MakeRequest& request);
+void add_trace(CLI::App& app, TraceArguments& text);
+void add_validate(CLI::App& app, ValidateArguments& options);
 void add_mesh_size(CLI::App& app, StudyArguments& request);
 void add_case(CLI::App& app, CaseArguments& arguments);
 void add_merge(CLI::App& app, CaseArguments& arguments);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "cli/inputs.h"
 #include "core/error.h"
 #include "core/files/project_files.h"
 #include "core/files/write_file.h"

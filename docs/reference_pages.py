@@ -155,14 +155,16 @@ def manual_page(commands, version):
 # ---- bash
 
 def _kind_of_file(path, o):
-    """What files an argument takes: mesh, machine, job, table, json, program, file, folder."""
+    """What files an argument takes: mesh, machine, job, table, json, program, shown, file, folder."""
     name, kind = o.names[-1], o.kind
     if kind == "DIR":
         return "folder"
     if kind not in ("FILE", "NAME"):
         return ""
     by_name = {"mandrel": "mesh", "--mandrel": "mesh", "--machine": "machine", "--job": "job", "points": "table",
-               "axis": "axis", "file": "json", "program": "program"}
+               "axis": "axis", "file": "json", "program": "program", "what": "shown"}
+    if name == "--out" and path == ("show",):
+        return ""
     if name == "--out":
         return "table" if path == ("trace",) else "mesh"
     return by_name.get(name, "")
@@ -203,7 +205,7 @@ _meshwind_common='@COMMON@'
 declare -gA _meshwind_words=(
 @WORDS@
 )
-# What an option takes: words, or mesh, machine, job, json, table, axis, program, folder, or - for anything else.
+# What an option takes: words, or mesh, machine, job, json, table, axis, program, shown, folder, or - for anything else.
 declare -gA _meshwind_takes=(
 @TAKES@
 )
@@ -275,6 +277,7 @@ _meshwind_fill() {
         _meshwind_named "$current" '*_axis.csv' data
         ;;
     program) _meshwind_files "$current" ngc nc mpf gcode pulses ;;
+    shown) _meshwind_files "$current" stl STL obj ply off csv dxf ngc nc mpf gcode pulses ;;
     folder)
         COMPREPLY+=($(compgen -d -- "$current"))
         compopt -o filenames 2>/dev/null

@@ -6,12 +6,11 @@
 namespace meshwind {
 
 std::string code_digest(const Dialect& dialect, std::string_view text, const std::string& file) {
-    constexpr std::size_t kDigits = 32;
-    return "sha256/128 " + sha256_hex(dialect.code_of(text, file)).substr(0, kDigits);
+    return short_digest(dialect.code_of(text, file));
 }
 
 std::string job_digest(const Job& job) {
-    return "sha256 " + sha256_hex(job_text(job));
+    return short_digest(job_text(job));
 }
 
 std::string write_with_digest(const Dialect& dialect, const Machine& machine, const BlockList& list,

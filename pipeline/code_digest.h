@@ -12,8 +12,8 @@
 
 namespace meshwind {
 
-/// "sha256/128 " and the first 32 hexadecimal digits of what Dialect::code_of makes of a text: they
-/// fit in a line of every controller, and nobody changes a program by chance without changing them.
+/// Of what Dialect::code_of makes of a text (core/text/digest.h): nobody changes a program by
+/// chance without changing it.
 [[nodiscard]] std::string code_digest(const Dialect& dialect, std::string_view text,
                                       const std::string& file);
 

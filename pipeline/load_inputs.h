@@ -32,6 +32,19 @@ namespace meshwind {
 [[nodiscard]] MandrelOf mandrel_reader(std::filesystem::path file, double unit_mm,
                                        std::string& digest);
 
+/// The mandrel that a program's head names: beside the program, in the folder above it, or where
+/// find_input() finds it; where the head has a digest, the first file that has the same.
+/// \param program its file \param name of the mandrel's file \param digest empty: any
+/// \throws InputError origin.not_named, origin.no_file, origin.other_mandrel
+[[nodiscard]] std::filesystem::path mandrel_named_by(const std::filesystem::path& program,
+                                                     const std::string& name,
+                                                     const std::string& digest);
+
+/// Its machine file, looked for in the same places. \throws InputError origin.not_named,
+/// origin.no_file
+[[nodiscard]] std::filesystem::path machine_named_by(const std::filesystem::path& program,
+                                                     const std::string& name);
+
 /// A table of a plan's folder for one of its programs, "path-2.csv" for "program-2.ngc" where there
 /// is one. \param name "path" or "motion" \throws IoError io.cannot_read
 [[nodiscard]] NamedText plan_table(const std::filesystem::path& plan,

@@ -159,6 +159,13 @@ bool take_rule_of_machine(const Machine& machine, EyeLaw& eye) {
     return true;
 }
 
+// A unit that was given beside the job counts as the job's.
+void take_given_unit(const Mandrel& mandrel, Job& job) {
+    if (mandrel.unit_rule == "given") {
+        job.mandrel.units = length_unit(mandrel.unit_mm);
+    }
+}
+
 // What follows from machine, job and mandrel.
 void complete(Setup& setup, const fs::path& job_file) {
     setup.rule = collision_rule(setup, job_file);
@@ -224,6 +231,7 @@ Setup make_setup(Mandrel mandrel, const Machine& machine, const Job& job, const 
     setup.dialect = dialect_of(setup.machine, files.machine);
     setup.envelope = head_envelope(setup.machine);
     setup.mandrel = std::move(mandrel);
+    take_given_unit(setup.mandrel, setup.job);
     if (look_ahead) {
         look_ahead(setup);
     }

@@ -119,6 +119,7 @@ public:
     explicit Winder(const WindOptions& options)
         : options_(options), watch_(run_.timing_s, options.reading_s) {
         run_.seed = options.context.seed;
+        run_.effort = options.context.effort;
     }
 
     Run wind(Mandrel&& mandrel, const Machine& machine, const Job& job) {
@@ -139,11 +140,26 @@ private:
         header_.mandrel_digest = options_.mandrel_digest.empty() ? mesh_digest(first.setup.mandrel)
                                                                  : options_.mandrel_digest;
         header_.job_digest = job_digest(first.setup.job);
+        tell_origin(first.setup, job);
         watch_.stage("import");
     }
 
+    // What the same run needs. The setup's job is what became of the job on this machine.
+    void tell_origin(const Setup& setup, Job job) {
+        job.mandrel.units = setup.job.mandrel.units;
+        header_.job = told_job_text(job);
+        run_.job = header_.job;
+        if (options_.files.machine != InputFiles{}.machine) {
+            header_.machine_file = options_.files.machine.filename().string();
+        }
+        if (!options_.import) {
+            header_.run =
+                MainJobRun{setup.mandrel.file, options_.context.seed, options_.context.effort};
+        }
+    }
+
     static std::string mesh_digest(const Mandrel& mandrel) {
-        return "sha256 " + sha256_hex(mesh_file_bytes(mandrel.whole, MeshFormat::Obj));
+        return short_digest(mesh_file_bytes(mandrel.whole, MeshFormat::Obj));
     }
 
     // What no plan can change is refused before there is one.

@@ -26,7 +26,8 @@ struct WindOptions {
     std::optional<ImportRequest> import{};
     bool force = false;  ///< the program is for use although a check failed
     InputFiles files{};  ///< named in messages
-    /// What the programs' heads say of the mandrel's file, "sha256 ..."; empty: digest of its mesh.
+    /// What the programs' heads say of the mandrel's file, "sha256/128 ..."; empty: digest of its
+    /// mesh.
     std::string mandrel_digest{};
     double reading_s = 0.0;  ///< that the inputs took before; counts as "import"
     /// A cover of less than this share of what courses reach is not wound: its plan fails.
@@ -50,8 +51,10 @@ struct Run {
     std::map<std::string, double> timing_s;
     std::vector<WoundWall> walls;  ///< of the job's layers of kind Wall
     std::uint64_t seed = 1;
-    bool complete = false;  ///< every layer that the job asks for has been come to
-    bool usable = false;    ///< the programs may be run: all was planned and passed, or by force
+    double effort = 1.0;
+    std::string job = "{}";  ///< as told_job_text()
+    bool complete = false;   ///< every layer that the job asks for has been come to
+    bool usable = false;     ///< the programs may be run: all was planned and passed, or by force
 
     /// Every layer that the job asks for has a plan.
     [[nodiscard]] bool planned() const;

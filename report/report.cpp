@@ -362,6 +362,10 @@ json report_of(const Run& run, const std::map<std::string, double>& timing_s) {
                    {"checks", checks_report(run.checks)},
                    {"ok", run.passed()},
                    {"eye", eye_report(first.setup)},
+                   {"run",
+                    {{"job", json::parse(run.job)},
+                     {"seed", run.seed},
+                     {"effort", report_number(run.effort)}}},
                    {"remarks", run.remarks},
                    {"timing_s", timing_s}};
     if (!run.walls.empty()) {

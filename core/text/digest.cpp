@@ -24,4 +24,9 @@ std::string sha256_hex(std::string_view bytes) {
     return text;
 }
 
+std::string short_digest(std::string_view bytes) {
+    constexpr std::size_t kDigits = 32;
+    return "sha256/128 " + sha256_hex(bytes).substr(0, kDigits);
+}
+
 }  // namespace meshwind

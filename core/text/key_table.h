@@ -33,6 +33,9 @@ struct Key {
     std::function<void(const JsonValue&, Owner&)> read;
     /// The value as JSON; empty: left out. No function: of a table that is only read.
     std::function<std::string(const Owner&)> text{};
+    /// What a file that says no more than it must has of it; empty: nothing. No function: the text,
+    /// where it is not that of the defaults.
+    std::function<std::string(const Owner&, const Owner& defaults)> told{};
     /// Whether the file must have it, by what the keys before have said. No function: it need not.
     std::function<bool(const Owner&)> needed{};
     bool required = false;  ///< the file must have it, whatever else it says
@@ -104,9 +107,9 @@ inline std::string vector_text(const Eigen::Vector3d& vector) {
            number_text(vector[2]) + "]";
 }
 
-/// In quotes, with what JSON escapes.
+/// In quotes, with what JSON escapes and all that is not ASCII.
 inline std::string string_text(std::string_view raw) {
-    return nlohmann::json(raw).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return nlohmann::json(raw).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
 /// \param between what stands between two members
@@ -119,6 +122,32 @@ std::string keys_text(const KeyTable<Owner>& table, const Owner& owner,
         if (!value.empty()) {
             text += text.empty() ? "" : between;
             text += '"';
+            text += key.name;
+            text += "\":" + value;
+        }
+    }
+    return text;
+}
+
+/// Key::told, or what stands for it.
+template <typename Owner>
+std::string told_text(const Key<Owner>& key, const Owner& owner, const Owner& defaults) {
+    if (key.told) {
+        return key.told(owner, defaults);
+    }
+    std::string text = key.text(owner);
+    return text == key.text(defaults) ? std::string() : text;
+}
+
+/// The members that a file must have where the rest keeps its defaults, without blanks between.
+template <typename Owner>
+std::string told_keys_text(const KeyTable<Owner>& table, const Owner& owner,
+                           const Owner& defaults) {
+    std::string text;
+    for (const Key<Owner>& key : table.keys) {
+        const std::string value = told_text(key, owner, defaults);
+        if (!value.empty()) {
+            text += text.empty() ? "\"" : ",\"";
             text += key.name;
             text += "\":" + value;
         }
@@ -316,11 +345,17 @@ template <typename Owner, typename Inner>
 Key<Owner> object(std::string_view name, Inner Owner::*field, const KeyTable<Inner>& table,
                   std::string_view meaning) {
     return {
-        name, meaning, keys_schema(table),
+        name,
+        meaning,
+        keys_schema(table),
         [field, &table](const JsonValue& value, Owner& owner) {
             read_keys(table, value, owner.*field);
         },
-        [field, &table](const Owner& owner) { return "{" + keys_text(table, owner.*field) + "}"; }};
+        [field, &table](const Owner& owner) { return "{" + keys_text(table, owner.*field) + "}"; },
+        [field, &table](const Owner& owner, const Owner& defaults) {
+            const std::string keys = told_keys_text(table, owner.*field, defaults.*field);
+            return keys.empty() ? std::string() : "{" + keys + "}";
+        }};
 }
 
 /// A key that the file must have.
@@ -354,6 +389,11 @@ Key<Owner> only_if(std::function<bool(const Owner&)> reads, const std::string& c
             value.fail(code, refusal);
         }
         read(value, owner);
+    };
+    key.told = [reads, inner = key](const Owner& owner, const Owner& defaults) {
+        return !reads(owner)     ? std::string()
+               : reads(defaults) ? told_text(inner, owner, defaults)
+                                 : inner.text(owner);
     };
     key.text = [reads, text = std::move(key.text)](const Owner& owner) {
         return reads(owner) ? text(owner) : std::string();

@@ -146,6 +146,9 @@ struct Job {
 /// The same of a unit's word in job files, "mm"; none where there is no such unit.
 [[nodiscard]] std::optional<double> mm_per(std::string_view word);
 
+/// The unit of so many millimetres; Auto where there is none.
+[[nodiscard]] LengthUnit length_unit(double mm);
+
 /// One value that is put over what a file says: key layers.0.kind, value hoop.
 struct JobSetting {
     std::string key;    ///< keys and indices, joined by dots
@@ -168,6 +171,10 @@ struct JobSetting {
 /// The job as a complete job file: every key present, always in the same order, so that equal jobs
 /// give equal text. Reads back as the same job.
 [[nodiscard]] std::string job_text(const Job& job);
+
+/// The same without what is as in an empty job file, unless the job's file gave it: what a file
+/// must say for the same job.
+[[nodiscard]] std::string told_job_text(const Job& job);
 
 /// JSON Schema of job files; data/schema/job.schema.json holds it.
 [[nodiscard]] std::string job_schema_text();

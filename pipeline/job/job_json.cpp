@@ -9,6 +9,8 @@
 namespace meshwind {
 namespace {
 
+constexpr std::array<double, 6> kMillimetres = {0.0, 1e-3, 1.0, 10.0, 1e3, 25.4};
+
 Job job_of(const JsonDocument& document) {
     Job job;
     read_keys(job_keys(), document.root(), job);
@@ -18,8 +20,13 @@ Job job_of(const JsonDocument& document) {
 }  // namespace
 
 double mm_per(LengthUnit unit) {
-    constexpr std::array<double, 6> kMillimetres = {0.0, 1e-3, 1.0, 10.0, 1e3, 25.4};
     return kMillimetres[static_cast<std::size_t>(unit)];
+}
+
+LengthUnit length_unit(double mm) {
+    const auto* const found = std::find(kMillimetres.begin(), kMillimetres.end(), mm);
+    return found == kMillimetres.end() ? LengthUnit::Auto
+                                       : static_cast<LengthUnit>(found - kMillimetres.begin());
 }
 
 std::optional<double> mm_per(std::string_view word) {
@@ -49,6 +56,10 @@ Job read_job(const std::filesystem::path& file, std::span<const JobSetting> sett
 
 std::string job_text(const Job& job) {
     return "{ " + keys_text(job_keys(), job, ",\n  ") + " }\n";
+}
+
+std::string told_job_text(const Job& job) {
+    return "{" + told_keys_text(job_keys(), job, Job{}) + "}";
 }
 
 std::string job_schema_text() {

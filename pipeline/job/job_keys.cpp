@@ -130,12 +130,16 @@ Key<Job::MandrelJob> blend_key() {
             or_word(kAutoWord, number_schema(kCutRange)), read, text};
 }
 
-// The key, and a flag that it was given.
+// The key, and a flag that it was given, which is told also where it says the default.
 template <typename Owner>
 Key<Owner> told(Key<Owner> key, bool Owner::*given) {
     key.read = [read = std::move(key.read), given](const JsonValue& value, Owner& owner) {
         read(value, owner);
         owner.*given = true;
+    };
+    key.told = [text = key.text, given](const Owner& owner, const Owner& defaults) {
+        const std::string is = text(owner);
+        return owner.*given || is != text(defaults) ? is : std::string();
     };
     return key;
 }
@@ -331,6 +335,7 @@ Key<LayerJob> series_key() {
             read(value, layer);
         }
     };
+    key.told = nullptr;
     key.text = [text = key.text](const LayerJob& layer) {
         return layer.lattice && layer.lattice->series == 0 ? string_text(kFillWord) : text(layer);
     };
@@ -470,7 +475,9 @@ Key<Job> layers_key() {
         {"minItems", 1},
         {"default", SchemaJson::array({SchemaJson::object({{"kind", layer_words().front()}})})},
         {"items", keys_schema(layer_keys())}};
-    return {"layers", "what is wound, in this order", schema,
+    return {"layers",
+            "what is wound, in this order",
+            schema,
             [](const JsonValue& value, Job& job) {
                 job.layers.clear();
                 for (const JsonValue& layer : value.array()) {
@@ -488,6 +495,15 @@ Key<Job> layers_key() {
                     text += keys_text(layer_keys(), layer) + "}";
                 }
                 return "[" + text + "]";
+            },
+            [](const Job& job, const Job& defaults) {
+                std::string text;
+                for (const LayerJob& layer : job.layers) {
+                    text += text.empty() ? "{" : ",{";
+                    text += told_keys_text(layer_keys(), layer, LayerJob{}) + "}";
+                }
+                const bool same = job.layers.size() == defaults.layers.size() && text == "{}";
+                return same ? std::string() : "[" + text + "]";
             }};
 }
 

@@ -166,6 +166,7 @@ LaidProgram lay_program(Setup setup, const VerifyInputs& inputs, const RunContex
     LaidProgram program;
     program.setup = std::move(setup);
     program.file = inputs.program.name;
+    program.made_from = made_from(inputs.program.text);
     program.blocks = read_program(program.setup, inputs);
     program.laid = lay_down(
         *program.setup.wall, program.setup.machine, program.blocks, tie_on_of(program.blocks),
@@ -204,6 +205,13 @@ ResumedProgram resume(const LaidProgram& program, std::size_t block, const RunCo
     ProgramHeader header;
     header.version = kVersion;
     header.mandrel = setup.mandrel.file;
+    if (program.made_from) {
+        header.machine_file = program.made_from->machine_file;
+        header.job = program.made_from->job;
+        header.mandrel_digest = program.made_from->mandrel == header.mandrel
+                                    ? program.made_from->mandrel_digest
+                                    : std::string();
+    }
     header.job_digest = program.blocks.head && !program.blocks.head->job_digest.empty()
                             ? program.blocks.head->job_digest
                             : job_digest(setup.job);

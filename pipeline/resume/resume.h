@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "pipeline/setup.h"
 #include "pipeline/verify_text.h"
 #include "postproc/motion/block.h"
+#include "postproc/nc/made_from.h"
 #include "postproc/verify/laydown.h"
 #include "postproc/verify/verify.h"
 
@@ -20,6 +22,7 @@ namespace meshwind {
 /// A program and what it lays.
 struct LaidProgram {
     std::string file;  ///< name used in messages
+    std::optional<MadeFrom> made_from;
     Setup setup;
     BlockList blocks;
     LaidPath laid;

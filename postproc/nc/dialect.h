@@ -12,6 +12,7 @@
 
 #include "machines/machine.h"
 #include "postproc/motion/block.h"
+#include "postproc/nc/made_from.h"
 #include "postproc/nc/repeats.h"
 
 namespace meshwind {
@@ -20,15 +21,19 @@ namespace meshwind {
 struct ProgramHeader {
     std::string version{};         ///< of meshwind
     std::string mandrel{};         ///< file name
-    std::string mandrel_digest{};  ///< e.g. "sha256 1f2e.."
+    std::string mandrel_digest{};  ///< e.g. "sha256/128 1f2e.."
+    std::string machine_file{};    ///< its name; empty: there is none
+    std::string job{};             ///< JSON; empty: not told
     std::string job_digest{};
-    std::string code_digest{};  ///< of code_of() what is written
+    std::optional<MainJobRun> run{};  ///< none: the main job did not make it
+    std::string code_digest{};        ///< of code_of() what is written
     double fibre_length_mm = 0.0;
     std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
     std::vector<PinRing> pins{};                 ///< on which the fibre turns
     /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is
     /// where it lies already.
     std::string goes_on_from{};
+    bool in_the_air = false;           ///< no fibre is wound
     std::vector<std::string> notes{};  ///< a line each, e.g. that a failed check was overruled
 };
 

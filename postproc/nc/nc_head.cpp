@@ -5,6 +5,7 @@
 #include "postproc/motion/blend_time.h"
 #include "postproc/motion/junction_time.h"
 #include "postproc/nc/float32_steps.h"
+#include "postproc/nc/made_from.h"
 #include "postproc/nc/nc_reader.h"
 #include "postproc/nc/nc_writer.h"
 
@@ -18,6 +19,9 @@ void append_if(std::vector<std::string>& to, const std::string& key, const std::
         to.push_back(key + value);
     }
 }
+
+// The brackets of a comment, or a semicolon and a blank.
+constexpr std::size_t kAroundComment = 2;
 
 void make_plain(const NcFlavour& flavour, std::string& words) {
     const bool brackets = flavour.comments != NcComments::Semicolon;
@@ -100,6 +104,7 @@ std::vector<std::string> head_comments(const NcFlavour& flavour, const Machine& 
     append_if(lines, "mandrel: ", header.mandrel);
     append_if(lines, "mandrel digest: ", header.mandrel_digest);
     lines.push_back("machine: " + machine.name);
+    append_made_from(lines, header, flavour.line_length - kAroundComment);
     append_if(lines, std::string(kJobDigest), header.job_digest);
     append_if(lines, std::string(kCodeDigest), header.code_digest);
     lines.push_back("fibre: " + fixed(header.fibre_length_mm / kMmPerM, 3) + " m");
@@ -147,7 +152,7 @@ std::string comment_lines(const NcFlavour& flavour, std::string words) {
     const bool brackets = flavour.comments != NcComments::Semicolon;
     make_plain(flavour, words);
     std::string text;
-    const std::size_t width = flavour.line_length - 2;
+    const std::size_t width = flavour.line_length - kAroundComment;
     for (std::size_t i = 0; i == 0 || i < words.size(); i += width) {
         text +=
             brackets ? '(' + words.substr(i, width) + ")\n" : "; " + words.substr(i, width) + '\n';

@@ -99,8 +99,10 @@ public:
         comment(goes_on ? "the eye stands nearly there, the fibre stays on"
                         : "bring the eye clear of the mandrel by hand before the start");
         start_moves();
-        comment(goes_on ? std::string(flavour_.message) + "the fibre is on already, start again"
-                        : std::string(flavour_.message) + std::string(flavour_.tie_on));
+        comment(std::string(flavour_.message) +
+                (header_.in_the_air ? std::string("no fibre for this run in the air, start again")
+                 : goes_on          ? std::string("the fibre is on already, start again")
+                                    : std::string(flavour_.tie_on)));
         text_ += "M0\n";
         text_ += flavour_.winding_modes;
         text_ += !flavour_.has_feed_modes ? "" : inverse() ? "G93\n" : "G94\n";

@@ -224,6 +224,26 @@ TEST(Job, TextReadsBackAsTheSameJob) {
     }
 }
 
+TEST(Job, ToldTextReadsBackAsTheSameJob) {
+    EXPECT_EQ(told_job_text(Job{}), "{}");
+    EXPECT_EQ(told_job_text(parse_job(R"({"tow": {"width": 12}, "layers": [{}]})", "")),
+              R"({"tow":{"width":12}})");
+    for (const auto& entry : fs::directory_iterator(kCorpus / "valid")) {
+        const Job job = read_job(entry.path());
+        const Job again = parse_job(told_job_text(job), "again.json");
+        EXPECT_EQ(job_text(again), job_text(job)) << entry.path();
+        EXPECT_EQ(again.fibres_given, job.fibres_given);
+        EXPECT_EQ(again.mandrel.turn_given, job.mandrel.turn_given);
+        EXPECT_EQ(again.mandrel.extension_given, job.mandrel.extension_given);
+    }
+}
+
+// What is given as it is by default keeps other fibres, extensions and turns from being tried.
+TEST(Job, ToldTextHasWhatWasGiven) {
+    const std::string given = R"({"mandrel":{"turn":"friction"},"fibres":1})";
+    EXPECT_EQ(told_job_text(parse_job(given, "")), given);
+}
+
 TEST(Job, CorpusFailsWithTheStatedCodeAndPlace) {
     const std::vector<Case> cases = manifest();
     ASSERT_GT(cases.size(), 40U);

@@ -37,7 +37,7 @@ const Written& written() {
         w.made = program_of(w.setup, w.plan.pieces);
         ProgramHeader header;
         header.tie_on_mm = w.made.eyes.path.front().landing_mm;
-        header.job_digest = job_digest(job);
+        header.job_digest = job_digest(w.setup.job);
         w.inputs.program = {"out/program.ngc",
                             write_with_digest(*w.setup.dialect, w.setup.machine, w.made.blocks,
                                               w.made.layout, header)};

@@ -107,7 +107,7 @@ TEST(Wind, AHelicalLayerIsPlannedWoundAndJudged) {
     EXPECT_LT((*read.tie_on_mm - layer.plan.pieces.front().path.front().position_mm).norm(),
               std::sqrt(3.0) * 0.0005);  // three decimals
     EXPECT_NE(program.text.find("sha256 0123"), std::string::npos);
-    EXPECT_NE(program.text.find(sha256_hex(job_text(layer.setup.job))), std::string::npos);
+    EXPECT_NE(program.text.find(short_digest(job_text(layer.setup.job))), std::string::npos);
     // Courses are helices; the table's last arc length is that of all of the fibre.
     double courses_mm = 0.0;
     double all_mm = 0.0;

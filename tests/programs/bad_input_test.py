@@ -421,7 +421,7 @@ class BadInput(program.ProgramTest):
                                 ([file, *world, "--plan", plan], "io.cannot_read", "path.csv"),
                                 (["nothing.ngc", *world], "io.cannot_read", "nothing.ngc"),
                                 ([self.folder, *world], "io.cannot_read", ""),
-                                ([file, *world[:2]], "cli.usage", "--machine"), ([file, *world[2:]], "cli.usage", "--mandrel")):
+                                ([file, *world[:2]], "origin.not_named", "--machine"), ([file, *world[2:]], "origin.not_named", "--mandrel")):
             with self.subTest(" ".join(map(str, arguments))):
                 self.refused("verify", *arguments, "-o", out, code=code, word=word)
                 self.assertFalse(out.exists())

@@ -65,6 +65,7 @@ class Completion(unittest.TestCase):
         self.assertEqual(self.offered("tee.stl", "-o", ""), ["out"])
         self.assertEqual(self.offered("verify", "m"), ["made.ngc"])
         self.assertEqual(self.offered("post", "p"), ["points.csv"])
+        self.assertEqual(self.offered("show", "m"), ["made.ngc", "my part.stl"])
 
     def test_machines_by_name(self):
         self.assertEqual(self.offered("tee.stl", "--machine", "si"), ["six_axis.json"])

@@ -77,7 +77,7 @@ class Pins(Turns):
         program = self.folder / "out/program.ngc"
         self.done("verify", program, "--mandrel", mandrel, "--machine", MACHINE)
         self.done("verify", program, "--mandrel", mandrel, "--machine", MACHINE, "--plan", self.folder / "out")
-        text = re.sub(r"\(pins at rim.*\)\n", "", program.read_text())
+        text = re.sub(r"\((pins at rim|job:).*\)\n", "", program.read_text())
         again = self.run_program("verify", self.write("bare.ngc", text), "--mandrel", mandrel, "--machine", MACHINE,
                                  "--json")
         self.assertEqual(again.returncode, 1, again.stdout + again.stderr)

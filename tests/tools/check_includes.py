@@ -34,6 +34,7 @@ ALLOWED = [
     ("nlohmann/", "pipeline/job/*"),
     ("nlohmann/", "report/*"),
     ("nlohmann/", "cli/commands.cpp"),
+    ("nlohmann/", "cli/program_commands.cpp"),
     ("CLI/", "cli/main.cpp"),
     ("CLI/", "cli/options.*"),
     ("pybind11/", "python/bindings/*"),

@@ -7,6 +7,11 @@ trap 'rm -rf "$work"' EXIT
 ./meshwind tee.stl --machine six_axis.json -o "$work/tee" --png "$work/tee.png" --quiet
 node tests/viewer/page_test.mjs "$work/tee/report.html" "$work/page"
 mv "$work/tee.png" docs/images/tee.png
+for kind in vessel elbow; do
+    ./meshwind make "$kind" -o "$work/$kind.stl" --quiet
+    ./meshwind "$work/$kind.stl" --machine six_axis.json --set tow.width=8 -o "$work/$kind" --png "docs/images/$kind.png" \
+        --png-size 900x700 --quiet
+done
 ./meshwind data/meshes/cad/lettered_elbow.stl --units m --machine six_axis.json --set tow.width=4 --set tow.friction=0.3 \
     -o "$work/part" --png docs/images/part.png --quiet
 ./meshwind inspect data/meshes/cad/lettered_elbow.stl --units m --page "$work/part.html"

@@ -44,8 +44,8 @@ const std::string kPrograms = std::string(MESHWIND_SOURCE_DIR) + "/data/programs
 ProgramHeader header() {
     return {.version = "test",
             .mandrel = "pipe.stl",
-            .mandrel_digest = "sha256 " + std::string(64, '0'),
-            .job_digest = "sha256 " + std::string(64, '1'),
+            .mandrel_digest = "sha256/128 " + std::string(32, '0'),
+            .job_digest = "sha256/128 " + std::string(32, '1'),
             .fibre_length_mm = 12345.0,
             .tie_on_mm = Eigen::Vector3d(70.0, 0.0, -1.5)};
 }
