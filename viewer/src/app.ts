@@ -3,6 +3,7 @@ import { Vector2, Vector3 } from 'three';
 import { Checks } from './checks';
 import type { Colouring, ColouringId } from './colour';
 import { colouringsOf } from './colourings';
+import type { CourseRange } from './courseRange';
 import type { Courses } from './courses';
 import type { Page } from './data';
 import { hoverHtml } from './hover';
@@ -26,7 +27,7 @@ export interface Parts {
 }
 
 export class App {
-    /** Called whenever clock, layer, colouring, camera or playing have changed. */
+    /** Called whenever clock, layer, range, colouring, camera or playing have changed. */
     onChange: () => void = () => {};
     onLayer: () => void = () => {};
     layer: number | null = null; // index; null: all
@@ -44,6 +45,7 @@ export class App {
         readonly page: Page,
         readonly timeline: Timeline,
         readonly kinematics: Kinematics,
+        readonly range: CourseRange,
         readonly parts: Parts,
     ) {
         this.colourings = colouringsOf(page, null);
@@ -141,6 +143,7 @@ export class App {
     setLayer(layer: number | null): void {
         const id = this.colouring.id;
         this.layer = layer;
+        this.range.show(layer);
         this.colourings = colouringsOf(this.page, layer);
         this.parts.stage?.setLayer(layer);
         this.parts.checks.show(layer);
@@ -150,6 +153,12 @@ export class App {
         this.setColouring(id);
         this.onLayer();
         this.seek(to);
+    }
+
+    /** Draws courses first to last of those shown. */
+    setRange(first: number, last: number): void {
+        this.range.set(first, last);
+        this.seek(this.moment.time, this.moment.program);
     }
 
     setColouring(id: ColouringId): void {

@@ -50,10 +50,12 @@ export class Bands {
         this.mesh.renderOrder = 10 + order;
     }
 
-    /** Shows the fibre up to a station. */
-    showUpTo(station: number): void {
-        const steps = Math.min(Math.max(Math.ceil(station - 1e-6), 0), this.fibre.s.length - 1);
-        this.mesh.geometry.setDrawRange(0, steps * kIndicesPerStep);
+    /** Shows the fibre from a station to another. */
+    show(from: number, to: number): void {
+        const step = (station: number): number =>
+            Math.min(Math.max(Math.ceil(station - 1e-6), 0), this.fibre.s.length - 1);
+        const steps = Math.max(step(to) - step(from), 0);
+        this.mesh.geometry.setDrawRange(step(from) * kIndicesPerStep, steps * kIndicesPerStep);
         this.mesh.visible = steps > 0;
     }
 

@@ -5,6 +5,7 @@ import type { CourseRow } from './courses';
 import { element, followPointer, option } from './dom';
 import { clock, fixed, number, withUnit } from './format';
 import { helpHtml, listenToKeys } from './keyboard';
+import { connectRange } from './rangeSlider';
 
 const kSpeeds = [0.1, 0.3, 1, 3, 10, 30, 100];
 
@@ -20,6 +21,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
     const layer = connectLayers(app);
     connectCamera(app);
     connectPlayback(app);
+    const showRange = connectRange(app);
     const plotValues = connectPlots(app);
     const hoverAgain = followPointer(element('scene'), (at) => app.hover(at));
     connectKeys(app, rows);
@@ -45,6 +47,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
         layer.value = app.layer === null ? '' : String(app.layer);
         element('with-machine').setAttribute('aria-pressed', String(app.mode() === 'machine'));
         element('on-mandrel').setAttribute('aria-pressed', String(app.mode() === 'mandrel'));
+        showRange();
         plotValues();
         hoverAgain();
     };
@@ -160,6 +163,15 @@ function connectKeys(app: App, rows: CourseRow[]): void {
             const chosen = app.colourings[n - 1];
             if (chosen) app.setColouring(chosen.id);
         },
+        rangeFrom: () => {
+            const from = app.range.at(app.moment.time);
+            app.setRange(from, Math.max(app.range.last, from));
+        },
+        rangeTo: () => {
+            const to = app.range.at(app.moment.time);
+            app.setRange(Math.min(app.range.first, to), to);
+        },
+        allCourses: () => app.setRange(0, Infinity),
         camera: () => app.setMode(app.mode() === 'machine' ? 'mandrel' : 'machine'),
         fit: () => app.parts.stage?.fit(),
         help: () => help.showModal(),

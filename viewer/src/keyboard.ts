@@ -7,6 +7,9 @@ export interface KeyActions {
     toStart: () => void;
     toEnd: () => void;
     colouring: (number: number) => void;
+    rangeFrom: () => void;
+    rangeTo: () => void;
+    allCourses: () => void;
     camera: () => void;
     fit: () => void;
     help: () => void;
@@ -18,6 +21,8 @@ const kKeys: [string, string][] = [
     ['\u2191 \u2193', 'a course back or on'],
     ['Home End', 'to the start or the end'],
     ['1 \u2026 7', 'course, family, slip, bridging, layers, thickness, angle'],
+    ['B E', 'draw courses from the one under way on; up to it'],
+    ['A', 'draw all courses'],
     ['M', 'camera with the machine or on the mandrel'],
     ['F', 'see all of it'],
     ['?', 'this list'],
@@ -60,6 +65,7 @@ function actionOf(
     const { key, shiftKey } = event;
     if (/^[1-8]$/.test(key)) return () => actions.colouring(Number(key));
     if (target.getAttribute('role') === 'tab' && key.startsWith('Arrow')) return null;
+    if (target.closest('.range') && /^(Arrow|Home|End)/.test(key)) return null;
     switch (key) {
         case ' ':
             // Buttons and boxes keep their own meaning of the space bar.
@@ -76,11 +82,22 @@ function actionOf(
             return scrolls ? null : actions.toStart;
         case 'End':
             return scrolls ? null : actions.toEnd;
+        default:
+            return actionOfLetter(key.toLowerCase(), actions);
+    }
+}
+
+function actionOfLetter(letter: string, actions: KeyActions): (() => void) | null {
+    switch (letter) {
+        case 'b':
+            return actions.rangeFrom;
+        case 'e':
+            return actions.rangeTo;
+        case 'a':
+            return actions.allCourses;
         case 'm':
-        case 'M':
             return actions.camera;
         case 'f':
-        case 'F':
             return actions.fit;
         case '?':
             return actions.help;

@@ -22,6 +22,7 @@ export interface PageState {
     playing: boolean;
     colouring: string;
     layer: number | null; // from 1; null: all
+    courses: [number, number]; // first and last drawn, of those shown in winding order, from 0
     mode: string;
     camera: { position: number[]; target: number[]; target_mandrel_mm: number[] } | null;
 }
@@ -53,6 +54,7 @@ export function stateOf(app: App): PageState {
         playing: app.playing,
         colouring: app.colouring.id,
         layer: app.layer === null ? null : app.layer + 1,
+        courses: [app.range.first, app.range.last],
         mode: app.mode(),
         camera: stage && {
             position: stage.view.camera.position.toArray(),

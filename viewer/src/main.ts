@@ -2,6 +2,7 @@
 import { App } from './app';
 import { Checks } from './checks';
 import { connectControls } from './controls';
+import { CourseRange } from './courseRange';
 import { courseRows, Courses } from './courses';
 import { readPage } from './data';
 import type { Page } from './data';
@@ -19,9 +20,14 @@ import { ThemeSwitch } from './theme';
 import { Timeline } from './timeline';
 
 /** The picture, or null with one line that says why there is none. */
-function openStage(page: Page, kinematics: Kinematics, timeline: Timeline): Stage | null {
+function openStage(
+    page: Page,
+    kinematics: Kinematics,
+    timeline: Timeline,
+    range: CourseRange,
+): Stage | null {
     const canvas = element<HTMLCanvasElement>('scene');
-    if (canDraw()) return new Stage(page, kinematics, timeline, canvas);
+    if (canDraw()) return new Stage(page, kinematics, timeline, range, canvas);
     notice(
         'This browser has no WebGL 2, so the picture is left out; checks, tables, plots and program are complete.',
     );
@@ -67,10 +73,11 @@ async function open(): Promise<void> {
     );
     const plots = new Plots(element<HTMLCanvasElement>('plot'), new Motion(timeline), kinematics.axes);
     const theme = new ThemeSwitch(element('theme'));
-    const stage = openStage(page, kinematics, timeline);
+    const range = new CourseRange(rows);
+    const stage = openStage(page, kinematics, timeline, range);
     fillHead(page, timeline.duration, checks);
 
-    const app = new App(page, timeline, kinematics, {
+    const app = new App(page, timeline, kinematics, range, {
         stage,
         checks,
         courses,

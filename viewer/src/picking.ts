@@ -56,6 +56,13 @@ export interface Hit {
     band: { fibre: Fibre; station: number } | null;
 }
 
+/** What is drawn of a fibre: from a station to another. */
+export interface Drawn {
+    fibre: Fibre;
+    from: number;
+    to: number;
+}
+
 export class Picker {
     private readonly caster = new Raycaster();
     private readonly grids = new Map<Fibre, StationGrid>();
@@ -79,9 +86,9 @@ export class Picker {
 
     /**
      * \param at pointer, -1..1 both ways
-     * \param shown fibres that are drawn, in the order of winding, and up to which station
+     * \param shown what is drawn of the fibres, in the order of winding
      */
-    pick(at: Vector2, camera: Camera, shown: { fibre: Fibre; station: number }[]): Hit | null {
+    pick(at: Vector2, camera: Camera, shown: Drawn[]): Hit | null {
         this.caster.setFromCamera(at, camera);
         const targets = this.extension?.visible ? [this.mandrel, this.extension] : [this.mandrel];
         const first = this.caster.intersectObjects(targets, false)[0];
@@ -90,20 +97,20 @@ export class Picker {
         const normal = first.face.normal.clone();
         let band: Hit['band'] = null;
         for (let i = shown.length - 1; i >= 0 && !band; --i) {
-            const station = this.uppermost(shown[i].fibre, shown[i].station, place, normal);
+            const station = this.uppermost(shown[i], place, normal);
             if (station >= 0) band = { fibre: shown[i].fibre, station };
         }
         const face = first.object === this.mandrel ? (first.faceIndex ?? -1) : -1;
         return { face, place, normal, band };
     }
 
-    private uppermost(fibre: Fibre, upTo: number, place: Vector3, normal: Vector3): number {
+    private uppermost({ fibre, from, to }: Drawn, place: Vector3, normal: Vector3): number {
         const grid = this.gridOf(fibre);
         const { position: p, normal: m, tangent: t } = fibre;
         const half = this.widthMm / 2;
         let best = -1;
         grid.around(place, (i) => {
-            if (i <= best || i > upTo) return;
+            if (i <= best || i < from || i > to) return;
             const k = 3 * i;
             const d = [place.x - p[k], place.y - p[k + 1], place.z - p[k + 2]];
             const facing = m[k] * normal.x + m[k + 1] * normal.y + m[k + 2] * normal.z;

@@ -14,12 +14,13 @@ import {
 import { Bands } from './bands';
 import { kBare } from './colour';
 import type { Colouring } from './colour';
+import type { CourseRange } from './courseRange';
 import type { Page } from './data';
 import type { Kinematics, Pose } from './kinematics';
 import { bodyMaterial, MachineView, meshGeometry } from './machineView';
 import { Mandrel } from './mandrel';
 import { Picker } from './picking';
-import type { Hit } from './picking';
+import type { Drawn, Hit } from './picking';
 import { View } from './scene';
 import { nearestNormal } from './shape';
 import { cssVariable } from './theme';
@@ -43,7 +44,7 @@ export class Stage {
     private readonly extension: Mesh | null = null;
     private readonly marker: Mesh;
     private readonly picker: Picker;
-    private shown: { fibre: Bands['fibre']; station: number }[] = [];
+    private shown: Drawn[] = [];
     private pose: Pose | null = null;
     private layer: number | null = null;
 
@@ -51,6 +52,7 @@ export class Stage {
         private readonly page: Page,
         private readonly kinematics: Kinematics,
         private readonly timeline: Timeline,
+        private readonly range: CourseRange,
         canvas: HTMLCanvasElement,
     ) {
         const width = page.header.tow.width_mm;
@@ -132,9 +134,11 @@ export class Stage {
                       : moment.time >= program.end
                         ? Infinity
                         : (landing?.station ?? moment.station);
-            band.showUpTo(done);
+            const { from, to } = this.range.stationsOf(program);
+            const end = Math.min(to, done);
+            band.show(from, end);
             if (!visible || band.mesh.userData.hidden) band.mesh.visible = false;
-            if (visible && done > 0) this.shown.push({ fibre: program.fibre, station: done });
+            if (visible && end > from) this.shown.push({ fibre: program.fibre, from, to: end });
         });
         this.place();
     }
