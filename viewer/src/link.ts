@@ -24,7 +24,13 @@ export interface PageState {
     layer: number | null; // from 1; null: all
     courses: [number, number]; // first and last drawn, of those shown in winding order, from 0
     mode: string;
-    camera: { position: number[]; target: number[]; target_mandrel_mm: number[] } | null;
+    camera: {
+        position: number[];
+        target: number[];
+        target_mandrel_mm: number[];
+        part: number[]; // left, right, lower and upper end in the picture, -1..1
+        head: number[];
+    } | null;
 }
 
 export interface PageHook {
@@ -60,6 +66,7 @@ export function stateOf(app: App): PageState {
             position: stage.view.camera.position.toArray(),
             target: stage.view.controls.target.toArray(),
             target_mandrel_mm: stage.lookingAt().toArray(),
+            ...stage.inPicture(),
         },
     };
 }

@@ -24,6 +24,9 @@ export class View {
     readonly renderer: WebGLRenderer;
     /** Called after each picture. */
     afterRender: () => void = () => {};
+    /** Called when the picture has another size. */
+    onResize: () => void = () => {};
+    fitted = false; // as fit() left it: neither turned, moved nor flown since
     private wanted = false;
     private flight = 0; // number of the flight under way
     private radius = 100;
@@ -41,10 +44,13 @@ export class View {
         this.controls.rotateSpeed = 0.8;
         this.controls.zoomToCursor = true;
         this.controls.addEventListener('change', () => this.request());
-        this.controls.addEventListener('start', () => ++this.flight);
+        this.controls.addEventListener('start', () => this.leaveFit());
         this.world.matrixAutoUpdate = false;
         this.scene.add(this.world);
-        new ResizeObserver(() => this.resize()).observe(canvas.parentElement as Element);
+        new ResizeObserver(() => {
+            this.resize();
+            this.onResize();
+        }).observe(canvas.parentElement as Element);
         this.resize();
     }
 
@@ -116,16 +122,23 @@ export class View {
             target.addScaledVector(upward, (ends[2] + ends[3]) / 2);
         }
         this.radius = Math.max(...points.map((p) => p.distanceTo(target)), 1);
-        ++this.flight;
+        this.leaveFit();
+        this.fitted = true;
         this.controls.target.copy(target);
         this.camera.position.copy(target).addScaledVector(forward, -1.1 * distance);
         this.controls.update();
         this.request();
     }
 
+    /** \return number of the flight that may begin; any other has ended */
+    private leaveFit(): number {
+        this.fitted = false;
+        return ++this.flight;
+    }
+
     /** Flies until a place (world frame) is seen along `-direction` from `distance`. */
     flyTo(target: Vector3, direction: Vector3, distance: number): void {
-        const flight = ++this.flight;
+        const flight = this.leaveFit();
         const eyeFrom = this.camera.position.clone();
         const targetFrom = this.controls.target.clone();
         const eyeTo = target.clone().addScaledVector(direction.clone().normalize(), distance);

@@ -16,6 +16,8 @@ import { kBare } from './colour';
 import type { Colouring } from './colour';
 import type { CourseRange } from './courseRange';
 import type { Page } from './data';
+import { element } from './dom';
+import { Framing } from './framing';
 import type { Kinematics, Pose } from './kinematics';
 import { bodyMaterial, MachineView, meshGeometry } from './machineView';
 import { Mandrel } from './mandrel';
@@ -25,13 +27,13 @@ import { View } from './scene';
 import { nearestNormal } from './shape';
 import { cssVariable } from './theme';
 import type { Landing, Moment, Timeline } from './timeline';
+import { Triad } from './triad';
 
 export type CameraMode = 'machine' | 'mandrel';
 
 /** From where the whole is first seen, in the machine's axes: from above, the arm to the right. */
 const kFirstView = new Vector3(0.6, 0.65, 0.48);
 const kIdleMs = 400; // after which what is not seen at once is prepared
-const kFitPoints = 1000; // of each cloud
 const kCloseWidths = 26; // distance of the camera from a place, in widths of the band
 
 export class Stage {
@@ -44,6 +46,8 @@ export class Stage {
     private readonly extension: Mesh | null = null;
     private readonly marker: Mesh;
     private readonly picker: Picker;
+    private readonly framing: Framing;
+    private readonly triad: Triad;
     private shown: Drawn[] = [];
     private pose: Pose | null = null;
     private layer: number | null = null;
@@ -73,6 +77,13 @@ export class Stage {
         this.marker = this.makeMarker(width);
         this.onMandrel.add(this.marker, this.makeAxis());
         this.view.world.add(this.onMandrel, this.machine.group, this.machine.fibre);
+        this.framing = new Framing(page, kinematics, timeline);
+        this.triad = new Triad(element('triad'), kinematics.axes);
+        this.triad.setFrame(this.mode);
+        this.view.afterRender = () => this.triad.turn(this.view.camera.quaternion);
+        this.view.onResize = () => {
+            if (this.view.fitted) this.fit();
+        };
         this.picker = new Picker(this.mandrel.mesh, this.extension, width);
         window.setTimeout(() => this.picker.prepare(timeline.programs.map((p) => p.fibre)), kIdleMs);
         this.setTheme();
@@ -146,9 +157,10 @@ export class Stage {
     setMode(mode: CameraMode): void {
         if (mode === this.mode) return;
         this.mode = mode;
+        this.triad.setFrame(mode);
         this.place();
         const arm = this.kinematics.up().z > 0.5;
-        if (arm) this.fit();
+        if (arm || this.view.fitted) this.fit();
     }
 
     private place(): void {
@@ -159,12 +171,20 @@ export class Stage {
 
     fit(): void {
         this.view.resize();
-        this.onMandrel.updateWorldMatrix(true, false);
+        this.view.fit(this.framing.points(this.mode), kFirstView);
+    }
+
+    /** Where part and head are seen now: left, right, lower and upper end, -1..1 across the picture. */
+    inPicture(): { part: number[]; head: number[] } {
+        const pose = this.pose as Pose;
         this.view.world.updateMatrixWorld();
-        const clouds = [this.page.points, ...this.timeline.programs.map((p) => p.fibre.position)];
-        const points = clouds.flatMap((cloud) => sample(cloud));
-        points.forEach((p) => p.applyMatrix4(this.onMandrel.matrixWorld));
-        this.view.fit(points, kFirstView);
+        this.view.camera.updateMatrixWorld();
+        const ends = (points: Vector3[]): number[] => {
+            const seen = points.map((p) => p.applyMatrix4(this.view.world.matrix).project(this.view.camera));
+            const [x, y] = [seen.map((p) => p.x), seen.map((p) => p.y)];
+            return [Math.min(...x), Math.max(...x), Math.min(...y), Math.max(...y)];
+        };
+        return { part: ends(this.framing.partAt(pose)), head: ends(this.framing.headAt(pose)) };
     }
 
     /** Flies to a place of the mandrel frame and marks it. */
@@ -224,12 +244,4 @@ export class Stage {
         material.color.setStyle('#8a94a0', '');
         return new Line(geometry, material);
     }
-}
-
-/** Some thousand points of a cloud, all over it. */
-function sample(cloud: Float32Array): Vector3[] {
-    const step = 3 * Math.max(1, Math.floor(cloud.length / 3 / kFitPoints));
-    const points: Vector3[] = [];
-    for (let i = 0; i + 2 < cloud.length; i += step) points.push(new Vector3().fromArray(cloud, i));
-    return points;
 }

@@ -1,0 +1,127 @@
+/** What the first view and Fit take in: the part as it turns, and the head wherever the program brings it. */
+import { Box3, Matrix4, Vector3 } from 'three';
+import type { Page } from './data';
+import type { Kinematics, Pose } from './kinematics';
+import type { CameraMode } from './stage';
+import type { Timeline } from './timeline';
+import type { Body } from './types';
+
+const kCloudPoints = 1000; // of each cloud that are looked at
+const kDirections = 128;
+const kPoses = 300; // spread over all programs
+/** Of the part's diagonal: so much of the head is taken in, from the eye on; a ram may be much longer. */
+const kHeadReach = 0.25;
+
+/** Points of one link of the head, where they are with all axes at zero. */
+interface HeadLink {
+    letter: string | null;
+    points: Vector3[];
+}
+
+export class Framing {
+    private readonly part: Vector3[]; // mandrel frame
+    private readonly head: HeadLink[];
+    private readonly clouds: Partial<Record<CameraMode, Vector3[]>> = {};
+
+    constructor(
+        private readonly page: Page,
+        private readonly kinematics: Kinematics,
+        private readonly timeline: Timeline,
+    ) {
+        const clouds = [page.points, ...timeline.programs.map((p) => p.fibre.position)];
+        this.part = extremes(clouds.flatMap((cloud) => sample(cloud)));
+        const size = new Box3().setFromPoints(this.part).getSize(new Vector3()).length();
+        this.head = kinematics.machine.eye.envelope.map((body) => this.linkOf(body, kHeadReach * size));
+    }
+
+    /** What is to be seen, in the frame that the camera stands in. */
+    points(mode: CameraMode): Vector3[] {
+        return (this.clouds[mode] ??= this.gather(mode));
+    }
+
+    /** Eye and head, base frame. */
+    headAt(pose: Pose): Vector3[] {
+        const own = this.head.flatMap(({ letter, points }) => {
+            const matrix = letter === null ? undefined : pose.links.get(letter);
+            return points.map((p) => (matrix ? p.clone().applyMatrix4(matrix) : p.clone()));
+        });
+        return [pose.eyeBase.clone(), ...own];
+    }
+
+    /** Outermost points of the part, base frame. */
+    partAt(pose: Pose): Vector3[] {
+        return this.part.map((p) => p.clone().applyMatrix4(pose.baseFromMandrel));
+    }
+
+    private gather(mode: CameraMode): Vector3[] {
+        const all = this.poses().flatMap((pose) => {
+            const seen = [...this.partAt(pose), ...this.headAt(pose)];
+            const back = mode === 'machine' ? new Matrix4() : pose.baseFromMandrel.clone().invert();
+            return seen.map((p) => p.applyMatrix4(back));
+        });
+        return extremes(all);
+    }
+
+    /** Some of the program, with those where an axis is at an end of its travel. */
+    private poses(): Pose[] {
+        const n = this.kinematics.axes.length;
+        const each = Math.max(Math.ceil(kPoses / this.timeline.programs.length), 2);
+        const poses = this.timeline.programs.flatMap(({ fibre: { axes, time } }) => {
+            const last = time.length - 1;
+            const blocks = new Set<number>();
+            for (let k = 0; k < each && last >= 0; ++k) blocks.add(Math.round((k * last) / (each - 1)));
+            for (let axis = 0; axis < n && last >= 0; ++axis) {
+                let [low, high] = [0, 0];
+                for (let b = 1; b <= last; ++b) {
+                    if (axes[b * n + axis] < axes[low * n + axis]) low = b;
+                    if (axes[b * n + axis] > axes[high * n + axis]) high = b;
+                }
+                blocks.add(low).add(high);
+            }
+            return [...blocks].map((b) => this.kinematics.pose(axes.subarray(b * n, (b + 1) * n)));
+        });
+        return poses.length ? poses : [this.kinematics.pose(new Float64Array(n))];
+    }
+
+    private linkOf(body: Body, reach: number): HeadLink {
+        const eye = new Vector3(...this.kinematics.machine.eye.position);
+        const near = (p: Vector3): Vector3 => p.sub(eye).clampLength(0, reach).add(eye);
+        if (body.type === 'mesh') {
+            const points = extremes(sample(this.page.array(body.points) as Float32Array));
+            return { letter: body.link, points: points.map(near) };
+        }
+        const ends = [body.from, body.to].map((end) => near(new Vector3(...end)));
+        const points = ends.flatMap((end) =>
+            kAround.map((d) => end.clone().addScaledVector(d, body.radius)),
+        );
+        return { letter: body.link, points };
+    }
+}
+
+const kAround = [1, -1].flatMap((s) => [new Vector3(s, 0, 0), new Vector3(0, s, 0), new Vector3(0, 0, s)]);
+
+/** Some thousand points of a cloud, all over it. */
+function sample(cloud: Float32Array): Vector3[] {
+    const step = 3 * Math.max(1, Math.floor(cloud.length / 3 / kCloudPoints));
+    const points: Vector3[] = [];
+    for (let i = 0; i + 2 < cloud.length; i += step) points.push(new Vector3().fromArray(cloud, i));
+    return points;
+}
+
+/** Directions evenly over the sphere, on a spiral. */
+const directions = Array.from({ length: kDirections }, (_, k) => {
+    const z = 1 - (2 * k + 1) / kDirections;
+    const turn = k * Math.PI * (3 - Math.sqrt(5));
+    const r = Math.sqrt(1 - z * z);
+    return new Vector3(r * Math.cos(turn), r * Math.sin(turn), z);
+});
+
+/** Those of the points that are farthest out in some direction. */
+function extremes(points: Vector3[]): Vector3[] {
+    const outermost = directions.map((d) => {
+        let best = points[0];
+        for (const p of points) if (p.dot(d) > best.dot(d)) best = p;
+        return best;
+    });
+    return [...new Set(outermost)];
+}
