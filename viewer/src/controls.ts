@@ -6,6 +6,8 @@ import { element, followPointer, option } from './dom';
 import { clock, fixed, number, withUnit } from './format';
 import { helpHtml, listenToKeys } from './keyboard';
 import { connectRange } from './rangeSlider';
+import { Readout } from './readout';
+import { SidePanel } from './sidePanels';
 
 const kSpeeds = [0.1, 0.3, 1, 3, 10, 30, 100];
 
@@ -22,7 +24,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
     connectCamera(app);
     connectPlayback(app);
     const showRange = connectRange(app);
-    const plotValues = connectPlots(app);
+    const showAxes = connectAxes(app);
     const hoverAgain = followPointer(element('scene'), (at) => app.hover(at));
     connectKeys(app, rows);
 
@@ -48,7 +50,7 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
         element('with-machine').setAttribute('aria-pressed', String(app.mode() === 'machine'));
         element('on-mandrel').setAttribute('aria-pressed', String(app.mode() === 'mandrel'));
         showRange();
-        plotValues();
+        showAxes();
         hoverAgain();
     };
     return { refresh };
@@ -93,34 +95,22 @@ function connectPlayback(app: App): void {
     });
 }
 
-/** \return shows the values of the plotted axis at the clock */
-function connectPlots(app: App): () => void {
+/** \return shows all axes at the clock, and the acceleration of the plotted one */
+function connectAxes(app: App): () => void {
     const { plots } = app.parts;
-    const axes = app.kinematics.axes;
-    const group = element('plot-axes');
-    let axis = 0;
-    const values = (): void => {
-        const v = plots.values();
-        const unit = axes[axis].type === 'linear' ? 'mm' : '°';
-        const position = `${fixed(app.moment.axes[axis], 3)}${unit === '°' ? '°' : '\u202fmm'}`;
-        element('plot-values').textContent =
-            `${axes[axis].letter} ${position} \u00b7 ${withUnit(v.speed, `${unit}/s`)} \u00b7 ${withUnit(v.acceleration, `${unit}/s²`)}`;
+    const { axes } = app.kinematics;
+    const readout = new Readout(element('axes'), app.timeline);
+    const show = (): void => {
+        readout.show(app.moment);
+        const { letter, type } = axes[plots.axis];
+        const acceleration = withUnit(plots.acceleration(), `${type === 'linear' ? 'mm' : '°'}/s²`);
+        element('plot-values').textContent = `${letter}: acceleration ${acceleration}`;
     };
-    axes.forEach((a, i) => {
-        const button = document.createElement('button');
-        button.type = 'button';
-        button.textContent = a.letter;
-        button.title = `Axis ${a.letter}, ${a.type}`;
-        button.setAttribute('aria-label', `Plot axis ${a.letter}`);
-        button.setAttribute('aria-pressed', String(i === 0));
-        button.addEventListener('click', () => {
-            axis = i;
-            plots.setAxis(i);
-            [...group.children].forEach((b, k) => b.setAttribute('aria-pressed', String(k === i)));
-            values();
-        });
-        group.append(button);
-    });
+    readout.onChoose = (axis) => {
+        plots.setAxis(axis);
+        show();
+    };
+    readout.choose(0);
     element('plot-in').addEventListener('click', () => plots.zoom(1));
     element('plot-out').addEventListener('click', () => plots.zoom(-1));
     element('plot-all').addEventListener('click', () => plots.zoomAll());
@@ -128,10 +118,12 @@ function connectPlots(app: App): () => void {
         app.pause();
         app.seek(time);
     };
-    return values;
+    return show;
 }
 
 function connectKeys(app: App, rows: CourseRow[]): void {
+    const side = new SidePanel('side');
+    const plots = new SidePanel('plots');
     const help = element<HTMLDialogElement>('help');
     element('keys').innerHTML = helpHtml();
     element('help-open').addEventListener('click', () => help.showModal());
@@ -172,6 +164,8 @@ function connectKeys(app: App, rows: CourseRow[]): void {
             app.setRange(Math.min(app.range.first, to), to);
         },
         allCourses: () => app.setRange(0, Infinity),
+        foldSide: () => side.toggle(),
+        foldPlots: () => plots.toggle(),
         camera: () => app.setMode(app.mode() === 'machine' ? 'mandrel' : 'machine'),
         fit: () => app.parts.stage?.fit(),
         help: () => help.showModal(),

@@ -10,6 +10,8 @@ export interface KeyActions {
     rangeFrom: () => void;
     rangeTo: () => void;
     allCourses: () => void;
+    foldSide: () => void;
+    foldPlots: () => void;
     camera: () => void;
     fit: () => void;
     help: () => void;
@@ -24,7 +26,8 @@ const kKeys: [string, string][] = [
     ['B E', 'draw courses from the one under way on; up to it'],
     ['A', 'draw all courses'],
     ['M', 'camera with the machine or on the mandrel'],
-    ['F', 'see all of it'],
+    ['F', 'see part and head, wherever they go'],
+    ['S P', 'fold the findings; axes and plots'],
     ['?', 'this list'],
 ];
 
@@ -65,7 +68,7 @@ function actionOf(
     const { key, shiftKey } = event;
     if (/^[1-8]$/.test(key)) return () => actions.colouring(Number(key));
     if (target.getAttribute('role') === 'tab' && key.startsWith('Arrow')) return null;
-    if (target.closest('.range') && /^(Arrow|Home|End)/.test(key)) return null;
+    if (target.closest('.range, .border') && /^(Arrow|Home|End)/.test(key)) return null;
     switch (key) {
         case ' ':
             // Buttons and boxes keep their own meaning of the space bar.
@@ -95,6 +98,10 @@ function actionOfLetter(letter: string, actions: KeyActions): (() => void) | nul
             return actions.rangeTo;
         case 'a':
             return actions.allCourses;
+        case 's':
+            return actions.foldSide;
+        case 'p':
+            return actions.foldPlots;
         case 'm':
             return actions.camera;
         case 'f':

@@ -21,7 +21,7 @@ interface Window {
 
 export class Plots {
     onSeek: (time: number) => void = () => {};
-    private axis = 0;
+    axis = 0;
     private whole: Window = { from: 0, to: 1 };
     private window: Window = { from: 0, to: 1 };
     private time = 0;
@@ -72,15 +72,9 @@ export class Plots {
         this.setWindow(around - (around - this.window.from) * factor, span);
     }
 
-    /** Speed and acceleration of the axis at the clock, in words. */
-    values(): { position: number; speed: number; acceleration: number } {
-        const motion = this.motion.of(this.axis);
-        const entry = upperBlock(this.motion.time, this.time);
-        return {
-            position: motion.position[entry],
-            speed: motion.speed[entry],
-            acceleration: motion.acceleration[entry],
-        };
+    /** Of the axis at the clock. */
+    acceleration(): number {
+        return this.motion.of(this.axis).acceleration[upperBlock(this.motion.time, this.time)];
     }
 
     request(): void {

@@ -89,6 +89,16 @@ export class Timeline {
     }
 }
 
+/** Speed of each axis in the block under way, mm/s or deg/s; NaN where none is. */
+export function speedsAt({ program, block, axes }: Moment): Float64Array {
+    const { fibre } = program;
+    const n = axes.length;
+    const span = block > 0 ? fibre.time[block] - fibre.time[block - 1] : 0;
+    return axes.map((_, i) =>
+        span > 0 ? (fibre.axes[block * n + i] - fibre.axes[(block - 1) * n + i]) / span : NaN,
+    );
+}
+
 /** What is shown of a fibre without blocks: all of it, with the axes at zero. */
 function standstill(program: Program, axes: number): Moment {
     return {
