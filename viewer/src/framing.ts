@@ -28,7 +28,8 @@ export class Framing {
         private readonly kinematics: Kinematics,
         private readonly timeline: Timeline,
     ) {
-        const clouds = [page.points, ...timeline.programs.map((p) => p.fibre.position)];
+        const extension = page.extension?.points ?? [];
+        const clouds = [page.points, extension, ...timeline.programs.map((p) => p.fibre.position)];
         this.part = extremes(clouds.flatMap((cloud) => sample(cloud)));
         const size = new Box3().setFromPoints(this.part).getSize(new Vector3()).length();
         this.head = kinematics.machine.eye.envelope.map((body) => this.linkOf(body, kHeadReach * size));
@@ -101,7 +102,7 @@ export class Framing {
 const kAround = [1, -1].flatMap((s) => [new Vector3(s, 0, 0), new Vector3(0, s, 0), new Vector3(0, 0, s)]);
 
 /** Some thousand points of a cloud, all over it. */
-function sample(cloud: Float32Array): Vector3[] {
+function sample(cloud: ArrayLike<number>): Vector3[] {
     const step = 3 * Math.max(1, Math.floor(cloud.length / 3 / kCloudPoints));
     const points: Vector3[] = [];
     for (let i = 0; i + 2 < cloud.length; i += step) points.push(new Vector3().fromArray(cloud, i));

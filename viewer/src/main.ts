@@ -8,6 +8,7 @@ import { readPage } from './data';
 import type { Page } from './data';
 import { canDraw, element, notice } from './dom';
 import { escapeHtml } from './format';
+import { jobHtml } from './jobSheet';
 import { Kinematics } from './kinematics';
 import { followLink, LinkKeeper, stateOf } from './link';
 import { Listing } from './listing';
@@ -62,9 +63,10 @@ async function open(): Promise<void> {
     const checks = new Checks(tabs.add('checks', 'Checks'), report, kinds, page.layers.length);
     const rows = courseRows(timeline);
     const courses = new Courses(tabs.add('courses', 'Courses'), rows, tow.friction, layered);
-    const layersPanel = report.layers?.length ? tabs.add('layers', 'Layers') : null;
-    if (layersPanel) layersPanel.innerHTML = layersHtml(report);
+    const layersPanel = tabs.add('layers', 'Layers');
+    layersPanel.innerHTML = layersHtml(report, page.layers[0].header.kind);
     const bare = tabs.add('bare', 'Coverage');
+    if (report.run) tabs.add('job', 'Job').innerHTML = jobHtml(report.run);
     const programPanel = tabs.add('program', 'Program');
     programPanel.innerHTML = '<p class="muted sum"></p><div></div>';
     const listing = new Listing(
@@ -101,7 +103,7 @@ async function open(): Promise<void> {
         app.seek(row.start, row.program);
     };
     listing.onSeek = (program, block) => app.seekBlock(program, block);
-    layersPanel?.addEventListener('click', (event) => {
+    layersPanel.addEventListener('click', (event) => {
         const row = (event.target as HTMLElement).closest<HTMLElement>('[data-layer]');
         if (row) app.setLayer(Number(row.dataset.layer));
     });

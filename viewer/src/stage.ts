@@ -82,7 +82,9 @@ export class Stage {
         this.triad.setFrame(this.mode);
         this.view.afterRender = () => this.triad.turn(this.view.camera.quaternion);
         this.view.onResize = () => {
-            if (this.view.fitted) this.fit();
+            if (!this.view.fitted) return;
+            this.fit();
+            this.view.render();
         };
         this.picker = new Picker(this.mandrel.mesh, this.extension, width);
         window.setTimeout(() => this.picker.prepare(timeline.programs.map((p) => p.fibre)), kIdleMs);

@@ -1,6 +1,6 @@
 /** Key figures, bare wall with its reasons, and the layers of a laminate. */
 import { clock, escapeHtml, fixed, number, percent, sentence, withUnit } from './format';
-import type { LayerReport, Plan, Report, Uncovered, WallReport } from './types';
+import type { Laminate, LayerReport, Plan, Report, Uncovered, WallReport } from './types';
 
 /** \param duration of all programs on the page, 0 where it has none */
 export function figuresHtml(report: Report, duration: number): string {
@@ -73,8 +73,8 @@ export function bareHtml(report: Report, layer: number | null): string {
     );
 }
 
-function angleText(layer: LayerReport): string {
-    return typeof layer.angle_deg === 'number' ? `${layer.angle_deg.toFixed(1)}°` : '\u2013';
+function angleText(angle: number | null | undefined): string {
+    return typeof angle === 'number' ? `${angle.toFixed(1)}°` : '\u2013';
 }
 
 function wallHtml(wall: WallReport): string {
@@ -97,28 +97,56 @@ function wallHtml(wall: WallReport): string {
     return `<p class="muted sum">Wall of layers ${wall.first_layer} to ${wall.last_layer}</p>${measuresHtml(rows)}`;
 }
 
-export function layersHtml(report: Report): string {
-    const layers = report.layers ?? [];
+/** Those of the report; one that is the whole plan where it tells none. */
+function layersOf(report: Report, kind: string): LayerReport[] {
+    if (report.layers?.length) return report.layers;
+    return [{ layer: 1, kind, plan: report.plan, ...report.cost }];
+}
+
+/** Columns of the layers; `paper`: where there is room. */
+const kLayerColumns: { label: string; paper?: true; text: (l: LayerReport) => string; sum?: (l: Laminate) => string }[] = [
+    { label: 'Asked<br>angle', paper: true, text: (l) => angleText(l.plan?.asked_angle_deg) },
+    { label: 'Angle<br>laid', text: (l) => angleText(l.angle_deg ?? l.plan?.angles?.mean_deg) },
+    { label: 'Circuits', paper: true, text: (l) => number(l.plan?.pattern?.circuits) },
+    { label: 'Starts', paper: true, text: (l) => number(l.plan?.pattern?.starts) },
+    { label: 'Dwell', paper: true, text: (l) => angleText(l.plan?.pattern?.dwell_deg) },
+    { label: 'Mean<br>mm', text: thicknessText('mean'), sum: thicknessText('mean') },
+    { label: 'Max<br>mm', text: thicknessText('max'), sum: thicknessText('max') },
+    { label: 'Fibre<br>m', text: (l) => fixed(l.fibre_m ?? NaN, 1), sum: (l) => fixed(l.fibre_m ?? NaN, 1) },
+    { label: 'Mass<br>g', text: (l) => fixed(l.mass_g ?? NaN, 1), sum: (l) => fixed(l.mass_g ?? NaN, 1) },
+    { label: 'Time', text: (l) => timeText(l.time_s), sum: (l) => timeText(l.time_s) },
+];
+
+function thicknessText(key: 'mean' | 'max'): (of: Laminate) => string {
+    return (of) => fixed(of.thickness_mm?.[key] ?? NaN, 2);
+}
+
+function timeText(seconds: number | undefined): string {
+    return seconds === undefined ? '\u2013' : clock(seconds);
+}
+
+/** \param kind of the layer where the report tells none */
+export function layersHtml(report: Report, kind: string): string {
+    const layers = layersOf(report, kind);
+    const several = layers.length > 1;
+    const cells = (tag: string, text: (c: (typeof kLayerColumns)[number]) => string): string =>
+        kLayerColumns
+            .map((c) => `<${tag} class="num${c.paper ? ' paper' : ''}">${text(c)}</${tag.split(' ')[0]}>`)
+            .join('');
     const row = (l: LayerReport, i: number) =>
-        `<tr tabindex="0" data-layer="${i}"><td class="num">${l.layer ?? i + 1}</td><td>${escapeHtml(l.kind)}</td>` +
-        `<td class="num">${angleText(l)}</td><td class="num">${fixed(l.thickness_mm?.mean ?? NaN, 2)}</td>` +
-        `<td class="num">${fixed(l.thickness_mm?.max ?? NaN, 2)}</td><td class="num">${fixed(l.fibre_m ?? NaN, 1)}</td>` +
-        `<td class="num">${fixed(l.mass_g ?? NaN, 1)}</td><td class="num">${clock(l.time_s ?? NaN)}</td></tr>` +
+        `<tr${several ? ` tabindex="0" data-layer="${i}"` : ''}><td class="num">${l.layer ?? i + 1}</td>` +
+        `<td>${escapeHtml(l.kind)}</td>${cells('td', (c) => c.text(l))}</tr>` +
         (l.cut_because
-            ? `<tr class="note"><td></td><td colspan="7">A new fibre: ${escapeHtml(l.cut_because)}</td></tr>`
+            ? `<tr class="note"><td></td><td colspan="${kLayerColumns.length + 1}">A new fibre: ${escapeHtml(l.cut_because)}</td></tr>`
             : '');
     const sum = report.laminate;
     const foot = sum
-        ? `<tfoot><tr><td></td><td>All</td><td></td><td class="num">${fixed(sum.thickness_mm?.mean ?? NaN, 2)}</td>` +
-          `<td class="num">${fixed(sum.thickness_mm?.max ?? NaN, 2)}</td><td class="num">${fixed(sum.fibre_m ?? NaN, 1)}</td>` +
-          `<td class="num">${fixed(sum.mass_g ?? NaN, 1)}</td><td class="num">${clock(sum.time_s ?? NaN)}</td></tr></tfoot>`
+        ? `<tfoot><tr><td></td><td>All</td>${cells('td', (c) => c.sum?.(sum) ?? '')}</tr></tfoot>`
         : '';
     return (
-        `<p class="muted sum">From the mandrel outward. Choose one to see it alone.</p>` +
+        `<p class="muted sum">${several ? 'From the mandrel outward. Choose one to see it alone.' : 'One layer.'}</p>` +
         `<table class="grid layers"><thead><tr><th scope="col" class="num">#</th><th scope="col">Kind</th>` +
-        `<th scope="col" class="num">Angle</th><th scope="col" class="num">Mean<br>mm</th><th scope="col" class="num">Max<br>mm</th>` +
-        `<th scope="col" class="num">Fibre<br>m</th><th scope="col" class="num">Mass<br>g</th><th scope="col" class="num">Time</th></tr></thead>` +
-        `<tbody>${layers.map(row).join('')}</tbody>${foot}</table>` +
+        `${cells('th scope="col"', (c) => c.label)}</tr></thead><tbody>${layers.map(row).join('')}</tbody>${foot}</table>` +
         (report.walls ?? []).map(wallHtml).join('')
     );
 }

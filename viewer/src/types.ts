@@ -44,19 +44,26 @@ export interface Plan {
     turn_share?: number;
     uncovered?: Uncovered[];
     planner?: string;
+    asked_angle_deg?: number;
+    angles?: { mean_deg?: number };
+    pattern?: { circuits?: number; starts?: number; dwell_deg?: number };
 }
 
-export interface LayerReport {
+/** What layers are made of, one or all together. */
+export interface Laminate {
+    fibre_m?: number;
+    mass_g?: number;
+    time_s?: number;
+    thickness_mm?: { mean: number; max: number };
+}
+
+export interface LayerReport extends Laminate {
     layer: number;
     kind: string;
     mandrel?: string;
     goes_on?: boolean;
     cut_because?: string;
     angle_deg?: number | null;
-    fibre_m?: number;
-    mass_g?: number;
-    time_s?: number;
-    thickness_mm?: { mean: number; max: number };
     plan?: Plan;
 }
 
@@ -77,6 +84,13 @@ export interface WallReport {
     thin: { region: number; below: number; lacks_mm: number }[];
 }
 
+/** What the run was asked for. */
+export interface RunReport {
+    job?: Record<string, unknown>; // what differs from the defaults
+    seed?: number;
+    effort?: number;
+}
+
 export interface Report {
     meshwind?: string;
     machine?: string;
@@ -90,13 +104,10 @@ export interface Report {
     plan?: Plan;
     checks?: Record<string, Check>;
     program?: { blocks?: number; duration_s?: number; dialect?: string };
-    laminate?: {
-        fibre_m?: number;
-        mass_g?: number;
-        time_s?: number;
-        thickness_mm?: { mean: number; max: number };
-    };
+    laminate?: Laminate;
+    cost?: { fibre_m?: number; mass_g?: number; time_s?: number };
     layers?: LayerReport[];
+    run?: RunReport;
     walls?: WallReport[];
 }
 
