@@ -48,7 +48,7 @@ test('plots draw, follow the axis chosen, and seek', async (browser) => {
     await page.waitForTimeout(200);
     const first = await look(page, '#plot');
     assert.ok(first.colours >= 4 && first.share > 0.02);
-    await page.click('#plot-axes button:last-child');
+    await page.click('#axes tr:last-child button');
     await page.waitForTimeout(200);
     assert.notEqual((await look(page, '#plot')).sum, first.sum);
     const box = await page.locator('#plot').boundingBox();
@@ -58,7 +58,7 @@ test('plots draw, follow the axis chosen, and seek', async (browser) => {
     assert.equal(Number(await page.inputValue('#slider')).toFixed(3), middle.toFixed(3));
     await page.mouse.wheel(0, -400);
     await page.waitForTimeout(200);
-    await page.mouse.click(box.x + box.width / 2 + 60, box.y + box.height / 2);
+    await page.mouse.click(box.x + 0.56 * box.width, box.y + box.height / 2);
     const near = (await state(page)).time_s;
     assert.ok(near > middle && near - middle < 0.06 * duration, 'a stretched plot seeks finer');
 });

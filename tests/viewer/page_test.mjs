@@ -6,5 +6,6 @@ import { tests, tidy } from './run.mjs';
 import './looks.mjs';
 import './motion.mjs';
 import './controls.mjs';
+import './panels.mjs';
 
 await runTests(tests, tidy);

@@ -6,7 +6,7 @@ import type { CameraMode } from './stage';
 import type { Timeline } from './timeline';
 import type { Body } from './types';
 
-const kCloudPoints = 1000; // of each cloud that are looked at
+const kCloudPoints = 1000; // that are looked at of mandrel, extension, all fibres
 const kDirections = 128;
 const kPoses = 300; // spread over all programs
 /** Of the part's diagonal: so much of the head is taken in, from the eye on; a ram may be much longer. */
@@ -28,9 +28,13 @@ export class Framing {
         private readonly kinematics: Kinematics,
         private readonly timeline: Timeline,
     ) {
-        const extension = page.extension?.points ?? [];
-        const clouds = [page.points, extension, ...timeline.programs.map((p) => p.fibre.position)];
-        this.part = extremes(clouds.flatMap((cloud) => sample(cloud)));
+        const fibres = timeline.programs.map((p) => p.fibre.position);
+        const each = Math.ceil(kCloudPoints / fibres.length);
+        this.part = extremes([
+            ...sample(page.points, kCloudPoints),
+            ...sample(page.extension?.points ?? [], kCloudPoints),
+            ...fibres.flatMap((cloud) => sample(cloud, each)),
+        ]);
         const size = new Box3().setFromPoints(this.part).getSize(new Vector3()).length();
         this.head = kinematics.machine.eye.envelope.map((body) => this.linkOf(body, kHeadReach * size));
     }
@@ -63,32 +67,36 @@ export class Framing {
         return extremes(all);
     }
 
-    /** Some of the program, with those where an axis is at an end of its travel. */
+    /** Some of all programs, with those where an axis is at an end of its travel. */
     private poses(): Pose[] {
         const n = this.kinematics.axes.length;
-        const each = Math.max(Math.ceil(kPoses / this.timeline.programs.length), 2);
-        const poses = this.timeline.programs.flatMap(({ fibre: { axes, time } }) => {
-            const last = time.length - 1;
-            const blocks = new Set<number>();
-            for (let k = 0; k < each && last >= 0; ++k) blocks.add(Math.round((k * last) / (each - 1)));
-            for (let axis = 0; axis < n && last >= 0; ++axis) {
-                let [low, high] = [0, 0];
-                for (let b = 1; b <= last; ++b) {
-                    if (axes[b * n + axis] < axes[low * n + axis]) low = b;
-                    if (axes[b * n + axis] > axes[high * n + axis]) high = b;
+        const programs = this.timeline.programs.map((p) => p.fibre.axes).filter((axes) => axes.length);
+        const poseOf = (axes: Float64Array, block: number): Pose =>
+            this.kinematics.pose(axes.subarray(block * n, (block + 1) * n));
+        if (!programs.length) return [poseOf(new Float64Array(n), 0)];
+        const each = Math.max(Math.ceil(kPoses / programs.length), 2);
+        const poses = programs.flatMap((axes) =>
+            Array.from({ length: each }, (_, k) => poseOf(axes, Math.round((k * (axes.length / n - 1)) / (each - 1)))),
+        );
+        for (let axis = 0; axis < n; ++axis) {
+            const low = { axes: programs[0], at: axis };
+            const high = { axes: programs[0], at: axis };
+            for (const axes of programs) {
+                for (let at = axis; at < axes.length; at += n) {
+                    if (axes[at] < low.axes[low.at]) [low.axes, low.at] = [axes, at];
+                    if (axes[at] > high.axes[high.at]) [high.axes, high.at] = [axes, at];
                 }
-                blocks.add(low).add(high);
             }
-            return [...blocks].map((b) => this.kinematics.pose(axes.subarray(b * n, (b + 1) * n)));
-        });
-        return poses.length ? poses : [this.kinematics.pose(new Float64Array(n))];
+            for (const { axes, at } of [low, high]) poses.push(poseOf(axes, Math.floor(at / n)));
+        }
+        return poses;
     }
 
     private linkOf(body: Body, reach: number): HeadLink {
         const eye = new Vector3(...this.kinematics.machine.eye.position);
         const near = (p: Vector3): Vector3 => p.sub(eye).clampLength(0, reach).add(eye);
         if (body.type === 'mesh') {
-            const points = extremes(sample(this.page.array(body.points) as Float32Array));
+            const points = extremes(sample(this.page.array(body.points), kCloudPoints));
             return { letter: body.link, points: points.map(near) };
         }
         const ends = [body.from, body.to].map((end) => near(new Vector3(...end)));
@@ -101,9 +109,9 @@ export class Framing {
 
 const kAround = [1, -1].flatMap((s) => [new Vector3(s, 0, 0), new Vector3(0, s, 0), new Vector3(0, 0, s)]);
 
-/** Some thousand points of a cloud, all over it. */
-function sample(cloud: ArrayLike<number>): Vector3[] {
-    const step = 3 * Math.max(1, Math.floor(cloud.length / 3 / kCloudPoints));
+/** So many points of a cloud, or somewhat more, all over it. */
+function sample(cloud: ArrayLike<number>, count: number): Vector3[] {
+    const step = 3 * Math.max(1, Math.floor(cloud.length / 3 / count));
     const points: Vector3[] = [];
     for (let i = 0; i + 2 < cloud.length; i += step) points.push(new Vector3().fromArray(cloud, i));
     return points;

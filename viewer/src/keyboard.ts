@@ -23,11 +23,11 @@ const kKeys: [string, string][] = [
     ['\u2191 \u2193', 'a course back or on'],
     ['Home End', 'to the start or the end'],
     ['1 \u2026 7', 'course, family, slip, bridging, layers, thickness, angle'],
-    ['B E', 'draw courses from the one under way on; up to it'],
+    ['B E', 'the course under way is the first, the last one drawn'],
     ['A', 'draw all courses'],
     ['M', 'camera with the machine or on the mandrel'],
     ['F', 'see part and head, wherever they go'],
-    ['S P', 'fold the findings; axes and plots'],
+    ['S P', 'fold or show the findings, the axes and plots'],
     ['?', 'this list'],
 ];
 

@@ -1,9 +1,10 @@
 /**
- * Links to a moment (#t=12.3, with &layer=2 for one layer alone) and `window.meshwind`:
+ * Links to a moment (#t=12.3, with &layer=2 for one layer alone, &courses=3-17 for a range of courses) and
+ * `window.meshwind`:
  *   ready: Promise, fulfilled when the page is drawn
  *   seek(seconds): to a time of the common clock (all programs one after the other)
- *   state(): {time_s, program, block, axes, eye_mm (mandrel frame), spindle_deg, drawn_turn_deg,
- *             camera: {position, target, target_mandrel_mm}, ...}
+ *   state(): {time_s, program, block, axes, eye_mm (mandrel frame), spindle_deg, drawn_turn_deg, courses,
+ *             camera: {position, target, target_mandrel_mm, part, head}, ...}
  * Both are part of the page's tests.
  */
 import type { App } from './app';
@@ -82,6 +83,8 @@ export function followLink(app: App): boolean {
     ) {
         app.setLayer(layer - 1);
     }
+    const courses = /^(\d+)-(\d+)$/.exec(link.get('courses') ?? '');
+    if (courses) app.setRange(Number(courses[1]), Number(courses[2]));
     const time = link.get('t');
     if (time === null || !Number.isFinite(Number(time))) return false;
     app.pause();
@@ -106,11 +109,16 @@ export class LinkKeeper {
     }
 
     private write(): void {
-        const { moment, layer, playing } = this.app;
+        const { moment, layer, range, playing } = this.app;
         if (playing) return;
         const t = Number(moment.time.toFixed(3));
-        const whole = layer === null && moment.time >= this.app.timeline.duration;
-        this.written = whole ? '' : `#t=${t}${layer === null ? '' : `&layer=${layer + 1}`}`;
+        const atEnd = layer === null && moment.time >= this.app.timeline.duration;
+        const parts = [
+            atEnd ? '' : `t=${t}`,
+            layer === null ? '' : `layer=${layer + 1}`,
+            range.isWhole() ? '' : `courses=${range.first}-${range.last}`,
+        ].filter(Boolean);
+        this.written = parts.length ? `#${parts.join('&')}` : '';
         if (this.written === location.hash) return;
         try {
             history.replaceState(null, '', this.written || location.pathname + location.search);
