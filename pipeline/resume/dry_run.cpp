@@ -1,7 +1,6 @@
 #include "pipeline/resume/dry_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -24,8 +23,11 @@ namespace {
 // it.
 constexpr double kAcross = 0.7;
 
-// Of the clearance: how far a start is moved. The head stands off the part already.
-constexpr std::array kMoves = {1.0, 1.25, 1.5, 2.0, 3.0};
+// The start is moved by the clearance at least, since that is what it is for, and then by so many
+// times more: on a tee the head reaches in beside a branch that must pass in front of it.
+constexpr double kFarther = 1.25;
+// Farther than any machine reaches, for axes without ends.
+constexpr double kFarthest_mm = 1e4;
 
 // The one that draws the head back most directly comes first.
 std::vector<std::size_t> axes_across(const Machine& machine, std::span<const double> start) {
@@ -86,13 +88,17 @@ Moved move_out(const Setup& setup, const BlockList& program, const std::string& 
                          "has no linear axis across the spindle that could take the head away; run "
                          "the program without the mandrel");
     }
-    for (const double share : kMoves) {
+    bool within_travel = true;
+    for (double move_mm = clearance_mm; within_travel && move_mm < kFarthest_mm;
+         move_mm *= kFarther) {
+        within_travel = false;
         for (const std::size_t axis : axes) {
             const std::int64_t step_nano = machine.axis(axis).resolution_nano;
-            const std::int64_t steps = static_cast<std::int64_t>(
-                std::ceil(share * clearance_mm * kNanoPerUnit / static_cast<double>(step_nano)));
+            const auto steps = static_cast<std::int64_t>(
+                std::ceil(move_mm * kNanoPerUnit / static_cast<double>(step_nano)));
             for (const std::int64_t by_nano : {steps * step_nano, -steps * step_nano}) {
                 auto list = moved(machine, program, axis, by_nano);
+                within_travel = within_travel || list.has_value();
                 if (list && keeps_clear(setup, joint_path(*list), clearance_mm)) {
                     return {std::move(*list), axis, static_cast<double>(by_nano) / kNanoPerUnit};
                 }
