@@ -33,7 +33,8 @@ int run_case(const CaseArguments& arguments, const Common& common) {
     WindArguments wind;
     wind.mandrel = wanted.mandrel;
     wind.machine = wanted.machine;
-    wind.job = {wanted.job, wanted.settings};
+    wind.job.file = wanted.job;
+    wind.job.settings = wanted.settings;
     wind.out = (folder / wanted.id).string();
     wind.effort = arguments.effort;
     try {

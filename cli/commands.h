@@ -8,7 +8,6 @@
 
 #include "cli/exit_codes.h"
 #include "pipeline/trace_table.h"
-#include "pipeline/verify_text.h"
 #include "postproc/ringhead/carry.h"
 #include "report/picture/preview.h"
 #include "study/mesh_size.h"
@@ -31,8 +30,7 @@ struct Common {
 struct JobArguments {
     std::string file;                   ///< empty: the defaults
     std::vector<std::string> settings;  ///< "tow.width=8"
-    /// Of a program's head, where no file is given.
-    std::optional<NamedText> of_program{};
+    std::string program, text;          ///< of a program's head, JSON, where no file is given
 };
 
 struct WindArguments {

@@ -55,10 +55,9 @@ fs::path found_or_none(const std::string& name) {
 
 Job job_of(const JobArguments& arguments, const fs::path& file, bool points) {
     const std::vector<JobSetting> settings = settings_of(arguments.settings);
-    if (arguments.of_program && file.empty()) {
-        const auto& [program, text] = *arguments.of_program;
-        return points ? job_of_text(text, program, {}, settings)
-                      : parse_job(text, program, settings);
+    if (file.empty() && !arguments.text.empty()) {
+        return points ? job_of_text(arguments.text, arguments.program, {}, settings)
+                      : parse_job(arguments.text, arguments.program, settings);
     }
     if (points) {
         return load_job(file, settings);

@@ -65,9 +65,8 @@ ProgramInputs inputs_of(ProgramArguments arguments, const Common& common) {
     ProgramInputs inputs;
     inputs.verify.program = {arguments.program, read_text_file(arguments.program)};
     const MadeFrom head = head_of(inputs.verify.program.text);
-    if (!head.job.empty()) {
-        arguments.job.of_program = {arguments.program, head.job};
-    }
+    arguments.job.program = arguments.program;
+    arguments.job.text = head.job;
     const InputFiles files{.machine = arguments.machine.empty()
                                           ? machine_named_by(arguments.program, head.machine_file)
                                           : find_input(arguments.machine),
@@ -270,7 +269,8 @@ int run_repeat(const RepeatArguments& arguments, const Common& common) {
                        ? arguments.machine
                        : machine_named_by(arguments.program, head.machine_file).string();
     wind.job = arguments.job;
-    wind.job.of_program = {arguments.program, head.job};
+    wind.job.program = arguments.program;
+    wind.job.text = head.job;
     wind.effort = head.run->effort;
     wind.out = arguments.out;
     wind.png = arguments.png;

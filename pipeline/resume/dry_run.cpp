@@ -126,7 +126,6 @@ DryRun dry_run(Setup setup, const VerifyInputs& inputs, double clearance_mm) {
     DryRun run;
     run.axis = setup.machine.axis(out.axis).letter;
     run.moved_mm = out.by_mm;
-    run.swept = program.moves();
     ProgramHeader header;
     header.version = kVersion;
     header.mandrel = setup.mandrel.file;

@@ -15,7 +15,6 @@ struct DryRun {
     BlockList blocks;       ///< as read from the text
     char axis = '?';        ///< that starts elsewhere
     double moved_mm = 0.0;  ///< how far, with its sign
-    std::size_t swept = 0;  ///< blocks in which the head was held against the clearance
 };
 
 /// A linear axis across the spindle starts farther out, so that in every block the head stays

@@ -1,6 +1,5 @@
 #include "postproc/nc/made_from.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -19,9 +18,6 @@ constexpr std::string_view kMandrelDigest = "mandrel digest: ";
 constexpr std::string_view kMachineFile = "machine file: ";
 constexpr std::string_view kJob = "job: ";
 constexpr std::array<std::string_view, 3> kRun = {"run: seed ", ", effort ", ", mandrel "};
-
-// Lines in which a head is looked for; that of a job of 200 layers has some 500.
-constexpr std::size_t kMostHeadLines = 5000;
 
 // Characters that some controller does not take in a comment. In JSON they stand in strings alone,
 // where each can be written by its number.
@@ -119,10 +115,13 @@ std::optional<MadeFrom> made_from(std::string_view program) {
          {kMandrelDigest, &found.mandrel_digest},
          {kMachineFile, &found.machine_file},
          {kCodeDigest, &found.code_digest}}};
-    for (std::size_t i = 0; i < std::min(lines.size(), kMostHeadLines); ++i) {
-        const auto comment = comment_of(lines[i]);
+    for (const std::string_view line : lines) {
+        const auto comment = comment_of(line);
+        if (!comment && found.version.empty()) {
+            continue;  // "%", or the program's number
+        }
         if (!comment) {
-            continue;
+            break;  // comments further on are of blocks
         }
         for (const auto& [begin, text] : texts) {
             const auto words = behind(begin, *comment);

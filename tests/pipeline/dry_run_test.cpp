@@ -71,7 +71,6 @@ TEST(DryRun, TheSameIncrementsFarFromThePart) {
         const DryRun run = program.in_the_air(kClear_mm);
         const BlockList whole = program.blocks();
         ASSERT_EQ(run.blocks.moves(), whole.moves());
-        EXPECT_EQ(run.swept, whole.moves());
         for (std::size_t block = 0; block < whole.blocks.size(); ++block) {
             EXPECT_EQ(run.blocks.blocks[block].duration_s, whole.blocks[block].duration_s);
             for (std::size_t a = 0; a < whole.axes.size(); ++a) {

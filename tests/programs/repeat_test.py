@@ -2,6 +2,7 @@
 import json
 import os
 
+import page_data
 import program
 
 JOB = {"tow": {"width": 8, "friction": 0.25}, "mandrel": {"units": "in"},
@@ -92,13 +93,14 @@ class Repeat(program.ProgramTest):
             return
         self.assertEqual(self.done("show", "out").stdout, "page: out/report.html\n")
         (out / "report.html").unlink()
-        for what, page, title in (("out", "out.html", "pipe.stl"), ("out/program-layer-2.ngc", "laid.html", "layer-2"),
-                                  ("pipe.stl", "pipe.html", "pipe.stl")):
+        for what, page, mandrel in (("out", "out.html", "pipe.stl"), ("out/program-layer-2.ngc", "laid.html", "mandrel-layer-2.obj"),
+                                    ("pipe.stl", "pipe.html", "pipe.stl")):
             with self.subTest(what):
                 arguments = () if page != "laid.html" else ("-o", "laid.html")
                 told = json.loads(self.done("show", what, *arguments, "--json").stdout)
                 self.assertEqual(told, {"page": page})
-                self.assertGreater((self.folder / page).stat().st_size, 100_000)
+                shown = page_data.Page((self.folder / page).read_text()).header
+                self.assertEqual(shown.get("report", shown.get("inspection"))["mandrel"]["file"], mandrel)
         os.mkdir(self.folder / "empty")
         self.refused("show.nothing", "show", "empty")
         self.refused("cli.page_name", "show", "pipe.stl", "-o", "pipe.htm")
