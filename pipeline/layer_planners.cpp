@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "core/units.h"
 #include "mesh/tube/grown_tube.h"
@@ -18,6 +20,13 @@ namespace {
 constexpr double kFirstAngle_deg = 45.0;
 constexpr double kLastAngle_deg = 80.0;
 constexpr double kAngleStep_deg = 5.0;
+
+// Where a narrow end lets none of those by, or a neck is left bare by them.
+constexpr double kFlattest_deg = 10.0;
+constexpr double kFlatter_deg = 2.5;
+
+// A pattern that covers less is looked for at smaller angles.
+constexpr double kWholeWall = 0.99;
 
 // Radii at which the circuits of a stage of a wall are tried to turn back.
 constexpr int kMostTurnsTried = 4;
@@ -95,7 +104,7 @@ std::string why_no_body(const LayerTask& task) {
                             found.why_not + "; use \"cover\"";
 }
 
-Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) {
+PatternOptions pattern_options(const LayerTask& task, PatternKind kind, double angle_rad) {
     const Job& job = task.setup.job;
     PatternOptions pattern;
     pattern.kind = kind;
@@ -118,7 +127,12 @@ Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) 
     if (task.layer.pattern) {
         pattern.wish = wish_of(*task.layer.pattern);
     }
-    return plan_pattern(task.setup.mandrel, *task.revolution().body, pattern);
+    return pattern;
+}
+
+Plan plan_pattern_of(const LayerTask& task, PatternKind kind, double angle_rad) {
+    return plan_pattern(task.setup.mandrel, *task.revolution().body,
+                        pattern_options(task, kind, angle_rad));
 }
 
 // Of a stage of a wall: the radius at which, from the poles out, the wall first wants a layer, but
@@ -141,14 +155,94 @@ double first_wanting_mm(const Surface& surface, const StageAsk& stage) {
     return *first;
 }
 
-// Polar where both ends are narrow, else helical by the smallest angle that holds.
-Plan plan_from_rim_to_rim(const LayerTask& task) {
-    Plan plan = covering(plan_pattern_of(task, PatternKind::Polar, 0.0));
-    for (double next_deg = kFirstAngle_deg; !plan.failure.empty() && next_deg <= kLastAngle_deg;
-         next_deg += kAngleStep_deg) {
-        plan = covering(plan_pattern_of(task, PatternKind::Helical, rad_from_deg(next_deg)));
+bool is_wound(const TriedPlan& tried) {
+    return tried.trial != nullptr && tried.trial->refused.empty();
+}
+
+// What turns on pins, which are yet to be put on the mandrel, is not wound.
+TriedPlan wound(const LayerTask& task, Plan plan) {
+    TriedPlan tried = untried(std::move(plan));
+    if (tried.plan.failure.empty() && tried.plan.pins.empty()) {
+        tried.trial = task.machine.wind_all(tried.plan);
     }
-    return plan;
+    return tried;
+}
+
+// Of `auto`: it covers, and the machine winds a circuit of it.
+Plan pattern_at(const LayerTask& task, PatternKind kind, double angle_rad) {
+    PatternOptions options = pattern_options(task, kind, angle_rad);
+    options.winds = [&task](std::span<const Piece> circuit) {
+        return task.machine.wind_alone(circuit);
+    };
+    return covering(plan_pattern(task.setup.mandrel, *task.revolution().body, options));
+}
+
+bool can_be_laid(const TriedPlan& tried) {
+    return is_wound(tried) || (tried.plan.failure.empty() && !tried.plan.pins.empty());
+}
+
+// What covers the whole wall by as little fibre as can be goes first, then what covers most.
+bool goes_before(const Plan& plan, const Plan& other) {
+    const auto share = [](const Plan& p) { return std::min(p.coverage.fraction, kWholeWall); };
+    return share(plan) != share(other) ? share(plan) > share(other)
+                                       : plan.fibre_length_mm < other.fibre_length_mm;
+}
+
+// Patterns at angles that come to both ends and are smaller than the usual ones, the best first.
+std::vector<Plan> flatter_patterns(const LayerTask& task) {
+    const double first_rad = rad_from_deg(kFirstAngle_deg - kAngleStep_deg);
+    const double steepest_rad =
+        steepest_pattern_rad(task.setup.mandrel, *task.revolution().body,
+                             pattern_options(task, PatternKind::Helical, first_rad))
+            .value_or(0.0);
+    std::vector<Plan> plans;
+    for (double angle = steepest_rad; angle >= rad_from_deg(kFlattest_deg);
+         angle -= rad_from_deg(kFlatter_deg)) {
+        Plan plan = pattern_at(task, PatternKind::Helical, angle);
+        if (plan.failure.empty()) {
+            plans.push_back(std::move(plan));
+        }
+    }
+    std::stable_sort(plans.begin(), plans.end(), goes_before);
+    return plans;
+}
+
+// A fibre at none of the usual angles comes there by itself: it is steered, and piles up.
+bool has_narrow_end(const LayerTask& task) {
+    const Meridian& meridian = task.revolution().body->meridian;
+    const double least_mm =
+        meridian.at(meridian.widest_mm()).radius_mm * std::sin(rad_from_deg(kFirstAngle_deg));
+    return std::min(meridian.at(0.0).radius_mm, meridian.at(meridian.length_mm()).radius_mm) <
+           least_mm;
+}
+
+// Polar where both ends are narrow openings, else helical by the smallest of the usual angles that
+// holds; where that leaves wall bare, none holds, or an end is narrow, by a smaller one.
+TriedPlan plan_from_rim_to_rim(const LayerTask& task) {
+    TriedPlan best = wound(task, pattern_at(task, PatternKind::Polar, 0.0));
+    if (can_be_laid(best)) {
+        return best;
+    }
+    for (double next_deg = kFirstAngle_deg; !can_be_laid(best) && next_deg <= kLastAngle_deg;
+         next_deg += kAngleStep_deg) {
+        best = wound(task, pattern_at(task, PatternKind::Helical, rad_from_deg(next_deg)));
+    }
+    if (can_be_laid(best) && best.plan.coverage.fraction >= kWholeWall && !has_narrow_end(task)) {
+        return best;
+    }
+    for (Plan& plan : flatter_patterns(task)) {
+        if (can_be_laid(best) && !goes_before(plan, best.plan)) {
+            break;
+        }
+        TriedPlan tried = wound(task, std::move(plan));
+        if (can_be_laid(tried)) {
+            return tried;
+        }
+        if (!can_be_laid(best)) {
+            best = std::move(tried);
+        }
+    }
+    return best;
 }
 
 // Circuits of a stage of a wall turn back where it first wants a layer; where that is at a rim they
@@ -168,16 +262,16 @@ TriedPlan plan_stage_in_patterns(const LayerTask& task) {
     for (int tries = 0; tries < kMostTurnsTried && (tries == 0 || turn_mm <= widest_mm); ++tries) {
         const bool at_rim = turn_mm < beyond_rims_mm;
         const double sine = std::min(turn_mm / widest_mm, std::sin(rad_from_deg(kLastAngle_deg)));
-        tried = untried(at_rim ? plan_from_rim_to_rim(task)
-                               : plan_pattern_of(task, PatternKind::Helical, std::asin(sine)));
+        tried = at_rim ? plan_from_rim_to_rim(task)
+                       : untried(plan_pattern_of(task, PatternKind::Helical, std::asin(sine)));
         if (!tried.plan.pins.empty()) {  // that are yet to be put on the mandrel
             break;
         }
-        if (tried.plan.failure.empty()) {
+        if (tried.plan.failure.empty() && tried.trial == nullptr) {
             tried.trial = task.machine.wind_all(tried.plan);
-            if (tried.trial->refused.empty()) {
-                break;
-            }
+        }
+        if (is_wound(tried)) {
+            break;
         }
         turn_mm = at_rim ? beyond_rims_mm : turn_mm + width_mm;
     }
@@ -196,7 +290,7 @@ TriedPlan plan_pattern_layer(const LayerTask& task) {
             covering(plan_pattern_of(task, PatternKind::Helical, rad_from_deg(*layer.angle_deg))));
     }
     return task.options.stage != nullptr ? plan_stage_in_patterns(task)
-                                         : untried(plan_from_rim_to_rim(task));
+                                         : plan_from_rim_to_rim(task);
 }
 
 // Lines of elbows.

@@ -53,7 +53,8 @@ PlannedLayer cover_instead(const LayerTask& task, const LayerPlanner& cover,
                           " m2 is too large to be covered by single courses of a tow of " +
                           fixed(tow_mm, 1) + " mm instead, unless \"kind\": \"cover\" asks for it");
     }
-    if (traits_of(task.setup.job.mandrel.turn).reads_pins) {  // none stand that courses could use
+    // With pins, none stand that courses could use.
+    if (task.options.patterns_first || traits_of(task.setup.job.mandrel.turn).reads_pins) {
         return failed(Planner::Pattern, "no pattern is laid: " + why);
     }
     task.options.context.report_remark("no pattern is laid: " + why +

@@ -18,9 +18,11 @@ struct LayerPlanOptions {
     RunContext context{};
     /// What the layers before lie on: hoops lie on its cylinder, elbows keep its line.
     const Mandrel* bare = nullptr;
-    double build_up_mm = 0.0;         ///< of the layers before at most
-    const Plan* before = nullptr;     ///< of the layer before: its fibre goes on where it can
-    double least_covered = 0.0;       ///< as in CoverOptions
+    double build_up_mm = 0.0;      ///< of the layers before at most
+    const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
+    double least_covered = 0.0;    ///< as in CoverOptions
+    /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
+    bool patterns_first = false;
     const StageAsk* stage = nullptr;  ///< of a layer of kind Wall
     std::vector<PinStand> pins{};     ///< that courses turn on, by rim; empty: by friction
 };

@@ -32,6 +32,8 @@ struct WindOptions {
     double reading_s = 0.0;  ///< that the inputs took before; counts as "import"
     /// A cover of less than this share of what courses reach is not wound: its plan fails.
     double least_covered = 0.0;
+    /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
+    bool patterns_first = false;
 };
 
 /// A layer of the job that was wound in stages.

@@ -1,5 +1,4 @@
 #include "mesh/mandrel/load_mandrel.h"
-#include "mesh/smooth/freeze.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +11,13 @@
 #include "mesh/brep/exact_corners.h"
 #include "mesh/brep/read_cad.h"
 #include "mesh/edge_table.h"
-#include "mesh/even/blend.h"
 #include "mesh/even/slivers.h"
 #include "mesh/even/square_ends.h"
 #include "mesh/even/wall_pieces.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
+#include "mesh/mandrel/part_wall.h"
 #include "mesh/mandrel/remarks.h"
-#include "mesh/mandrel/swept_part.h"
 #include "mesh/profile/profile_file.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/weld.h"
@@ -28,6 +26,7 @@
 #include "mesh/segment/rims.h"
 #include "mesh/segment/segment.h"
 #include "mesh/segment/spindle_axis.h"
+#include "mesh/smooth/freeze.h"
 #include "mesh/smooth/refine.h"
 
 namespace meshwind {
@@ -128,26 +127,6 @@ void keep_named_regions(Segmentation& segmentation, const std::vector<std::int32
     }
 }
 
-// Area and triangles of regions that have changed. What is cut off an end is an end cap.
-void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& segmentation) {
-    for (std::size_t id = segmentation.regions.size(); id < count; ++id) {
-        Region end;
-        end.id = static_cast<std::int32_t>(id);
-        end.kind = RegionKind::EndCap;
-        end.visible_fraction = 1.0;
-        segmentation.regions.push_back(end);
-    }
-    for (Region& region : segmentation.regions) {
-        region.triangles = 0;
-        region.area_mm2 = 0.0;
-    }
-    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-        Region& region = segmentation.regions[static_cast<std::size_t>(segmentation.region[f])];
-        ++region.triangles;
-        region.area_mm2 += area_mm2(whole.points_mm, whole.faces[f]);
-    }
-}
-
 // What is kept of a CAD part's faces becomes a region of its own.
 [[noreturn]] void fail_face(const CadMesh* cad, const std::string& word, const std::string& name) {
     std::string words = "has no face " + word;
@@ -232,75 +211,12 @@ void check_wall(const std::vector<Region>& regions, const std::string& name) {
                          "{\"keep_regions\": [0]}, else export the part's outside");
 }
 
-std::vector<char> kept_of(const std::vector<Region>& regions) {
-    std::vector<char> kept;
-    kept.reserve(regions.size());
-    for (const Region& region : regions) {
-        kept.push_back(static_cast<char>(region.kept));
-    }
-    return kept;
-}
-
-void move(std::vector<Eigen::Vector3d>& points, const Eigen::Isometry3d& motion) {
-    for (Eigen::Vector3d& p : points) {
-        p = motion * p;
-    }
-}
-
-void move(TriangleSoup& soup, const Eigen::Isometry3d& motion) {
-    move(soup.points_mm, motion);
-}
-
-void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion) {
-    for (Rim& rim : rims) {
-        rim.centre_mm = motion * rim.centre_mm;
-        rim.axis = motion.linear() * rim.axis;
-    }
-}
-
 std::vector<CadFace> moved(std::vector<CadFace> faces, const Eigen::Isometry3d& motion) {
     for (CadFace& face : faces) {
         face.axis_point_mm = motion * face.axis_point_mm;
         face.axis_direction = motion.linear() * face.axis_direction;
     }
     return faces;
-}
-
-LabelledView view(const TriangleSoup& whole, const Segmentation& segmentation) {
-    return {whole, segmentation.region, segmentation.feature, segmentation.neighbours};
-}
-
-// What is wound with its ends and its spindle, still in the file's frame.
-struct Wall {
-    LabelledMesh kept;
-    Rims rims;
-    SpindleFrame frame;
-};
-
-Wall find_wall(const TriangleSoup& whole, const Segmentation& segmentation,
-               const std::optional<MandrelOptions::Axis>& axis_mm) {
-    Wall wall;
-    wall.kept = wall_of(view(whole, segmentation), kept_of(segmentation.regions));
-    wall.rims = find_rims(wall.kept.soup);
-    wall.frame = find_spindle(wall.kept.soup, wall.rims.rims, axis_mm);
-    return wall;
-}
-
-std::optional<BodyOfRevolution> body_of(Wall wall) {
-    const Eigen::Isometry3d& motion = wall.frame.mandrel_from_file;
-    move(wall.kept.soup, motion);
-    move(wall.rims.rims, motion);
-    const Surface surface = freeze_surface(
-        wall.kept.soup,
-        {.feature = wall.kept.feature, .region = wall.kept.region, .rim = wall.rims.of_edge});
-    return find_revolution(surface, wall.rims.rims).body;
-}
-
-void take(LabelledMesh&& part, Mandrel& mandrel, Segmentation& segmentation) {
-    mandrel.whole = std::move(part.soup);
-    segmentation.region = std::move(part.region);
-    segmentation.feature = std::move(part.feature);
-    segmentation.neighbours = face_neighbours(mandrel.whole.faces);
 }
 
 // Takes off what is no part of the ends' legs.
@@ -330,68 +246,6 @@ void note(const std::vector<EndCut>& cuts, std::vector<Rim>& rims) {
         if (nearest != rims.end()) {
             nearest->cut_off_mm = cut.depth_mm;
         }
-    }
-}
-
-// A body of revolution in rings of our own, where the file's triangles are uneven. The spindle
-// stays.
-bool make_rings(Mandrel& mandrel, Segmentation& segmentation, Wall& wall) {
-    WindingMeshReport& report = mandrel.winding_mesh;
-    if (report.least_quality >= kUnevenQuality) {
-        return false;
-    }
-    const std::vector<char> kept = kept_of(segmentation.regions);
-    const std::optional<BodyOfRevolution> body = body_of(wall);
-    if (!body || body->residual_mm > kDeviationShare * size_mm(wall.kept, kept)) {
-        return false;
-    }
-    std::optional<LabelledMesh> swept = swept_part(view(mandrel.whole, segmentation), kept,
-                                                   body->meridian, wall.frame.mandrel_from_file);
-    if (!swept) {
-        return false;
-    }
-    take(*std::move(swept), mandrel, segmentation);
-    wall.kept = wall_of(view(mandrel.whole, segmentation), kept);
-    wall.rims = find_rims(wall.kept.soup);
-    report.own = report.swept = true;
-    report.triangles = wall.kept.soup.faces.size();
-    report.deviation_mm = body->residual_mm;
-    return true;
-}
-
-// The wall in triangles of our own, where the file's are uneven.
-void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
-               const std::optional<MandrelOptions::Axis>& axis_mm,
-               const std::optional<double>& details_mm) {
-    const std::vector<char> kept = kept_of(segmentation.regions);
-    WindingMesh made =
-        winding_mesh({mandrel.whole, segmentation.region, segmentation.feature}, kept, details_mm);
-    made.report.file_triangles = mandrel.winding_mesh.file_triangles;
-    mandrel.winding_mesh = made.report;
-    mandrel.details = std::move(made.removed);
-    if (made.report.own) {
-        take(std::move(made.part), mandrel, segmentation);
-        wall = find_wall(mandrel.whole, segmentation, axis_mm);
-    }
-}
-
-// What is wound then is no more what the file's triangles stand for. The spindle stays.
-void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, double radius_mm,
-           const std::string& name) {
-    Blend made = blend_wall({mandrel.whole, segmentation.region, segmentation.feature},
-                            kept_of(segmentation.regions), radius_mm);
-    if (!made.why_not.empty()) {
-        throw InputError("mesh.no_blend", name,
-                         "cannot be blended by " + fixed(radius_mm, 2) + " mm: " + made.why_not);
-    }
-    mandrel.winding_mesh.blend_mm = radius_mm;
-    mandrel.winding_mesh.blended_mm2 = made.area_mm2;
-    mandrel.winding_mesh.filled_mm3 = made.volume_mm3;
-    if (made.area_mm2 > 0.0) {
-        take(std::move(made.part), mandrel, segmentation);
-        count_regions(mandrel.whole, segmentation.regions.size(), segmentation);
-        wall.kept = wall_of(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
-        wall.rims = find_rims(wall.kept.soup);
     }
 }
 

@@ -20,8 +20,8 @@ using Pieces = std::vector<MeridianPiece>;
 // Nodes this share of the whole curve's size off a line are on it: what is left of twelve digits.
 constexpr double kOnLineShare = 1e-12;
 
-// Radii closer than this share are equally wide: below what any fit or file tells apart.
-constexpr double kEquallyWideShare = 1e-9;
+// Lengths closer than this share are the same: below what any fit or file tells apart.
+constexpr double kSameShare = 1e-9;
 
 constexpr std::size_t kLineNodes = 4;  // three may lie on a line by chance, at an inflexion
 
@@ -345,6 +345,8 @@ Pieces fitted(const Nodes& nodes) {
     }
     for (MeridianPiece& piece : pieces) {
         piece.middle_mm = local(piece, 0.5 * piece.step_mm).point;
+        const double half = length_to(piece, 0.5 * piece.step_mm);
+        piece.reach_mm = (1.0 + kSameShare) * std::max(half, piece.length_mm - half);
     }
     return pieces;
 }
@@ -426,7 +428,7 @@ double Meridian::widest_mm() const {
     double widest = -1.0;
     double place = 0.0;
     const auto offer = [&](double radius, double arc) {
-        if (radius > widest + kEquallyWideShare * std::max(widest, 0.0)) {
+        if (radius > widest + kSameShare * std::max(widest, 0.0)) {
             widest = radius;
             place = arc;
         }
@@ -439,7 +441,7 @@ double Meridian::widest_mm() const {
         offer(pieces_[i].to_mm.x(), arc_mm_[i + 1]);
     }
     const auto as_wide = [&](const MeridianPiece& piece) {
-        const double least = widest * (1.0 - 2.0 * kEquallyWideShare);
+        const double least = widest * (1.0 - 2.0 * kSameShare);
         return piece.straight && piece.from_mm.x() >= least && piece.to_mm.x() >= least;
     };
     const auto first = std::find_if(pieces_.begin(), pieces_.end(), as_wide);
@@ -453,14 +455,21 @@ double Meridian::widest_mm() const {
 
 MeridianFoot Meridian::foot(double radius_mm, double z_mm) const {
     const Vector2d p(radius_mm, z_mm);
+    const auto least_mm = [&](const MeridianPiece& piece) {
+        return (p - piece.middle_mm).norm() - piece.reach_mm;
+    };
+    const auto guess = std::min_element(
+        pieces_.begin(), pieces_.end(),
+        [&](const MeridianPiece& a, const MeridianPiece& b) { return least_mm(a) < least_mm(b); });
+    const MeridianFoot guessed = foot_on(*guess, p);
     MeridianFoot best{0.0, std::numeric_limits<double>::max()};
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         const MeridianPiece& piece = pieces_[i];
-        // No point of the piece is farther than its length from its middle.
-        if ((p - piece.middle_mm).norm() - piece.length_mm > best.distance_mm) {
+        if (&piece != &*guess &&
+            least_mm(piece) > std::min(best.distance_mm, guessed.distance_mm)) {
             continue;
         }
-        const MeridianFoot foot = foot_on(piece, p);
+        const MeridianFoot foot = &piece == &*guess ? guessed : foot_on(piece, p);
         if (foot.distance_mm < best.distance_mm) {
             best = {arc_mm_[i] + foot.arc_mm, foot.distance_mm};
         }

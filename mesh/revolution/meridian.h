@@ -42,6 +42,7 @@ struct MeridianPiece {
     Eigen::Vector2d from_mm, to_mm;      ///< (radius, z)
     Eigen::Vector2d tangent0, tangent1;  ///< by the parameter, which is about the arc length
     Eigen::Vector2d middle_mm;
+    double reach_mm = 0.0;   ///< no point of it is farther from `middle_mm`
     double step_mm = 0.0;    ///< the parameter goes from 0 to here
     double length_mm = 0.0;  ///< arc length
     bool straight = false;

@@ -29,6 +29,9 @@ constexpr double kBlendsPerMm = 1000.0;
 // Under so much of the wall a larger blend is looked for, although the plan can be wound.
 constexpr double kWellCovered = 0.95;
 
+// Of a pattern.
+constexpr double kPatternCovers = 0.99;
+
 // With so much in reach of the fibres no larger one is looked for: a hundredth of it stays bare.
 constexpr double kWellInReach = 0.96;
 
@@ -182,10 +185,20 @@ public:
     /// blends. \param first seed that is tried, counted from 0 \throws as wind() does for the first
     /// job
     void start(const Job& job, std::uint64_t first = 0) {
-        const bool chooses_blend = !job.mandrel.blend_mm && !options_.import;
-        run(chooses_blend ? blended(job, 0.0) : job,
-            chooses_blend || best_ ? Depth::WhereItCovers : Depth::Full, first);
-        if (chooses_blend && !(done() && covers_well()) && !pins_first()) {
+        if (job.mandrel.blend_mm || options_.import) {
+            run(job, best_ ? Depth::WhereItCovers : Depth::Full, first);
+            return;
+        }
+        const Job sharp = blended(job, 0.0);
+        run(sharp, first == 0 ? Depth::PatternsFirst : Depth::WhereItCovers, first);
+        if (cover_put_off_) {
+            find_pattern(job);
+            if (done() || turns_on_pins(job)) {
+                return;
+            }
+            run(sharp, Depth::WhereItCovers);
+        }
+        if (!(done() && covers_well()) && !pins_first()) {
             choose_blend(job);
         }
     }
@@ -225,8 +238,9 @@ public:
     }
 
 private:
-    // Reach: no cover is wound, it is said what of the wall can be covered.
-    enum class Depth { Full, WhereItCovers, Reach };
+    // PatternsFirst: a part that has patterns is not covered. Reach: no cover is wound, it is said
+    // what of the wall can be covered.
+    enum class Depth { Full, WhereItCovers, PatternsFirst, Reach };
 
     // Once, and where that fails by chance and nothing stands with the next seeds; from a later
     // seed on only where what by_chance_ is of did. Throws as wind() does for the first job.
@@ -244,6 +258,17 @@ private:
                 }
                 note_refused(job, error);
                 return;  // of no use for what stands
+            }
+        }
+    }
+
+    // The smallest blend with which a part that has patterns is wound in one.
+    void find_pattern(const Job& job) {
+        for (const double widths : kBlendsInTows) {
+            run(blended(job, widths), Depth::PatternsFirst);
+            const bool covers_all = done() && covered_share(*best_) >= kPatternCovers;
+            if (covers_all || last_planner_ != Planner::Pattern) {
+                return;
             }
         }
     }
@@ -359,6 +384,8 @@ private:
                                                  ? ""
                                                  : ", with seed " + std::to_string(run.seed)));
         next_ = room_for(run);
+        last_planner_ = first_plan(run).planner;
+        cover_put_off_ = last_planner_ == Planner::Pattern && !run.planned();
         by_chance_ = fails_by_chance(run);
         if (!best_ || is_better(run, *best_)) {
             best_ = std::move(run);
@@ -378,6 +405,7 @@ private:
             }
         };
         options.context.seed = seed;
+        options.patterns_first = depth == Depth::PatternsFirst;
         options.least_covered = depth == Depth::Full    ? 0.0
                                 : depth == Depth::Reach ? kNeverEnough
                                                         : kLeastReach;
@@ -393,6 +421,8 @@ private:
     std::optional<Run> best_;
     std::optional<Job> next_;  // that may mend the last run that was wound
     bool by_chance_ = false;   // did that fail
+    Planner last_planner_ = Planner::None;
+    bool cover_put_off_ = false;  // was it a pattern that did not hold
     std::set<std::string> said_;
     std::vector<std::string> tried_;
 };

@@ -2,6 +2,7 @@
 #include "pipeline/trials/trials.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include "core/error.h"
 #include "mesh/mandrel/load_mandrel.h"
+#include "mesh/revolution/swept_wall.h"
 #include "mesh/shapes/make_kinds.h"
 #include "tests/support/run_checks.h"
 #include "tests/support/small_pipe.h"
@@ -64,6 +66,40 @@ TEST(Trials, GoesOnWhereABlendCannotBeMade) {
     const auto run = wind(mandrel, shipped("six_axis"), job);
     EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
     EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 2.0 * kPipeTow_mm);
+}
+
+// A ball with two necks: no fibre crosses their sharp corners, and a hand would fill those up.
+TEST(Trials, WindsNecksInAPatternOverABlend) {
+    constexpr double kBall_mm = 30.0;
+    constexpr double kNeck_mm = 14.0;
+    constexpr int kSteps = 24;
+    const double last = std::acos(kNeck_mm / kBall_mm);
+    std::vector<MeridianNode> nodes{{.radius_mm = kNeck_mm, .z_mm = -60.0, .straight = true}};
+    for (int i = -kSteps; i <= kSteps; ++i) {
+        const double angle = last * i / kSteps;
+        nodes.push_back(
+            {.radius_mm = kBall_mm * std::cos(angle), .z_mm = kBall_mm * std::sin(angle)});
+        if (std::abs(i) == kSteps) {
+            nodes.back().crease = true;
+            nodes.back().slope_rad = i < 0 ? -angle : 0.0;
+            nodes.back().slope_before_rad = i < 0 ? 0.0 : -angle;
+            nodes.back().straight = i > 0;
+        }
+    }
+    nodes.push_back({.radius_mm = kNeck_mm, .z_mm = 60.0});
+    const TriangleSoup ball = swept_wall(Meridian(nodes), 100.0).soup;
+    const auto mandrel = [&](const Job& asked) {
+        return build_mandrel(ball, "ball", mandrel_options(asked));
+    };
+    Job job = quick_job(LayerKind::Auto);
+    job.mandrel.blend_mm.reset();
+    const meshwind::Run run = wind(mandrel, shipped("six_axis"), job);
+    EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
+    const WoundLayer& layer = run.layers.front();
+    EXPECT_EQ(layer.plan.planner, Planner::Pattern);
+    EXPECT_GT(layer.plan.coverage.fraction, 0.99);
+    EXPECT_LT(layer.plan.coverage.max_layers, 20);
+    EXPECT_GT(layer.setup.job.mandrel.blend_mm.value(), 0.0);
 }
 
 // A cover of a tee with too little friction for its branch; blends cannot be made, but the widest

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/text/text_number.h"
 #include "core/units.h"
@@ -13,7 +14,7 @@ namespace {
 // Parts that lean more towards the axis close the body, others lead along it.
 constexpr double kSteep_rad = rad_from_deg(45.0);
 
-// Crossings of a rim beyond are steered to be flatter: layers are 1 / cos(angle), 2.9 here.
+// What runs to a rim is steered to be flatter everywhere: layers are 1 / cos(angle), 2.9 here.
 constexpr double kRim_rad = rad_from_deg(70.0);
 
 // Halvings of a slip, and of the angle that would do.
@@ -22,8 +23,8 @@ constexpr int kHalvings = 50;
 // Friction that no fibre has: what more would take is not told.
 constexpr double kNoFriction = 1.0;
 
-// Relative: a slip is in proportion to this much of the room that is left.
-constexpr double kSameRadius_mm = 1e-9;
+// Sines are the same but for rounding.
+constexpr double kSameSine = 1e-9;
 
 // From the widest place to one end.
 class Half {
@@ -50,9 +51,9 @@ public:
         if (at.turned) {
             return cap_mm_ != end_mm_ && (upper_ ? at.arc_mm >= cap_mm_ : at.arc_mm <= cap_mm_);
         }
-        const double sine = at.turning_mm / meridian_.at(end_mm_).radius_mm;
-        return cap_mm_ != end_mm_ || sine <= std::sin(std::max(kRim_rad, task_.angle_rad)) ||
-               sine <= std::sin(task_.angle_rad) + kSameRadius_mm;
+        return cap_mm_ != end_mm_ ||
+               at.most_sine <= std::sin(std::max(kRim_rad, task_.angle_rad)) ||
+               at.most_sine <= std::sin(task_.angle_rad) + kSameSine;
     }
 
     [[nodiscard]] bool reaches(double slip, double angle_rad) const {
@@ -87,6 +88,23 @@ public:
         return touches(task_.most_slip) ? least(task_.most_slip, touches) : task_.most_slip;
     }
 
+    // With all of the friction; up to the angle asked for.
+    [[nodiscard]] std::optional<double> steepest_rad() const {
+        if (reaches(task_.most_slip, task_.angle_rad)) {
+            return task_.angle_rad;
+        }
+        if (!reaches(task_.most_slip, 0.0)) {
+            return std::nullopt;
+        }
+        double good = 0.0;
+        double bad = task_.angle_rad;
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = 0.5 * (good + bad);
+            (reaches(task_.most_slip, middle) ? good : bad) = middle;
+        }
+        return good;
+    }
+
     [[nodiscard]] std::string failure() const {
         const SteeredEnd at = follow(task_.most_slip, task_.angle_rad);
         if (reached(at)) {
@@ -100,9 +118,9 @@ public:
             at.turned
                 ? "turns at radius " + fixed(place.radius_mm, 1) + " mm, z " +
                       fixed(place.z_mm, 1) + " mm, before the " + name() + (rim_ ? " rim" : " end")
-                : "comes to the " + name() + " rim at " +
-                      degrees(std::asin(std::min(1.0, at.turning_mm / place.radius_mm))) +
-                      ", more than " + degrees(std::max(kRim_rad, task_.angle_rad), 1);
+                : "runs to the " + name() + " rim at up to " +
+                      degrees(std::asin(std::min(1.0, at.most_sine))) + ", more than " +
+                      degrees(std::max(kRim_rad, task_.angle_rad), 1);
         return how + where + "; " + what_would();
     }
 
@@ -114,14 +132,8 @@ private:
                 least(kNoFriction, [this](double slip) { return reaches(slip, task_.angle_rad); });
             words = "a friction of " + fixed(friction, 3) + " would do";
         }
-        if (reaches(task_.most_slip, 0.0)) {
-            double good = 0.0;
-            double bad = task_.angle_rad;
-            for (int i = 0; i < kHalvings; ++i) {
-                const double middle = 0.5 * (good + bad);
-                (reaches(task_.most_slip, middle) ? good : bad) = middle;
-            }
-            words += (words.empty() ? "an angle of " : ", or an angle of ") + degrees(good, 1) +
+        if (const std::optional<double> angle = steepest_rad()) {
+            words += (words.empty() ? "an angle of " : ", or an angle of ") + degrees(*angle, 1) +
                      (words.empty() ? " would do" : "");
         }
         return words.empty() ? "no angle and no friction would do" : words;
@@ -184,6 +196,12 @@ PassAim aim_at_ends(const BodyOfRevolution& body, const AimTask& task) {
     }
     aim.slip = {-below.slip(), above.slip()};
     return aim;
+}
+
+std::optional<double> steepest_angle_rad(const BodyOfRevolution& body, const AimTask& task) {
+    const std::optional<double> below = Half(body, 0, task).steepest_rad();
+    const std::optional<double> above = Half(body, 1, task).steepest_rad();
+    return below && above ? std::optional(std::min(*below, *above)) : std::nullopt;
 }
 
 }  // namespace meshwind

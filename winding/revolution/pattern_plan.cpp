@@ -81,9 +81,16 @@ public:
         }
         begin_at({goal(0), goal(1)}, {laid_.stations.front(), way_back(laid_).front()});
         lay();
+        if (!is_wound()) {
+            return std::move(plan_);
+        }
         // At a turn of its own the band is whole as far as its middle.
         measure(pass_.stations.front().arc_mm, pass_.stations.back().arc_mm);
         return std::move(plan_);
+    }
+
+    [[nodiscard]] std::optional<double> steepest_rad() const {
+        return steepest_angle_rad(body_, aim_task());
     }
 
 private:
@@ -103,12 +110,15 @@ private:
         return (rim != nullptr ? rim->radius_mm : 0.0) + 0.5 * options_.tow.width_mm;
     }
 
+    [[nodiscard]] AimTask aim_task() const {
+        return {.angle_rad = angle_rad_,
+                .most_slip = options_.tow.friction.share(margin::kPatternSteering),
+                .touching_mm = {touching_mm(0), touching_mm(1)}};
+    }
+
     // Helical: the steering with which a pass at the angle asked for comes to both ends.
     bool aim_at_angle() {
-        const PassAim aim =
-            aim_at_ends(body_, {.angle_rad = angle_rad_,
-                                .most_slip = options_.tow.friction.share(margin::kPatternSteering),
-                                .touching_mm = {touching_mm(0), touching_mm(1)}});
+        const PassAim aim = aim_at_ends(body_, aim_task());
         slip_ = aim.slip;
         pass_ = pass(angle_rad_);
         return aim.failure.empty() || fail(aim.failure);
@@ -431,7 +441,7 @@ private:
             }
         });
         plan_.turns.resize(mandrel_.rims.size());
-        const std::size_t connecting = plan_.pieces.size();
+        first_pass_ = plan_.pieces.size();
         for (std::size_t i = 0; i < passes.size(); ++i) {
             const std::size_t end = i % 2 == 0 ? 1 - start : start;
             add(std::move(passes[i]));
@@ -455,11 +465,23 @@ private:
         laid.angle_rad = angle_rad_;
         laid.slip_ratio = std::abs(slip_.below) > std::abs(slip_.above) ? slip_.below : slip_.above;
         laid.closure_rad =
-            closure_rad(plan_.pieces[connecting], plan_.pieces[last], turn[start], starts);
+            closure_rad(plan_.pieces[first_pass_], plan_.pieces[last], turn[start], starts);
         laid.band_offset_mm = pattern_.step_rad * sparsest_mm();
         laid.interlacing = interlacing_of(pattern_, laid_.turn_rad(), turn[1 - start]);
         laid.starts_rad = starts;
         laid.lattice = lattice_;
+    }
+
+    // Whether the machine winds the first circuit, unless its pins are yet to be put on.
+    bool is_wound() {
+        constexpr std::size_t kCircuit = 4;  // two courses and the turns behind them
+        if (!options_.winds || !plan_.pins.empty()) {
+            return true;
+        }
+        const std::span passes = std::span(plan_.pieces).subspan(first_pass_);
+        const Rejection why = options_.winds(passes.first(std::min(kCircuit, passes.size())));
+        return why == Rejection::None ||
+               fail("a circuit at " + degrees(angle_rad_, 1) + " cannot be wound: " + name_of(why));
     }
 
     // From where the fibre ends, turned on over its last rim, to where its pattern began.
@@ -574,6 +596,7 @@ private:
     PatternBegin begin_;  // where the first circuit or ply begins
     std::optional<LaidLattice> lattice_;
     Plan plan_;
+    std::size_t first_pass_ = 0;  // of its pieces: before, it goes on from the fibre before
 };
 
 }  // namespace
@@ -581,6 +604,11 @@ private:
 Plan plan_pattern(const Mandrel& mandrel, const BodyOfRevolution& body,
                   const PatternOptions& options) {
     return PatternPlanner(mandrel, body, options).run();
+}
+
+std::optional<double> steepest_pattern_rad(const Mandrel& mandrel, const BodyOfRevolution& body,
+                                           const PatternOptions& options) {
+    return PatternPlanner(mandrel, body, options).steepest_rad();
 }
 
 }  // namespace meshwind

@@ -98,6 +98,7 @@ bool follow(const Stretch& stretch, double to_mm, SteeredEnd& at) {
         if (!stretch.narrow(arc, c)) {
             at.arc_mm = arc;
             at.turning_mm = c;
+            at.most_sine = std::max(at.most_sine, c / stretch.place(arc).radius_mm);
             continue;
         }
         double good = 0.0;
@@ -111,6 +112,7 @@ bool follow(const Stretch& stretch, double to_mm, SteeredEnd& at) {
         at.turning_mm = stretch.stepped(at.arc_mm, at.turning_mm, good);
         at.arc_mm += good;
         at.turned = true;
+        at.most_sine = 1.0;
         return true;
     }
     return false;
@@ -206,7 +208,7 @@ double turning_mm(const MeridianStation& at) {
 
 SteeredEnd steer_from(const Meridian& meridian, double arc_mm, double turning_mm, double slip_ratio,
                       double to_arc_mm) {
-    SteeredEnd at{arc_mm, turning_mm, false};
+    SteeredEnd at{arc_mm, turning_mm, false, turning_mm / meridian.at(arc_mm).radius_mm};
     if (arc_mm == to_arc_mm) {
         return at;
     }

@@ -13,6 +13,7 @@ struct SteeredEnd {
     double arc_mm = 0.0;
     double turning_mm = 0.0;  ///< c = r sin(a) there
     bool turned = false;      ///< it runs along the parallel there, c = r; else it came all the way
+    double most_sine = 0.0;   ///< of its angle to the meridian on the way, at steps; 1 at a turn
 };
 
 /// Follows c = r sin(a) along the meridian, which needs no azimuth and is regular where the path

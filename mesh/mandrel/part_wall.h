@@ -1,0 +1,61 @@
+/// The wall of a part while its mandrel is read: found, laid out anew, filled up.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "mesh/even/labelled_mesh.h"
+#include "mesh/mandrel.h"
+#include "mesh/segment/rims.h"
+#include "mesh/segment/segment.h"
+#include "mesh/segment/spindle_axis.h"
+
+namespace meshwind {
+
+/// What is wound with its ends and its spindle, still in the file's frame.
+struct Wall {
+    LabelledMesh kept;
+    Rims rims;
+    SpindleFrame frame;
+};
+
+[[nodiscard]] LabelledView view(const TriangleSoup& whole, const Segmentation& segmentation);
+
+/// Per region whether it is wall.
+[[nodiscard]] std::vector<char> kept_of(const std::vector<Region>& regions);
+
+/// Area and triangles of regions that have changed. What is cut off an end is an end cap.
+/// \param count of regions
+void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& segmentation);
+
+void move(TriangleSoup& soup, const Eigen::Isometry3d& motion);
+void move(std::vector<Eigen::Vector3d>& points, const Eigen::Isometry3d& motion);
+void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion);
+
+/// \param axis_mm the spindle's, where it is given
+[[nodiscard]] Wall find_wall(const TriangleSoup& whole, const Segmentation& segmentation,
+                             const std::optional<MandrelOptions::Axis>& axis_mm);
+
+/// The part takes the place of the mandrel's whole.
+void take(LabelledMesh&& part, Mandrel& mandrel, Segmentation& segmentation);
+
+/// A body of revolution gets a wall in rings where the file's triangles are uneven. The spindle
+/// stays. \return whether it is one, and its rings are not too many
+[[nodiscard]] bool make_rings(Mandrel& mandrel, Segmentation& segmentation, Wall& wall);
+
+/// The wall gets triangles of our own where the file's are uneven.
+void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
+               const std::optional<MandrelOptions::Axis>& axis_mm,
+               const std::optional<double>& details_mm);
+
+/// Fills up what a ball of the radius cannot touch: what is wound then is no more what the file's
+/// triangles stand for. A body of revolution stays one (rolled_meridian.h). The spindle stays.
+/// \throws InputError mesh.no_blend
+void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, double radius_mm,
+           const std::string& name);
+
+}  // namespace meshwind
