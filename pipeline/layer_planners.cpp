@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <tuple>
 #include <vector>
 
 #include "core/units.h"
@@ -24,6 +25,15 @@ constexpr double kAngleStep_deg = 5.0;
 // Where a narrow end lets none of those by, or a neck is left bare by them.
 constexpr double kFlattest_deg = 10.0;
 constexpr double kFlatter_deg = 2.5;
+
+// So many times the layers on average of the thinnest pattern: the angle counts for more.
+constexpr double kHardlyMore = 1.3;
+
+// Patterns that the machine refuses although it winds a circuit of each: others it refuses as well.
+constexpr int kMostRefused = 3;
+
+// Polar windings leave necks bare: of those that cover less than this, others are looked for.
+constexpr double kPolarCovers = 0.95;
 
 // A pattern that covers less is looked for at smaller angles.
 constexpr double kWholeWall = 0.99;
@@ -181,29 +191,52 @@ bool can_be_laid(const TriedPlan& tried) {
     return is_wound(tried) || (tried.plan.failure.empty() && !tried.plan.pins.empty());
 }
 
-// What covers the whole wall by as little fibre as can be goes first, then what covers most.
-bool goes_before(const Plan& plan, const Plan& other) {
-    const auto share = [](const Plan& p) { return std::min(p.coverage.fraction, kWholeWall); };
-    return share(plan) != share(other) ? share(plan) > share(other)
-                                       : plan.fibre_length_mm < other.fibre_length_mm;
+// Of the wall that counts: beyond that all of it is covered.
+double covered_share(const Plan& plan) {
+    return std::min(plan.coverage.fraction, kWholeWall);
 }
 
-// Patterns at angles that come to both ends and are smaller than the usual ones, the best first.
-std::vector<Plan> flatter_patterns(const LayerTask& task) {
-    const double first_rad = rad_from_deg(kFirstAngle_deg - kAngleStep_deg);
-    const double steepest_rad =
-        steepest_pattern_rad(task.setup.mandrel, *task.revolution().body,
-                             pattern_options(task, PatternKind::Helical, first_rad))
-            .value_or(0.0);
+// Of those that cover most, and with hardly more layers than the thinnest, the nearest to the usual
+// angle goes first; others by the layers that they lay.
+void sort_by_worth(std::vector<Plan>& plans) {
+    double most = 0.0;
+    for (const Plan& plan : plans) {
+        most = std::max(most, covered_share(plan));
+    }
+    double thinnest = std::numeric_limits<double>::max();
+    for (const Plan& plan : plans) {
+        thinnest =
+            covered_share(plan) < most ? thinnest : std::min(thinnest, plan.coverage.mean_layers);
+    }
+    const auto rank = [&](const Plan& plan) {
+        const bool good =
+            covered_share(plan) == most && plan.coverage.mean_layers <= kHardlyMore * thinnest;
+        const double angle_rad = std::get<LaidPattern>(plan.details).angle_rad;
+        return std::tuple(good ? 0 : 1,
+                          good ? std::abs(angle_rad - rad_from_deg(kFirstAngle_deg)) : 0.0,
+                          -covered_share(plan), plan.coverage.mean_layers);
+    };
+    std::stable_sort(plans.begin(), plans.end(),
+                     [&](const Plan& a, const Plan& b) { return rank(a) < rank(b); });
+}
+
+// Patterns whose circuits the machine winds, the best first; a plan that failed for want of one.
+std::vector<Plan> helical_patterns(const LayerTask& task, double steepest_deg) {
     std::vector<Plan> plans;
-    for (double angle = steepest_rad; angle >= rad_from_deg(kFlattest_deg);
-         angle -= rad_from_deg(kFlatter_deg)) {
-        Plan plan = pattern_at(task, PatternKind::Helical, angle);
+    Plan failed;
+    for (double angle_deg = steepest_deg; angle_deg >= kFlattest_deg;
+         angle_deg -= angle_deg > kFirstAngle_deg ? kAngleStep_deg : kFlatter_deg) {
+        Plan plan = pattern_at(task, PatternKind::Helical, rad_from_deg(angle_deg));
         if (plan.failure.empty()) {
             plans.push_back(std::move(plan));
+        } else if (angle_deg >= kFirstAngle_deg || failed.failure.empty()) {
+            failed = std::move(plan);
         }
     }
-    std::stable_sort(plans.begin(), plans.end(), goes_before);
+    sort_by_worth(plans);
+    if (plans.empty()) {
+        plans.push_back(std::move(failed));
+    }
     return plans;
 }
 
@@ -217,29 +250,36 @@ bool has_narrow_end(const LayerTask& task) {
 }
 
 // Polar where both ends are narrow openings, else helical by the smallest of the usual angles that
-// holds; where that leaves wall bare, none holds, or an end is narrow, by a smaller one.
+// holds; where an end is narrow, that leaves wall bare or none holds, by the best of all.
 TriedPlan plan_from_rim_to_rim(const LayerTask& task) {
     TriedPlan best = wound(task, pattern_at(task, PatternKind::Polar, 0.0));
-    if (can_be_laid(best)) {
+    if (can_be_laid(best) && best.plan.coverage.fraction >= kPolarCovers) {
         return best;
     }
-    for (double next_deg = kFirstAngle_deg; !can_be_laid(best) && next_deg <= kLastAngle_deg;
-         next_deg += kAngleStep_deg) {
-        best = wound(task, pattern_at(task, PatternKind::Helical, rad_from_deg(next_deg)));
-    }
-    if (can_be_laid(best) && best.plan.coverage.fraction >= kWholeWall && !has_narrow_end(task)) {
-        return best;
-    }
-    for (Plan& plan : flatter_patterns(task)) {
-        if (can_be_laid(best) && !goes_before(plan, best.plan)) {
-            break;
-        }
+    int refused = 0;
+    const auto try_one = [&](Plan plan) {
         TriedPlan tried = wound(task, std::move(plan));
-        if (can_be_laid(tried)) {
-            return tried;
-        }
-        if (!can_be_laid(best)) {
+        refused += tried.trial != nullptr && !is_wound(tried) ? 1 : 0;
+        const bool laid = can_be_laid(tried);
+        if (laid || !can_be_laid(best)) {
             best = std::move(tried);
+        }
+        return laid;
+    };
+    const bool narrow = has_narrow_end(task);
+    for (double angle_deg = kFirstAngle_deg;
+         !narrow && !can_be_laid(best) && refused < kMostRefused && angle_deg <= kLastAngle_deg;
+         angle_deg += kAngleStep_deg) {
+        try_one(pattern_at(task, PatternKind::Helical, rad_from_deg(angle_deg)));
+    }
+    if (can_be_laid(best) && best.plan.coverage.fraction >= kWholeWall) {
+        return best;
+    }
+    const double steepest_deg = narrow ? kLastAngle_deg : kFirstAngle_deg - kAngleStep_deg;
+    for (Plan& plan : helical_patterns(task, steepest_deg)) {
+        const bool better = !can_be_laid(best) || covered_share(plan) > covered_share(best.plan);
+        if (!better || refused >= kMostRefused || try_one(std::move(plan))) {
+            break;
         }
     }
     return best;

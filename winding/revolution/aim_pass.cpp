@@ -14,8 +14,11 @@ namespace {
 // Parts that lean more towards the axis close the body, others lead along it.
 constexpr double kSteep_rad = rad_from_deg(45.0);
 
-// What runs to a rim is steered to be flatter everywhere: layers are 1 / cos(angle), 2.9 here.
+// What runs to a rim is steered to be flatter: layers are 1 / cos(angle), 2.9 here. All the way
+// where the friction allows it; else a corner is crossed at up to the second one, where they are 11
+// on a narrow ring.
 constexpr double kRim_rad = rad_from_deg(70.0);
+constexpr double kCorner_rad = rad_from_deg(85.0);
 
 // Halvings of a slip, and of the angle that would do.
 constexpr int kHalvings = 50;
@@ -47,17 +50,23 @@ public:
         return steer_from(meridian_, widest_mm_, c_mm, upper_ ? slip : -slip, end_mm_);
     }
 
-    [[nodiscard]] bool reached(const SteeredEnd& at) const {
+    // \param corner_rad how steep it may be on its way to a rim
+    [[nodiscard]] bool reached(const SteeredEnd& at, double corner_rad) const {
         if (at.turned) {
             return cap_mm_ != end_mm_ && (upper_ ? at.arc_mm >= cap_mm_ : at.arc_mm <= cap_mm_);
         }
+        const auto flatter = [this](double sine, double most_rad) {
+            return sine <= std::sin(std::max(most_rad, task_.angle_rad)) ||
+                   sine <= std::sin(task_.angle_rad) + kSameSine;
+        };
         return cap_mm_ != end_mm_ ||
-               at.most_sine <= std::sin(std::max(kRim_rad, task_.angle_rad)) ||
-               at.most_sine <= std::sin(task_.angle_rad) + kSameSine;
+               (flatter(at.turning_mm / meridian_.at(end_mm_).radius_mm, kRim_rad) &&
+                flatter(at.most_sine, corner_rad));
     }
 
-    [[nodiscard]] bool reaches(double slip, double angle_rad) const {
-        return reached(follow(slip, angle_rad));
+    [[nodiscard]] bool reaches(double slip, double angle_rad,
+                               double corner_rad = kCorner_rad) const {
+        return reached(follow(slip, angle_rad), corner_rad);
     }
 
     // The least slip for which something holds that more slip does not undo.
@@ -73,12 +82,12 @@ public:
     }
 
     [[nodiscard]] double slip() const {
-        if (reaches(0.0, task_.angle_rad)) {
+        const auto flat = [this](double slip) { return reaches(slip, task_.angle_rad, kRim_rad); };
+        if (flat(0.0)) {
             return 0.0;
         }
         if (cap_mm_ == end_mm_) {
-            return least(task_.most_slip,
-                         [this](double slip) { return reaches(slip, task_.angle_rad); });
+            return flat(task_.most_slip) ? least(task_.most_slip, flat) : task_.most_slip;
         }
         // It turns ever nearer to the axis.
         const auto touches = [this](double slip) {
@@ -107,7 +116,7 @@ public:
 
     [[nodiscard]] std::string failure() const {
         const SteeredEnd at = follow(task_.most_slip, task_.angle_rad);
-        if (reached(at)) {
+        if (reached(at, kCorner_rad)) {
             return {};
         }
         const std::string how = "a fibre at " + degrees(task_.angle_rad, 1) +
@@ -119,8 +128,10 @@ public:
                 ? "turns at radius " + fixed(place.radius_mm, 1) + " mm, z " +
                       fixed(place.z_mm, 1) + " mm, before the " + name() + (rim_ ? " rim" : " end")
                 : "runs to the " + name() + " rim at up to " +
-                      degrees(std::asin(std::min(1.0, at.most_sine))) + ", more than " +
-                      degrees(std::max(kRim_rad, task_.angle_rad), 1);
+                      degrees(std::asin(std::min(1.0, at.most_sine))) + " and comes there at " +
+                      degrees(std::asin(std::min(1.0, at.turning_mm / place.radius_mm))) +
+                      ", more than " + degrees(std::max(kCorner_rad, task_.angle_rad), 1) +
+                      " and " + degrees(std::max(kRim_rad, task_.angle_rad), 1);
         return how + where + "; " + what_would();
     }
 
@@ -196,12 +207,6 @@ PassAim aim_at_ends(const BodyOfRevolution& body, const AimTask& task) {
     }
     aim.slip = {-below.slip(), above.slip()};
     return aim;
-}
-
-std::optional<double> steepest_angle_rad(const BodyOfRevolution& body, const AimTask& task) {
-    const std::optional<double> below = Half(body, 0, task).steepest_rad();
-    const std::optional<double> above = Half(body, 1, task).steepest_rad();
-    return below && above ? std::optional(std::min(*below, *above)) : std::nullopt;
 }
 
 }  // namespace meshwind

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include "mesh/revolution/revolution.h"
@@ -26,18 +25,14 @@ struct PassAim {
 ///  - An end that closes towards the axis is a cap: the parts before it that are curved or lean by
 ///    45 deg or more, where that one is convex and narrows to the end. A pass that turns there, or
 ///    runs over its opening, needs no steering.
-///  - To any other end it must run at no more than the angle asked for or 70 deg, whichever is
-///    more, all the way: beyond, layers pile up as 1 / cos. Of the slips that lead there the least
-///    is taken.
+///  - To any other end it must come at no more than the angle asked for or 70 deg, whichever is
+///    more: beyond, layers pile up as 1 / cos. Of the slips with which it is no steeper on its way
+///    either, the least is taken; where the friction does not suffice for that, all of it, and the
+///    corner of a neck may be crossed at up to 85 deg.
 ///  - Where a pass would turn before a cap it is steered as far into it as the friction and the
 ///    band's touching the opening allow: most of the wall is wound.
 /// \return slip 0 where none is needed
 [[nodiscard]] PassAim aim_at_ends(const BodyOfRevolution& body, const AimTask& task);
-
-/// The largest angle, up to the one asked for, at which a pass comes to both ends; none where even
-/// one along the meridian does not.
-[[nodiscard]] std::optional<double> steepest_angle_rad(const BodyOfRevolution& body,
-                                                       const AimTask& task);
 
 /// Arc length at which the cap of an end begins, that of the end itself where it has none.
 [[nodiscard]] double cap_mm(const BodyOfRevolution& body, std::size_t end);

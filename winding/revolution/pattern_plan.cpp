@@ -89,10 +89,6 @@ public:
         return std::move(plan_);
     }
 
-    [[nodiscard]] std::optional<double> steepest_rad() const {
-        return steepest_angle_rad(body_, aim_task());
-    }
-
 private:
     bool fail(const std::string& words) {
         plan_.failure = words;
@@ -110,15 +106,12 @@ private:
         return (rim != nullptr ? rim->radius_mm : 0.0) + 0.5 * options_.tow.width_mm;
     }
 
-    [[nodiscard]] AimTask aim_task() const {
-        return {.angle_rad = angle_rad_,
-                .most_slip = options_.tow.friction.share(margin::kPatternSteering),
-                .touching_mm = {touching_mm(0), touching_mm(1)}};
-    }
-
     // Helical: the steering with which a pass at the angle asked for comes to both ends.
     bool aim_at_angle() {
-        const PassAim aim = aim_at_ends(body_, aim_task());
+        const PassAim aim =
+            aim_at_ends(body_, {.angle_rad = angle_rad_,
+                                .most_slip = options_.tow.friction.share(margin::kPatternSteering),
+                                .touching_mm = {touching_mm(0), touching_mm(1)}});
         slip_ = aim.slip;
         pass_ = pass(angle_rad_);
         return aim.failure.empty() || fail(aim.failure);
@@ -472,14 +465,14 @@ private:
         laid.lattice = lattice_;
     }
 
-    // Whether the machine winds the first circuit, unless its pins are yet to be put on.
+    // Whether the machine winds the first circuits, unless their pins are yet to be put on.
     bool is_wound() {
-        constexpr std::size_t kCircuit = 4;  // two courses and the turns behind them
+        constexpr std::size_t kCircuits = 3 * 4;  // two courses and the turns behind them
         if (!options_.winds || !plan_.pins.empty()) {
             return true;
         }
         const std::span passes = std::span(plan_.pieces).subspan(first_pass_);
-        const Rejection why = options_.winds(passes.first(std::min(kCircuit, passes.size())));
+        const Rejection why = options_.winds(passes.first(std::min(kCircuits, passes.size())));
         return why == Rejection::None ||
                fail("a circuit at " + degrees(angle_rad_, 1) + " cannot be wound: " + name_of(why));
     }
@@ -604,11 +597,6 @@ private:
 Plan plan_pattern(const Mandrel& mandrel, const BodyOfRevolution& body,
                   const PatternOptions& options) {
     return PatternPlanner(mandrel, body, options).run();
-}
-
-std::optional<double> steepest_pattern_rad(const Mandrel& mandrel, const BodyOfRevolution& body,
-                                           const PatternOptions& options) {
-    return PatternPlanner(mandrel, body, options).steepest_rad();
 }
 
 }  // namespace meshwind

@@ -40,9 +40,9 @@ struct PatternOptions {
     /// To go on with its fibre, by connecting passes (connecting_passes.h) or a turn; where that
     /// cannot be, Plan::cut_because says why and the pattern begins anew.
     std::optional<FibreEnd> before{};
-    /// Helical, polar: whether the machine winds the first circuit, of which the others are turned
-    /// copies. A plan whose circuit it refuses fails, and is not measured. None: not asked.
-    std::function<Rejection(std::span<const Piece> circuit)> winds{};
+    /// Helical, polar: whether the machine winds the first circuits, of which the others are turned
+    /// copies. A plan whose circuits it refuses fails, and is not measured. None: not asked.
+    std::function<Rejection(std::span<const Piece> circuits)> winds{};
     RunContext context{};  ///< its seed is that of the samples that coverage is measured on
 };
 
@@ -63,11 +63,5 @@ struct PatternOptions {
 /// \return a plan; where nothing can be wound `failure` says why, with numbers
 [[nodiscard]] Plan plan_pattern(const Mandrel& mandrel, const BodyOfRevolution& body,
                                 const PatternOptions& options);
-
-/// The largest winding angle, up to the one asked for, whose passes come to both ends; none where
-/// no angle's do. \pre options.kind is Helical
-[[nodiscard]] std::optional<double> steepest_pattern_rad(const Mandrel& mandrel,
-                                                         const BodyOfRevolution& body,
-                                                         const PatternOptions& options);
 
 }  // namespace meshwind
