@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pipeline/code_digest.h"
+#include "pipeline/pattern_checks.h"
 #include "pipeline/run_names.h"
 
 namespace meshwind {
@@ -43,7 +44,17 @@ Rejection LayerMachine::wind_alone(std::span<const Piece> pieces) const {
 }
 
 std::unique_ptr<TrialWinding> LayerMachine::wind_all(const Plan& plan) const {
-    return programs_of(plan, false);
+    std::unique_ptr<LayerPrograms> all = programs_of(plan, false);
+    if (all->refused.empty() && plan.pattern() != nullptr &&
+        plan.pattern()->starts_rad.size() > 1) {
+        const Check closure =
+            closure_check(plan, all->programs.front().made.verification.laid.path);
+        if (!closure.ok) {
+            all->refused.push_back(plan.pieces.size() - 1);
+            all->why = closure.words;
+        }
+    }
+    return all;
 }
 
 std::unique_ptr<LayerPrograms> LayerMachine::programs_of(const Plan& plan, bool in_spite) const {

@@ -31,6 +31,7 @@ constexpr double kWellCovered = 0.95;
 
 // Of a pattern.
 constexpr double kPatternCovers = 0.99;
+constexpr double kLongerExtension = 2.0;
 
 // With so much in reach of the fibres no larger one is looked for: a hundredth of it stays bare.
 constexpr double kWellInReach = 0.96;
@@ -262,15 +263,31 @@ private:
         }
     }
 
-    // The smallest blend with which a part that has patterns is wound in one.
+    // The smallest blend with which a part that has patterns is wound in one, on longer extensions
+    // too where the job leaves them open: flat fibre takes long to be turned by friction.
     void find_pattern(const Job& job) {
+        const bool open = !job.mandrel.extension_given && !turns_on_pins(job);
+        if (open && tried_in_pattern(longer(blended(job, 0.0)))) {
+            return;
+        }
         for (const double widths : kBlendsInTows) {
-            run(blended(job, widths), Depth::PatternsFirst);
-            const bool covers_all = done() && covered_share(*best_) >= kPatternCovers;
-            if (covers_all || last_planner_ != Planner::Pattern) {
+            const Job blend = blended(job, widths);
+            if (tried_in_pattern(blend) || (open && tried_in_pattern(longer(blend)))) {
                 return;
             }
         }
+    }
+
+    // Whether that is the last try: its pattern covers the wall, or the part has none.
+    [[nodiscard]] bool tried_in_pattern(const Job& job) {
+        run(job, Depth::PatternsFirst);
+        return (done() && covered_share(*best_) >= kPatternCovers) ||
+               last_planner_ != Planner::Pattern;
+    }
+
+    static Job longer(Job job) {
+        job.mandrel.extension_mm *= kLongerExtension;
+        return job;
     }
 
     // The smallest blend that lets the fibres reach most of the wall, or nearly as much as any.

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/margins.h"
 #include "core/parallel.h"
+#include "core/secant_root.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "winding/laminate/measure_plan.h"
@@ -41,7 +42,6 @@ constexpr double kNoGap = 1e-3;
 
 // Closure in rad: far below what any axis resolves.
 constexpr double kClosed_rad = 1e-12;
-constexpr int kSecants = 60;
 
 // A fibre that ends behind a hollow rim is laid on the extension for so many tow widths: it then
 // ends where it lies on something, whatever the blocks are off.
@@ -80,10 +80,10 @@ public:
             return std::move(plan_);
         }
         begin_at({goal(0), goal(1)}, {laid_.stations.front(), way_back(laid_).front()});
-        lay();
-        if (!is_wound()) {
+        if (!winds_circuits()) {
             return std::move(plan_);
         }
+        lay();
         // At a turn of its own the band is whole as far as its middle.
         measure(pass_.stations.front().arc_mm, pass_.stations.back().arc_mm);
         return std::move(plan_);
@@ -325,23 +325,6 @@ private:
         return std::min(kPi, 2.0 * std::abs(more - less) / (2.0 * kSlope_rad) * kMostAngle_rad);
     }
 
-    // Where `excess` is 0, from 0 on; it is left at what was asked last.
-    template <class Excess>
-    static bool find_root(const Excess& excess, double first, double most, double within) {
-        double a = 0.0;
-        double fa = excess(a);
-        double b = fa > 0.0 ? -first : first;
-        double fb = excess(b);
-        for (int i = 0; i < kSecants && std::abs(fb) > within && fb != fa; ++i) {
-            const double c = std::clamp(b - fb * (b - a) / (fb - fa), -most, most);
-            a = b;
-            fa = fb;
-            b = c;
-            fb = excess(b);
-        }
-        return std::abs(fb) <= within;
-    }
-
     // The winding angle whose circuits turn the mandrel by just so much. Where a polar winding is
     // steered, both turns give way by the same length first, and the slip with them.
     bool close_by_angle(double turn_rad) {
@@ -360,7 +343,8 @@ private:
                 }
                 return 2.0 * pass_.turn_rad() - turn_rad;
             };
-            if (!find_root(by_turns, kSlope_rad * widest_radius_mm_, most_mm, kNearlyClosed_rad)) {
+            if (!secant_root(by_turns, kSlope_rad * widest_radius_mm_, most_mm,
+                             kNearlyClosed_rad)) {
                 return not_closed();
             }
         }
@@ -370,7 +354,7 @@ private:
             pass_ = pass(angle_rad_);
             return 2.0 * pass_.turn_rad() - turn_rad;
         };
-        const bool closed = find_root(by_angle, kSlope_rad, kMostAngle_rad, 1e3 * kClosed_rad);
+        const bool closed = secant_root(by_angle, kSlope_rad, kMostAngle_rad, 1e3 * kClosed_rad);
         const bool turns = pass_.lower == MeridianStop::Hoop && pass_.upper == MeridianStop::Hoop;
         return (closed && turns) || not_closed();
     }
@@ -403,11 +387,49 @@ private:
         begin_ = std::move(begin);
     }
 
+    // The whole pattern.
     void lay() {
+        const std::vector<double> starts = circuit_starts_rad(pattern_, lattice_);
+        const std::size_t first = plan_.pieces.size();
+        const std::size_t last = lay_circuits(starts);
+        plan_.pins = turns_->pins();
+        plan_.pieces.front().starts_fibre = true;
+        plan_.fibres = 1;
+        const std::array<double, 2> turn = turns_at_ends();
+        const std::size_t start = begin_.end;
+        LaidPattern& laid = plan_.details.emplace<LaidPattern>();
+        laid.pattern = pattern_;
+        laid.angle_rad = angle_rad_;
+        laid.slip_ratio = std::abs(slip_.below) > std::abs(slip_.above) ? slip_.below : slip_.above;
+        laid.closure_rad =
+            closure_rad(plan_.pieces[first], plan_.pieces[last], turn[start], starts);
+        laid.band_offset_mm = pattern_.step_rad * sparsest_mm();
+        laid.interlacing = interlacing_of(pattern_, laid_.turn_rad(), turn[1 - start]);
+        laid.starts_rad = starts;
+        laid.lattice = lattice_;
+    }
+
+    // Whether the machine winds the first circuits, unless their pins are yet to be put on.
+    bool winds_circuits() {
+        constexpr std::size_t kCircuits = 3;
+        if (!options_.winds || !turns_->pins().empty()) {
+            return true;
+        }
+        const Plan before = plan_;
+        std::vector<double> starts = circuit_starts_rad(pattern_, lattice_);
+        starts.resize(std::min(kCircuits, starts.size()));
+        lay_circuits(starts);
+        const Rejection why = options_.winds(std::span(plan_.pieces).subspan(before.pieces.size()));
+        plan_ = before;
+        return why == Rejection::None ||
+               fail("a circuit at " + degrees(angle_rad_, 1) + " cannot be wound: " + name_of(why));
+    }
+
+    // Adds the circuits that begin there. Returns which piece is the last pass.
+    std::size_t lay_circuits(const std::vector<double>& starts) {
         const std::array<double, 2> turn = turns_at_ends();
         const std::size_t start = begin_.end;
         const std::array<std::vector<MeridianStation>, 2> ways{laid_.stations, way_back(laid_)};
-        const std::vector<double> starts = circuit_starts_rad(pattern_, lattice_);
         std::vector<Piece> passes(2 * starts.size());
         std::vector<double> turned(passes.size());  // of each against its way
         for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -434,7 +456,6 @@ private:
             }
         });
         plan_.turns.resize(mandrel_.rims.size());
-        first_pass_ = plan_.pieces.size();
         for (std::size_t i = 0; i < passes.size(); ++i) {
             const std::size_t end = i % 2 == 0 ? 1 - start : start;
             add(std::move(passes[i]));
@@ -449,32 +470,8 @@ private:
                                 pieces_.crossing_of(start, ways[1 - start].back(), turned.back()),
                                 kRunOutTows * options_.tow.width_mm));
         }
-        plan_.pins = turns_->pins();
-        plan_.pieces.front().starts_fibre = true;
         plan_.courses = static_cast<int>(passes.size());
-        plan_.fibres = 1;
-        LaidPattern& laid = plan_.details.emplace<LaidPattern>();
-        laid.pattern = pattern_;
-        laid.angle_rad = angle_rad_;
-        laid.slip_ratio = std::abs(slip_.below) > std::abs(slip_.above) ? slip_.below : slip_.above;
-        laid.closure_rad =
-            closure_rad(plan_.pieces[first_pass_], plan_.pieces[last], turn[start], starts);
-        laid.band_offset_mm = pattern_.step_rad * sparsest_mm();
-        laid.interlacing = interlacing_of(pattern_, laid_.turn_rad(), turn[1 - start]);
-        laid.starts_rad = starts;
-        laid.lattice = lattice_;
-    }
-
-    // Whether the machine winds the first circuits, unless their pins are yet to be put on.
-    bool is_wound() {
-        constexpr std::size_t kCircuits = 3 * 4;  // two courses and the turns behind them
-        if (!options_.winds || !plan_.pins.empty()) {
-            return true;
-        }
-        const std::span passes = std::span(plan_.pieces).subspan(first_pass_);
-        const Rejection why = options_.winds(passes.first(std::min(kCircuits, passes.size())));
-        return why == Rejection::None ||
-               fail("a circuit at " + degrees(angle_rad_, 1) + " cannot be wound: " + name_of(why));
+        return last;
     }
 
     // From where the fibre ends, turned on over its last rim, to where its pattern began.
@@ -589,7 +586,6 @@ private:
     PatternBegin begin_;  // where the first circuit or ply begins
     std::optional<LaidLattice> lattice_;
     Plan plan_;
-    std::size_t first_pass_ = 0;  // of its pieces: before, it goes on from the fibre before
 };
 
 }  // namespace
