@@ -33,6 +33,12 @@ constexpr std::size_t kMostStations = 200'000;
 constexpr std::size_t kMostBlocks = 100'000;
 constexpr std::size_t kMostText = 2'000'000;
 
+// What a page shows of fibre and eye is rounded: below what is seen or read, packed it is half.
+constexpr double kShownPlace_mm = 0x1p-8;
+constexpr double kShownLength_mm = 0x1p-6;
+constexpr double kShownShare = 0x1p-11;  // of a unit vector, of a slip ratio
+constexpr double kShownAngle_deg = 0x1p-7;
+
 json vector_json(const Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
@@ -277,14 +283,14 @@ private:
             angle.push_back(deg_from_rad(angle_of(surface, station)));
             piece_of.push_back(static_cast<std::uint32_t>(eye.piece));
         }
-        arrays_.add_points(prefix + "position_mm", position);
-        arrays_.add_points(prefix + "normal", normal);
-        arrays_.add_points(prefix + "tangent", tangent);
-        arrays_.add_floats(prefix + "s_mm", s);
-        arrays_.add_floats(prefix + "slip", slip);
-        arrays_.add_floats(prefix + "bridge_mm", bridge);
-        arrays_.add_floats(prefix + "free_length_mm", free_length);
-        arrays_.add_floats(prefix + "angle_deg", angle);
+        arrays_.add_points(prefix + "position_mm", position, kShownPlace_mm);
+        arrays_.add_points(prefix + "normal", normal, kShownShare);
+        arrays_.add_points(prefix + "tangent", tangent, kShownShare);
+        arrays_.add_floats(prefix + "s_mm", s, kShownLength_mm);
+        arrays_.add_floats(prefix + "slip", slip, kShownShare);
+        arrays_.add_floats(prefix + "bridge_mm", bridge, kShownPlace_mm);
+        arrays_.add_floats(prefix + "free_length_mm", free_length, kShownLength_mm);
+        arrays_.add_floats(prefix + "angle_deg", angle, kShownAngle_deg);
         arrays_.add<std::uint32_t>(prefix + "piece", 1, piece_of);
     }
 
@@ -332,7 +338,7 @@ private:
         }
         arrays_.add<double>(prefix + "time_s", 1, time_s);
         arrays_.add<double>(prefix + "axes", list.axes.size(), axes);
-        arrays_.add_points(prefix + "eye_mm", eye);
+        arrays_.add_points(prefix + "eye_mm", eye, kShownLength_mm);
         arrays_.add<std::int32_t>(prefix + "station", 1, station);
         arrays_.add<std::uint32_t>(prefix + "line", 1, line);
     }

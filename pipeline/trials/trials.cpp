@@ -13,6 +13,7 @@
 #include "core/counted.h"
 #include "core/error.h"
 #include "core/text/text_number.h"
+#include "mesh/revolution/revolution.h"
 #include "pipeline/plan_layer.h"
 #include "pipeline/trials/more_room.h"
 #include "postproc/verify/check_kinds.h"
@@ -266,7 +267,8 @@ private:
     // The smallest blend with which a part that has patterns is wound in one, on longer extensions
     // too where the job leaves them open: flat fibre takes long to be turned by friction.
     void find_pattern(const Job& job) {
-        const bool open = !job.mandrel.extension_given && !turns_on_pins(job);
+        const bool open = !job.mandrel.extension_given && !turns_on_pins(job) &&
+                          find_revolution(best_->layers.front().setup.mandrel).body.has_value();
         if (open && tried_in_pattern(longer(blended(job, 0.0)))) {
             return;
         }

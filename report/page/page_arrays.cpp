@@ -1,6 +1,7 @@
 #include "report/page/page_arrays.h"
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
 
@@ -37,6 +38,10 @@ void pad(std::string& bytes, std::size_t ahead, char with) {
     }
 }
 
+float rounded(double value, double step) {
+    return static_cast<float>(step > 0.0 ? std::round(value / step) * step : value);
+}
+
 }  // namespace
 
 template <typename T>
@@ -56,17 +61,23 @@ template void PageArrays::add(const std::string&, std::size_t, std::span<const s
 template void PageArrays::add(const std::string&, std::size_t, std::span<const std::int32_t>);
 template void PageArrays::add(const std::string&, std::size_t, std::span<const char>);
 
-void PageArrays::add_floats(const std::string& name, const std::vector<double>& values) {
-    const std::vector<float> entries(values.begin(), values.end());
+void PageArrays::add_floats(const std::string& name, const std::vector<double>& values,
+                            double step) {
+    std::vector<float> entries;
+    entries.reserve(values.size());
+    for (const double value : values) {
+        entries.push_back(rounded(value, step));
+    }
     add<float>(name, 1, entries);
 }
 
-void PageArrays::add_points(const std::string& name, const std::vector<Vector3d>& points) {
+void PageArrays::add_points(const std::string& name, const std::vector<Vector3d>& points,
+                            double step) {
     std::vector<float> entries;
     entries.reserve(3 * points.size());
     for (const Vector3d& p : points) {
-        entries.insert(entries.end(), {static_cast<float>(p.x()), static_cast<float>(p.y()),
-                                       static_cast<float>(p.z())});
+        entries.insert(entries.end(),
+                       {rounded(p.x(), step), rounded(p.y(), step), rounded(p.z(), step)});
     }
     add<float>(name, 3, entries);
 }

@@ -26,8 +26,11 @@ public:
     template <typename T>
     void add(const std::string& name, std::size_t width, std::span<const T> entries);
 
-    void add_floats(const std::string& name, const std::vector<double>& values);
-    void add_points(const std::string& name, const std::vector<Eigen::Vector3d>& points);
+    /// \param step to whole multiples of which values are rounded: a power of two packs well; 0:
+    /// not
+    void add_floats(const std::string& name, const std::vector<double>& values, double step = 0.0);
+    void add_points(const std::string& name, const std::vector<Eigen::Vector3d>& points,
+                    double step = 0.0);
     void add_faces(const std::string& name, const std::vector<std::array<std::int32_t, 3>>& faces);
 
     /// All of it behind its header. \param header of the page, an object

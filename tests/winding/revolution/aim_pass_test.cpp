@@ -1,5 +1,6 @@
 #include "winding/revolution/aim_pass.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "mesh/mandrel/load_mandrel.h"
+#include "mesh/revolution/swept_wall.h"
 #include "mesh/shapes/make.h"
 #include "tests/support/tells.h"
 
@@ -102,6 +104,53 @@ TEST(CapOf, IsTheDomeOrTheEnd) {
     EXPECT_NEAR(meridian.at(cap_mm(combination(), 1)).radius_mm, 40.0, 1e-3);
     EXPECT_EQ(cap_mm(cone(), 0), 0.0);
     EXPECT_EQ(cap_mm(cone(), 1), cone().meridian.length_mm());
+}
+
+// A pipe of radius 60, a cone, and a pipe of radius 40 behind it, where fibre comes flatter with
+// each turn: steepest it is at the corner. Per mm of the wide pipe 1 / sin(a) grows by slip / R; on
+// the cone it is linear in the radius; beside the corner, over which the fibre hangs, nothing is
+// steered.
+const BodyOfRevolution& reducer() {
+    static const BodyOfRevolution kBody =
+        body_of(swept_wall(Meridian({{.radius_mm = 60.0, .z_mm = -50.0, .straight = true},
+                                     {.radius_mm = 60.0, .z_mm = 50.0, .straight = true},
+                                     {.radius_mm = 40.0, .z_mm = 110.0, .straight = true},
+                                     {.radius_mm = 40.0, .z_mm = 310.0}}),
+                           300.0)
+                    .soup);
+    return kBody;
+}
+
+double steepest_deg(const MeridianPass& pass) {
+    double most = 0.0;
+    for (const MeridianStation& station : pass.stations) {
+        most = std::max(most, station.angle_rad);
+    }
+    return deg_from_rad(most);
+}
+
+TEST(AimAtEnds, KeepsFlatAtTheCornerOfANarrowPipe) {
+    const PassAim aim = aim_at_ends(reducer(), task(40.0, 0.2));
+    EXPECT_EQ(aim.failure, "");
+    const double slip =
+        (1.0 / std::sin(rad_from_deg(70.0)) - 2.0 / 3.0 / std::sin(rad_from_deg(40.0))) /
+        (2.0 / 3.0 * 50.0 / 60.0 + 1.0);
+    EXPECT_NEAR(aim.slip.above, slip, 0.05 * slip);
+    EXPECT_NEAR(steepest_deg(pass_of(reducer(), 40.0, aim.slip)), 70.0, 0.1);
+}
+
+// With half of the friction that it takes, and all of it used, the rim is still reached flat
+// enough.
+TEST(AimAtEnds, CrossesACornerSteeperForWantOfFriction) {
+    const double enough = aim_at_ends(reducer(), task(40.0, 0.2)).slip.above;
+    const PassAim aim = aim_at_ends(reducer(), task(40.0, 0.5 * enough));
+    EXPECT_EQ(aim.failure, "");
+    EXPECT_EQ(aim.slip.above, 0.5 * enough);
+    const MeridianPass pass = pass_of(reducer(), 40.0, aim.slip);
+    EXPECT_EQ(pass.upper, MeridianStop::End);
+    EXPECT_GT(steepest_deg(pass), 71.0);
+    EXPECT_LT(steepest_deg(pass), 85.0);
+    EXPECT_LT(deg_from_rad(pass.stations.back().angle_rad), 70.0);
 }
 
 }  // namespace
