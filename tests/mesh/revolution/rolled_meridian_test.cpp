@@ -20,6 +20,7 @@ constexpr double kWide_mm = 30.0;
 // Straight lines between (radius, z).
 Meridian polygon(const std::vector<Vector2d>& corners) {
     std::vector<MeridianNode> nodes;
+    nodes.reserve(corners.size());
     for (const Vector2d& corner : corners) {
         nodes.push_back({.radius_mm = corner.x(), .z_mm = corner.y(), .straight = true});
     }
