@@ -22,14 +22,15 @@ constexpr double kFirstAngle_deg = 45.0;
 constexpr double kLastAngle_deg = 80.0;
 constexpr double kAngleStep_deg = 5.0;
 
-// Where a narrow end lets none of those by, or a neck is left bare by them.
+// Where a narrow end lets none of those by, or they leave a neck bare. Angles are closer there: the
+// path crosses the corner of a neck ever flatter.
 constexpr double kFlattest_deg = 10.0;
 constexpr double kFlatter_deg = 2.5;
 
 // So many times the layers on average of the thinnest pattern: the angle counts for more.
 constexpr double kHardlyMore = 1.3;
 
-// Patterns that the machine refuses although it winds a circuit of each: others it refuses as well.
+// Patterns that the machine refuses although it winds circuits of them: each takes a whole winding.
 constexpr int kMostRefused = 3;
 
 // Polar windings leave necks bare: of those that cover less than this, others are looked for.
@@ -178,11 +179,11 @@ TriedPlan wound(const LayerTask& task, Plan plan) {
     return tried;
 }
 
-// Of `auto`: it covers, and the machine winds a circuit of it.
+// Of `auto`: it covers, and the machine winds the first circuits of it.
 Plan pattern_at(const LayerTask& task, PatternKind kind, double angle_rad) {
     PatternOptions options = pattern_options(task, kind, angle_rad);
-    options.winds = [&task](std::span<const Piece> circuit) {
-        return task.machine.wind_alone(circuit);
+    options.winds = [&task](std::span<const Piece> circuits) {
+        return task.machine.wind_alone(circuits);
     };
     return covering(plan_pattern(task.setup.mandrel, *task.revolution().body, options));
 }

@@ -30,8 +30,10 @@ constexpr double kBlendsPerMm = 1000.0;
 // Under so much of the wall a larger blend is looked for, although the plan can be wound.
 constexpr double kWellCovered = 0.95;
 
-// Of a pattern.
+// A pattern that covers less leaves a neck bare, which a wider blend may let it lie on.
 constexpr double kPatternCovers = 0.99;
+
+// By friction a turn that is 10 degrees flatter takes 1.8 times the length.
 constexpr double kLongerExtension = 2.0;
 
 // With so much in reach of the fibres no larger one is looked for: a hundredth of it stays bare.
@@ -269,19 +271,19 @@ private:
     void find_pattern(const Job& job) {
         const bool open = !job.mandrel.extension_given && !turns_on_pins(job) &&
                           find_revolution(best_->layers.front().setup.mandrel).body.has_value();
-        if (open && tried_in_pattern(longer(blended(job, 0.0)))) {
+        if (open && settled_in_pattern(longer(blended(job, 0.0)))) {
             return;
         }
         for (const double widths : kBlendsInTows) {
             const Job blend = blended(job, widths);
-            if (tried_in_pattern(blend) || (open && tried_in_pattern(longer(blend)))) {
+            if (settled_in_pattern(blend) || (open && settled_in_pattern(longer(blend)))) {
                 return;
             }
         }
     }
 
-    // Whether that is the last try: its pattern covers the wall, or the part has none.
-    [[nodiscard]] bool tried_in_pattern(const Job& job) {
+    // Tries it. Whether no more are needed: its pattern covers the wall, or the part has none.
+    [[nodiscard]] bool settled_in_pattern(const Job& job) {
         run(job, Depth::PatternsFirst);
         return (done() && covered_share(*best_) >= kPatternCovers) ||
                last_planner_ != Planner::Pattern;

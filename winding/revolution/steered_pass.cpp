@@ -57,8 +57,9 @@ public:
         return c_mm + h_mm / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     }
 
-    [[nodiscard]] bool narrow(double arc_mm, double c_mm) const {
-        return c_mm >= place(arc_mm).radius_mm;
+    // Of the angle to the meridian; 1 or more where the body is too narrow for it.
+    [[nodiscard]] double sine(double arc_mm, double c_mm) const {
+        return c_mm / place(arc_mm).radius_mm;
     }
 
 private:
@@ -95,19 +96,19 @@ bool follow(const Stretch& stretch, double to_mm, SteeredEnd& at) {
             continue;
         }
         const double c = stretch.stepped(at.arc_mm, at.turning_mm, step);
-        if (!stretch.narrow(arc, c)) {
+        const double sine = stretch.sine(arc, c);
+        if (sine < 1.0) {
             at.arc_mm = arc;
             at.turning_mm = c;
-            at.most_sine = std::max(at.most_sine, c / stretch.place(arc).radius_mm);
+            at.most_sine = std::max(at.most_sine, sine);
             continue;
         }
         double good = 0.0;
         double bad = step;
         for (int k = 0; k < kHalvings; ++k) {
             const double middle = 0.5 * (good + bad);
-            (stretch.narrow(at.arc_mm + middle, stretch.stepped(at.arc_mm, at.turning_mm, middle))
-                 ? bad
-                 : good) = middle;
+            const double c_there = stretch.stepped(at.arc_mm, at.turning_mm, middle);
+            (stretch.sine(at.arc_mm + middle, c_there) < 1.0 ? good : bad) = middle;
         }
         at.turning_mm = stretch.stepped(at.arc_mm, at.turning_mm, good);
         at.arc_mm += good;

@@ -1,6 +1,5 @@
 #include "mesh/revolution/rolled_meridian.h"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -128,8 +127,8 @@ TEST(RolledMeridian, DoesNotRollOffAnEnd) {
     EXPECT_NE(rolled.why_not.find("lower end"), std::string::npos);
 }
 
-// Steps, grooves and cones at random: the ball touches all of what comes of it, what it touched
-// before is still there, and nothing has come closer to the axis.
+// Steps, grooves and cones at random: the ball touches all of what comes of it without dipping into
+// the body, and what it touched before is still there.
 TEST(RolledMeridian, IsWhatABallTouches) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> share(0.0, 1.0);
