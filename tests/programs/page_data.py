@@ -8,6 +8,10 @@ import struct
 
 TYPES = {"f32": "f", "f64": "d", "u32": "I", "i32": "i", "u8": "B"}
 
+# To whole multiples of what the page rounds fibre and eye.
+SHOWN = {"position_mm": 2**-8, "normal": 2**-11, "tangent": 2**-11, "s_mm": 2**-6, "slip": 2**-11,
+         "bridge_mm": 2**-8, "free_length_mm": 2**-6, "eye_mm": 2**-6}
+
 
 class Page:
     """The block of data in a page, as report/page_data.h describes it."""

@@ -4,7 +4,7 @@ import json
 import sys
 
 import program
-from page_data import Page
+from page_data import Page, SHOWN
 
 
 class ReportPage(program.ProgramTest):
@@ -24,18 +24,18 @@ class ReportPage(program.ProgramTest):
     def agree(self, page, prefix, path, motion):
         """Every array of a fibre against its tables."""
         rows = self.rows(path)
-        for name, columns, delta in (("position_mm", ("x_mm", "y_mm", "z_mm"), 2e-4),
-                                     ("normal", ("nx", "ny", "nz"), 1e-6),
-                                     ("tangent", ("tx", "ty", "tz"), 1e-6)):
+        for name, columns, digits in (("position_mm", ("x_mm", "y_mm", "z_mm"), 1e-4),
+                                      ("normal", ("nx", "ny", "nz"), 1e-6),
+                                      ("tangent", ("tx", "ty", "tz"), 1e-6)):
             entries = page[prefix + name]
             self.assertEqual(len(entries), len(rows))
             for entry, row in zip(entries, rows):
                 for value, column in zip(entry, columns):
-                    self.assertAlmostEqual(value, float(row[column]), delta=delta)
-        for name, delta in (("s_mm", 1e-2), ("slip", 1e-5), ("bridge_mm", 1e-4),
-                            ("free_length_mm", 1e-3)):
+                    self.assertAlmostEqual(value, float(row[column]), delta=SHOWN[name] / 2 + digits)
+        for name, digits in (("s_mm", 1e-2), ("slip", 1e-5), ("bridge_mm", 1e-4),
+                             ("free_length_mm", 1e-3)):
             for value, row in zip(page[prefix + name], rows):
-                self.assertAlmostEqual(value, float(row[name]), delta=delta)
+                self.assertAlmostEqual(value, float(row[name]), delta=SHOWN[name] / 2 + digits)
         for value, row in zip(page[prefix + "piece"], rows):
             self.assertEqual(value, int(row["course"]))
         blocks = self.rows(motion)
@@ -55,7 +55,7 @@ class ReportPage(program.ProgramTest):
                 self.assertEqual(rows[stations[k]]["point"], row["point"])
         for eye, row in zip(page[prefix + "eye_mm"], blocks):
             for value, column in zip(eye, ("ex_mm", "ey_mm", "ez_mm")):
-                self.assertAlmostEqual(value, float(row[column]), delta=1e-3)
+                self.assertAlmostEqual(value, float(row[column]), delta=SHOWN["eye_mm"] / 2 + 1e-4)
 
     def test_one_layer(self):
         page = self.wind()
