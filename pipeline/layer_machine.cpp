@@ -43,6 +43,12 @@ Rejection LayerMachine::wind_alone(std::span<const Piece> pieces) const {
     return first_of(program_of(setup_, pieces).refused);
 }
 
+Rejection LayerMachine::wind_circuits(std::span<const Piece> pieces) const {
+    PieceProgramOptions options;
+    options.lengths = LengthSearch::All;
+    return first_of(program_of(setup_, pieces, options).refused);
+}
+
 std::unique_ptr<TrialWinding> LayerMachine::wind_all(const Plan& plan) const {
     std::unique_ptr<LayerPrograms> all = programs_of(plan, false);
     if (all->refused.empty() && plan.pattern() != nullptr &&
@@ -80,6 +86,7 @@ void LayerMachine::wind_fibre(std::span<const Piece> pieces, bool goes_on, bool 
                               FibreProgram& program) const {
     PieceProgramOptions options;
     options.in_spite = in_spite;
+    options.lengths = LengthSearch::All;
     options.optimal = wants_least_time(setup_);
     options.through_text = [&](const PieceProgram& made) {
         return setup_.dialect->read(text_of(made, goes_on), program.file, setup_.machine);

@@ -47,6 +47,7 @@ public:
 
     [[nodiscard]] Rejection follow(std::span<const Piece> pieces) const override;
     [[nodiscard]] Rejection wind_alone(std::span<const Piece> pieces) const override;
+    [[nodiscard]] Rejection wind_circuits(std::span<const Piece> pieces) const override;
     [[nodiscard]] std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const override;
 
     /// The way from a plan to its programs, and back: each is read from its text and wound again.

@@ -30,7 +30,8 @@ constexpr double kFlatter_deg = 2.5;
 // So many times the layers on average of the thinnest pattern: the angle counts for more.
 constexpr double kHardlyMore = 1.3;
 
-// Patterns that the machine refuses although it winds circuits of them: each takes a whole winding.
+// Patterns that the machine refuses: although it winds circuits of them, each a whole winding; or
+// in a row, below one that holds.
 constexpr int kMostRefused = 3;
 
 // Polar windings leave necks bare: of those that cover less than this, others are looked for.
@@ -182,8 +183,9 @@ TriedPlan wound(const LayerTask& task, Plan plan) {
 // Of `auto`: it covers, and the machine winds the first circuits of it.
 Plan pattern_at(const LayerTask& task, PatternKind kind, double angle_rad) {
     PatternOptions options = pattern_options(task, kind, angle_rad);
+    options.least_covered = kCoveredShare;
     options.winds = [&task](std::span<const Piece> circuits) {
-        return task.machine.wind_alone(circuits);
+        return task.machine.wind_circuits(circuits);
     };
     return covering(plan_pattern(task.setup.mandrel, *task.revolution().body, options));
 }
@@ -222,12 +224,17 @@ void sort_by_worth(std::vector<Plan>& plans) {
 }
 
 // Patterns whose circuits the machine winds, the best first; a plan that failed for want of one.
+// Where some hold and a few flatter ones in a row do not, still flatter ones are not asked for.
 std::vector<Plan> helical_patterns(const LayerTask& task, double steepest_deg) {
     std::vector<Plan> plans;
     Plan failed;
-    for (double angle_deg = steepest_deg; angle_deg >= kFlattest_deg;
-         angle_deg -= angle_deg > kFirstAngle_deg ? kAngleStep_deg : kFlatter_deg) {
+    int in_vain = 0;
+    for (double angle_deg = steepest_deg;
+         angle_deg >= kFlattest_deg && in_vain<kMostRefused; angle_deg -= angle_deg> kFirstAngle_deg
+             ? kAngleStep_deg
+             : kFlatter_deg) {
         Plan plan = pattern_at(task, PatternKind::Helical, rad_from_deg(angle_deg));
+        in_vain = plan.failure.empty() || plans.empty() ? 0 : in_vain + 1;
         if (plan.failure.empty()) {
             plans.push_back(std::move(plan));
         } else if (angle_deg >= kFirstAngle_deg || failed.failure.empty()) {

@@ -77,7 +77,7 @@ public:
         };
         tell(options, "post", 0.0);
         spindle_rad_ = options.spindle_rad;
-        search_ = options.through_text ? LengthSearch::All : LengthSearch::Near;
+        search_ = options.lengths;
         repeated_.reset();
         CollisionRule rule = setup_.rule;
         rule.told_mm = rule.clearance_mm + margin::kMostBetweenBlocks_mm / margin::kBlocksOfRoom;

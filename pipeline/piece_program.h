@@ -43,6 +43,8 @@ struct PieceProgram {
 struct PieceProgramOptions {
     /// Make a program even of what the machine cannot wind.
     bool in_spite = false;
+    /// All: seconds where no near free length is clear.
+    LengthSearch lengths = LengthSearch::Near;
     /// Free lengths and turns of the mandrel for the least time.
     bool optimal = false;
     /// Where the spindle stands before, if the fibre goes on from there: it is turned on from the

@@ -373,7 +373,11 @@ private:
     // do the job gets as many as can.
     [[nodiscard]] double look_at(Job& job) {
         try {
-            Run look = once(job, Depth::Reach, options_.context.seed);
+            Mandrel mandrel = read(job);
+            if (mandrel.winding_mesh.blended_mm2 < job.tow.width_mm * job.tow.width_mm) {
+                return 0.0;  // what it changes no tow would show
+            }
+            Run look = once(std::move(mandrel), job, Depth::Reach, options_.context.seed);
             const Plan& plan = first_plan(look);
             const double least = kLeastReach * plan.coverage.reachable;
             double share = 0.0;
@@ -414,11 +418,21 @@ private:
     }
 
     [[nodiscard]] Run once(const Job& job, Depth depth, std::uint64_t seed) {
+        return once(read(job), job, depth, seed);
+    }
+
+    [[nodiscard]] Mandrel read(const Job& job) {
         if (!tried_.empty()) {
             options_.context.report_remark(tried_.back());
         }
         const auto begun = std::chrono::steady_clock::now();
-        Mandrel read = mandrel_(job);
+        Mandrel mandrel = mandrel_(job);
+        reading_s_ =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        return mandrel;
+    }
+
+    [[nodiscard]] Run once(Mandrel&& mandrel, const Job& job, Depth depth, std::uint64_t seed) {
         WindOptions options = options_;
         options.context.remark = [this](const std::string& words) {
             if (said_.insert(words).second) {
@@ -430,9 +444,8 @@ private:
         options.least_covered = depth == Depth::Full    ? 0.0
                                 : depth == Depth::Reach ? kNeverEnough
                                                         : kLeastReach;
-        options.reading_s +=
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        return wind(std::move(read), machine_, job, options);
+        options.reading_s += reading_s_;
+        return wind(std::move(mandrel), machine_, job, options);
     }
 
     const MandrelOf& mandrel_;
@@ -444,6 +457,7 @@ private:
     bool by_chance_ = false;   // did that fail
     Planner last_planner_ = Planner::None;
     bool cover_put_off_ = false;  // was it a pattern that did not hold
+    double reading_s_ = 0.0;      // the mandrel of the last run
     std::set<std::string> said_;
     std::vector<std::string> tried_;
 };

@@ -22,6 +22,9 @@ struct AnyMachine : Windability {
     [[nodiscard]] Rejection wind_alone(std::span<const Piece> pieces) const override {
         return alone_rule ? alone_rule(pieces) : Rejection::None;
     }
+    [[nodiscard]] Rejection wind_circuits(std::span<const Piece> pieces) const override {
+        return wind_alone(pieces);
+    }
     [[nodiscard]] std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const override {
         auto trial = std::make_unique<TrialWinding>();
         if (refused_rule) {

@@ -411,8 +411,9 @@ private:
             lateness.push_back(character_of(mandrel_.surface, course.path).lateness());
         }
         const auto most = static_cast<std::size_t>(fibres());
-        const auto followed = order_to_follow(rules_, machine_, members_, laid, lateness, most);
+        auto followed = order_to_follow(rules_, machine_, members_, laid, lateness, most);
         order_ = longest_fibres(members_, followed.courses, most);
+        closed_ = std::move(followed.closed);
         plan_.effort.turns_refused = followed.turns_refused;
         plan_.effort.courses_out_of_reach =
             static_cast<int>(followed.courses.size() - order_.size());
@@ -444,7 +445,7 @@ private:
             if (!trial_ || trial_->refused.empty()) {
                 return;
             }
-            const auto refused = refused_courses(*trial_, plan_, order_, library_size_);
+            const auto refused = refused_courses(*trial_, plan_, order_, closed_, library_size_);
             trial_.reset();
             const bool better = best.empty() || refused.size() < least;
             in_vain += better ? 0 : 1;
@@ -549,6 +550,7 @@ private:
     std::vector<std::vector<LaidCourse>> spare_links_;  // per link: in its place, the best last
     CourseJoiner joiner_;
     std::vector<OrderedCourse> order_;  // of the pool
+    ClosedTurns closed_;                // found while that was looked for
     std::vector<std::int32_t> layers_;  // per sample
     std::uint64_t annealings_ = 0;
     std::mutex refused_mutex_;

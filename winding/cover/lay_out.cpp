@@ -106,14 +106,35 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
     plan.courses = static_cast<int>(order.size());
 }
 
+namespace {
+
+// Of the courses before and behind a turn the one at which more turns are closed.
+std::size_t harder_to_turn_at(std::span<const OrderedCourse> order, std::size_t before,
+                              const ClosedTurns& closed) {
+    const LaidCourse& from = order[before].course;
+    const LaidCourse& to = order[before + 1].course;
+    const auto count = [&closed](const auto& is) {
+        return std::count_if(closed.begin(), closed.end(), is);
+    };
+    const auto behind = count([&](const auto& turn) { return turn.second == to; });
+    return behind > count([&](const auto& turn) { return turn.first == from; }) ? before + 1
+                                                                                : before;
+}
+
+}  // namespace
+
 std::vector<std::pair<std::size_t, Rejection>> refused_courses(const TrialWinding& trial,
                                                                const Plan& plan,
                                                                std::span<const OrderedCourse> order,
+                                                               const ClosedTurns& closed,
                                                                std::size_t library_size) {
     std::vector<std::pair<std::size_t, Rejection>> courses;
     const std::vector<std::size_t> course_of = courses_of(plan.pieces);
     for (const std::size_t piece : trial.refused) {
-        const std::size_t course = course_of[piece];
+        std::size_t course = course_of[piece];
+        if (plan.pieces[piece].kind == PieceKind::Transition && course + 1 < order.size()) {
+            course = harder_to_turn_at(order, course, closed);
+        }
         courses.emplace_back(at(order[course].course.member) - library_size, Rejection::InItsPlace);
     }
     std::sort(courses.begin(), courses.end());

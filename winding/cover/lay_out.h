@@ -30,10 +30,11 @@ void lay_out(const CourseRules& rules, std::span<const Member> members,
 void add_half_turns(const CourseRules& rules, const Member& member, bool backward,
                     std::vector<Piece>& pieces);
 
-/// Courses of a plan that a trial refuses, or whose turns it refuses: by their place behind the
-/// library's members, in order, each once. \param order what the plan was laid out from
+/// Courses of a plan that a trial refuses: by their place behind the library's members, in order,
+/// each once. Of a turn that it refuses, the course at which more turns are closed.
+/// \param order what the plan was laid out from \param closed turns between those courses
 [[nodiscard]] std::vector<std::pair<std::size_t, Rejection>> refused_courses(
     const TrialWinding& trial, const Plan& plan, std::span<const OrderedCourse> order,
-    std::size_t library_size);
+    const ClosedTurns& closed, std::size_t library_size);
 
 }  // namespace meshwind

@@ -29,7 +29,7 @@ public:
     FollowedOrder run(std::size_t fibres) {
         std::vector<OrderedCourse> best = put_in_order();
         if (machine_ == nullptr) {
-            return {std::move(best), 0};
+            return {std::move(best)};
         }
         std::vector<OrderedCourse> order = best;
         std::pair<std::size_t, std::size_t> least;  // cuts, closed turns
@@ -46,7 +46,7 @@ public:
             order = put_in_order();
         }
         const std::size_t cut = cut_at_closed(best, fibres - std::min(fibres, least.first));
-        return {std::move(best), static_cast<int>(least.second - cut)};
+        return {std::move(best), static_cast<int>(least.second - cut), std::move(closed_)};
     }
 
 private:

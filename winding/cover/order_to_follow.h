@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "winding/cover/library.h"
+#include "winding/cover/order.h"
 #include "winding/plan/course.h"
 #include "winding/plan/windability.h"
 
@@ -13,6 +14,7 @@ namespace meshwind {
 struct FollowedOrder {
     std::vector<OrderedCourse> courses;
     int turns_refused = 0;  ///< left in the order although the machine cannot follow them
+    ClosedTurns closed{};   ///< all that it was found not to follow
 };
 
 /// Orders and arranges courses (order.h, arrange.h). Where the machine cannot follow a turn from

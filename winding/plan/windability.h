@@ -41,6 +41,10 @@ public:
     /// some hundred times as long as follow().
     [[nodiscard]] virtual Rejection wind_alone(std::span<const Piece> pieces) const = 0;
 
+    /// The same of the first circuits of a pattern, looking at every free length as wind_all()
+    /// does: seconds.
+    [[nodiscard]] virtual Rejection wind_circuits(std::span<const Piece> pieces) const = 0;
+
     /// Winds all of a plan, each piece in its place. Seconds.
     [[nodiscard]] virtual std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const = 0;
 };

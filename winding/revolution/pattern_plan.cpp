@@ -73,10 +73,9 @@ public:
             lay_hoops();
             return std::move(plan_);
         }
-        if (options_.kind == PatternKind::Polar ? !aim_at_openings() : !aim_at_angle()) {
-            return std::move(plan_);
-        }
-        if (!lift_over_rims() || !ends_hold() || !choose_pattern() || !place_turns()) {
+        const bool aimed = options_.kind == PatternKind::Polar ? aim_at_openings() : aim_at_angle();
+        if (!aimed || !can_cover() || !lift_over_rims() || !ends_hold() || !choose_pattern() ||
+            !place_turns()) {
             return std::move(plan_);
         }
         begin_at({goal(0), goal(1)}, {laid_.stations.front(), way_back(laid_).front()});
@@ -189,7 +188,9 @@ private:
                 return fail("a fibre at " + degrees(angle_rad_) + " runs over the " + name +
                             " pole; a larger angle turns before it");
             }
-            const std::string why = turns_->add({end, *rim, crossing_of(end), angle_rad_});
+            const MeridianStation& at = end == 0 ? laid_.stations.front() : laid_.stations.back();
+            const std::string why =
+                turns_->add({end, *rim, pieces_.crossing_of(end, at, 0.0), angle_rad_});
             if (!why.empty()) {
                 return fail(why);
             }
@@ -203,12 +204,6 @@ private:
     bool place_turns() {
         const std::string why = turns_->place(pattern_, lattice_ ? lattice_->series : 1);
         return why.empty() || fail(why);
-    }
-
-    // How the pass crosses the rim of an end on its way out, or begins there (seen backwards).
-    [[nodiscard]] RimCrossing crossing_of(std::size_t end) const {
-        return pieces_.crossing_of(end, end == 0 ? laid_.stations.front() : laid_.stations.back(),
-                                   0.0);
     }
 
     [[nodiscard]] bool dwells(std::size_t end) const {
@@ -299,7 +294,10 @@ private:
                 break;
             }
             circuit.mm_per_rad = sparsest_mm();
-            closed = options_.lattice || options_.wish.circuits > 0 || closes(circuit);
+            const double around_mm = 2.0 * kPi * circuit.mm_per_rad * circuit.layers;
+            closed =
+                options_.lattice || options_.wish.circuits > 0 ||
+                static_cast<double>(pattern_.circuits) * offset_mm() >= (1.0 - kNoGap) * around_mm;
             if (tries == 1) {
                 first = state;
             }
@@ -311,11 +309,6 @@ private:
         laid_ = pass_;
         pattern_ = with_bands_of(circuit, pattern_);
         return true;
-    }
-
-    [[nodiscard]] bool closes(const CircuitToClose& circuit) const {
-        const double around_mm = 2.0 * kPi * circuit.mm_per_rad * circuit.layers;
-        return static_cast<double>(pattern_.circuits) * offset_mm() >= (1.0 - kNoGap) * around_mm;
     }
 
     // How much the turn of a circuit changes within kMostAngle_rad, by its slope.
@@ -357,6 +350,14 @@ private:
         const bool closed = secant_root(by_angle, kSlope_rad, kMostAngle_rad, 1e3 * kClosed_rad);
         const bool turns = pass_.lower == MeridianStop::Hoop && pass_.upper == MeridianStop::Hoop;
         return (closed && turns) || not_closed();
+    }
+
+    [[nodiscard]] bool can_cover() {
+        const double share =
+            share_between(meridian_, {pass_.stations.front().arc_mm - 0.5 * options_.tow.width_mm,
+                                      pass_.stations.back().arc_mm + 0.5 * options_.tow.width_mm});
+        return share >= options_.least_covered || fail("a pattern that turns back there covers " +
+                                                       percent(share, 1) + " of the wall at most");
     }
 
     // Where the pattern may begin at an end.

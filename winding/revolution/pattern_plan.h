@@ -40,6 +40,7 @@ struct PatternOptions {
     /// To go on with its fibre, by connecting passes (connecting_passes.h) or a turn; where that
     /// cannot be, Plan::cut_because says why and the pattern begins anew.
     std::optional<FibreEnd> before{};
+    double least_covered = 0.0;  ///< helical, polar: of the wall; what cannot cover it is not laid
     /// Helical, polar: whether the machine winds the first circuits, of which the others are turned
     /// copies. A plan whose circuits it refuses fails, and is not measured. None: not asked.
     std::function<Rejection(std::span<const Piece> circuits)> winds{};

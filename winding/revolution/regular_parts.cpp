@@ -18,6 +18,9 @@ constexpr double kSteep_rad = rad_from_deg(45.0);
 // Nearer to hoop layers have no number; two tow widths off a turn they are flatter.
 constexpr double kLeastCosine = 1e-3;
 
+// Rings of the wall whose areas are summed up.
+constexpr int kRings = 2000;
+
 // r sin(a) by arc length, ascending.
 struct Turning {
     std::vector<double> arc_mm;
@@ -75,6 +78,18 @@ void regular_parts(const BodyOfRevolution& body, const MeridianPass& pass,
         const double sine = std::min(1.0, turning.at(arc) / radius);
         return 1.0 / (radius * std::max(kLeastCosine, std::sqrt(1.0 - sine * sine)));
     };
+}
+
+double share_between(const Meridian& meridian, const std::array<double, 2>& wound_mm) {
+    double all = 0.0;
+    double between = 0.0;
+    for (int i = 0; i < kRings; ++i) {
+        const double arc_mm = meridian.length_mm() * (i + 0.5) / kRings;
+        const double radius_mm = meridian.at(arc_mm).radius_mm;
+        all += radius_mm;
+        between += arc_mm >= wound_mm[0] && arc_mm <= wound_mm[1] ? radius_mm : 0.0;
+    }
+    return between / all;
 }
 
 }  // namespace meshwind

@@ -17,4 +17,8 @@ namespace meshwind {
 void regular_parts(const BodyOfRevolution& body, const MeridianPass& pass,
                    const std::array<double, 2>& wound_mm, double tow_width_mm, PlanZones& zones);
 
+/// Share of the body's wall between two arc lengths, to 1e-3: more than a pattern that turns back
+/// there covers. \param wound_mm in order; beyond the ends there is no wall
+[[nodiscard]] double share_between(const Meridian& meridian, const std::array<double, 2>& wound_mm);
+
 }  // namespace meshwind

@@ -44,5 +44,30 @@ TEST(HalfTurns, AreNotHiddenByTheWallThatTheyLieOn) {
     }
 }
 
+// Three courses of one fibre, and a trial that refuses the turn between the first two.
+TEST(RefusedCourses, OfATurnIsTheOneAtWhichMoreTurnsAreClosed) {
+    const std::size_t library = 10;
+    const std::vector<OrderedCourse> order{
+        {{10, false}, false}, {{11, true}, false}, {{12, false}, true}};
+    Plan plan;
+    plan.pieces.resize(5);
+    plan.pieces[1].kind = plan.pieces[3].kind = PieceKind::Transition;
+    TrialWinding trial;
+    trial.refused = {1};
+    const auto refused = [&](const ClosedTurns& closed) {
+        const auto courses = refused_courses(trial, plan, order, closed, library);
+        EXPECT_EQ(courses.size(), 1U);
+        return courses.front().first;
+    };
+    const std::pair<LaidCourse, LaidCourse> here{order[0].course, order[1].course};
+    EXPECT_EQ(refused({}), 0U);
+    EXPECT_EQ(refused({here, {order[0].course, order[2].course}}), 0U);
+    EXPECT_EQ(refused({here, {order[2].course, order[1].course}}), 1U);
+    // Towards the same course wound the other way no turn is closed.
+    EXPECT_EQ(refused({here, {order[2].course, {11, false}}}), 0U);
+    trial.refused = {2};
+    EXPECT_EQ(refused({here, {order[2].course, order[1].course}}), 1U);
+}
+
 }  // namespace
 }  // namespace meshwind

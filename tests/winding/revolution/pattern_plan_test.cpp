@@ -294,6 +294,25 @@ TEST(PatternPlan, HoopsCoverTheCylinderAlone) {
     }
 }
 
+TEST(PatternPlan, IsNotLaidWhereItTurnsBackTooSoonToCover) {
+    const Mandrel vessel = test::made("vessel", kVessel, 5.0);
+    for (const double angle_deg : {45.0, 60.0, 75.0}) {
+        SCOPED_TRACE(angle_deg);
+        const double angle_rad = rad_from_deg(angle_deg);
+        const Plan free = planned(vessel, {.angle_rad = angle_rad, .tow = kTow}).plan;
+        ASSERT_EQ(free.failure, "");
+        const double covered = free.coverage.fraction;
+        const auto asked = [&](double least) {
+            return planned(vessel, {.angle_rad = angle_rad, .tow = kTow, .least_covered = least})
+                .plan;
+        };
+        EXPECT_EQ(asked(covered - 0.01).pieces.size(), free.pieces.size());
+        const Plan refused = asked(covered + 0.02);
+        EXPECT_NE(refused.failure, "");
+        EXPECT_TRUE(refused.pieces.empty());
+    }
+}
+
 TEST(PatternPlan, SaysWhyNothingCanBeWound) {
     const Planned steep = planned(test::made_cylinder(40.0, 200.0, 5.0),
                                   {.angle_rad = rad_from_deg(20.0), .tow = kTow});

@@ -38,6 +38,21 @@ TEST(RegularParts, LayersOfAConeHaveAClosedForm) {
     EXPECT_FALSE(zones.regular(Eigen::Vector3d(edge.radius_mm, 0.0, edge.z_mm)));
 }
 
+TEST(ShareBetween, OfAConeHasAClosedForm) {
+    const RevolutionFinding found =
+        find_revolution(build_mandrel(make_cone({60.0, 30.0, 200.0}), "made.stl"));
+    ASSERT_TRUE(found.body);
+    const Meridian& meridian = found.body->meridian;
+    const double from_mm = meridian.at(0.0).radius_mm;
+    for (const double part : {0.1, 0.5, 0.93}) {
+        const double to_mm = meridian.at(part * meridian.length_mm()).radius_mm;
+        const double share = part * (from_mm + to_mm) / (60.0 + 30.0);
+        const double arc_mm = part * meridian.length_mm();
+        EXPECT_NEAR(share_between(meridian, {-1.0, arc_mm}), share, 1e-3);
+        EXPECT_NEAR(share_between(meridian, {arc_mm, 1e3}), 1.0 - share, 1e-3);
+    }
+}
+
 TEST(RegularParts, DomesAreNone) {
     const RevolutionFinding found = find_revolution(build_mandrel(make_ellipsoid({}), "made.stl"));
     ASSERT_TRUE(found.body);
