@@ -74,7 +74,7 @@ public:
             return std::move(plan_);
         }
         const bool aimed = options_.kind == PatternKind::Polar ? aim_at_openings() : aim_at_angle();
-        if (!aimed || !can_cover() || !lift_over_rims() || !ends_hold() || !choose_pattern() ||
+        if (!aimed || !lift_over_rims() || !ends_hold() || !choose_pattern() || !can_cover() ||
             !place_turns()) {
             return std::move(plan_);
         }
@@ -352,10 +352,10 @@ private:
         return (closed && turns) || not_closed();
     }
 
+    // Where the band turns it counts as far as its middle.
     [[nodiscard]] bool can_cover() {
         const double share =
-            share_between(meridian_, {pass_.stations.front().arc_mm - 0.5 * options_.tow.width_mm,
-                                      pass_.stations.back().arc_mm + 0.5 * options_.tow.width_mm});
+            share_between(meridian_, {pass_.stations.front().arc_mm, pass_.stations.back().arc_mm});
         return share >= options_.least_covered || fail("a pattern that turns back there covers " +
                                                        percent(share, 1) + " of the wall at most");
     }
