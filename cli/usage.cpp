@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/text/strict_json.h"
+#include "pipeline/job/key_named.h"
 
 namespace meshwind {
 namespace {
@@ -124,7 +125,18 @@ InputError error_of(const Line& line, const char* code, const std::string& place
     return InputError(code, place, words + see_help(line, words));
 }
 
+// Where the command takes settings, the job's key that the unknown option may mean; else empty.
+std::string key_meant(const Line& line) {
+    return find_option(*line.path.back(), "--set") != nullptr ? job_key_named(*line.unknown_option)
+                                                              : std::string();
+}
+
 InputError unknown_option(const Line& line) {
+    if (const std::string key = key_meant(line); !key.empty()) {
+        return error_of(
+            line, "cli.unknown_option", *line.unknown_option,
+            "is no option of " + called(line) + " but a key of the job: --set " + key + "=VALUE");
+    }
     std::vector<std::string_view> known;
     for (const CommandWords* command : line.path) {
         const std::vector<std::string_view> more = names_of(command->options);

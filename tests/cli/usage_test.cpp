@@ -10,8 +10,8 @@ namespace {
 
 const CommandWords kProgram{
     "meshwind",
-    {{"--machine"}, {"--units"}, {"--quiet", false}, {"-o"}},
-    {{"wind", {{"--machine"}, {"--effort"}}, {}},
+    {{"--machine"}, {"--units"}, {"--quiet", false}, {"-o"}, {"--set"}},
+    {{"wind", {{"--machine"}, {"--effort"}, {"--set"}}, {}},
      {"inspect", {{"--refine"}}, {}},
      {"verify", {{"--plan"}}, {}},
      {"make",
@@ -30,6 +30,9 @@ TEST(UsageError, NamesTheWordAndWhatMayBeMeant) {
         {{"--machin=six_axis.json", "tee.stl"}, "cli.unknown_option", "--machine?"},
         {{"wind", "tee.stl", "--efort", "4"}, "cli.unknown_option", "meshwind wind --help"},
         {{"tee.stl", "--nothing-alike"}, "cli.unknown_option", "meshwind --help"},
+        {{"tee.stl", "--friction", "0.3"}, "cli.unknown_option", "--set tow.friction=VALUE"},
+        {{"wind", "tee.stl", "--tow-width=3"}, "cli.unknown_option", "--set tow.width=VALUE"},
+        {{"inspect", "tee.stl", "--friction"}, "cli.unknown_option", "meshwind inspect --help"},
         {{"wnd", "tee.stl"}, "cli.unknown_command", "\"wind\""},
         {{"inspct"}, "cli.unknown_command", "\"inspect\""},
         {{"--quiet", "verfy", "a.ngc"}, "cli.unknown_command", "\"verify\""},
