@@ -343,4 +343,25 @@ int run_machines(const Common& common) {
     return kDone;
 }
 
+int run_profiles(const Common& common) {
+    const std::vector<std::string> files = shipped_profiles();
+    std::size_t widest = 0;
+    for (const std::string& file : files) {
+        widest = std::max(widest, file.size());
+    }
+    nlohmann::json all = nlohmann::json::array();
+    for (const std::string& file : files) {
+        const std::string says = told_job_text(load_profile(find_input(file)));
+        if (common.json) {
+            all.push_back({{"file", file}, {"job", nlohmann::json::parse(says)}});
+        } else {
+            std::cout << file << std::string(widest + 2 - file.size(), ' ') << says << '\n';
+        }
+    }
+    if (common.json) {
+        std::cout << json_text(all);
+    }
+    return kDone;
+}
+
 }  // namespace meshwind

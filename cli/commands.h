@@ -29,6 +29,7 @@ struct Common {
 /// A job file, and what is put over it.
 struct JobArguments {
     std::string file;                   ///< empty: the defaults
+    std::vector<std::string> profiles;  ///< files of materials and processes, below the job
     std::vector<std::string> settings;  ///< "tow.width=8"
     std::string program, text;          ///< of a program's head, JSON, where no file is given
 };
@@ -108,6 +109,9 @@ struct CarryArguments {
 [[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);
 /// Lists the machines that come with the program.
 [[nodiscard]] int run_machines(const Common& common);
+
+/// Lists the materials and processes that come with the program, with what they say.
+[[nodiscard]] int run_profiles(const Common& common);
 [[nodiscard]] int run_validate(const ValidateArguments& arguments, const Common& common);
 
 }  // namespace meshwind

@@ -149,6 +149,15 @@ constexpr const char* kMachinesHelp =
     "Example:\n"
     "  meshwind machines";
 
+constexpr const char* kProfilesHelp =
+    "A profile is a file with keys of a job, for what the job itself leaves out: a material\n"
+    "(tow width, thickness, density, price_per_kg) or a process (friction, speed, tolerances). A\n"
+    "name of the list is enough for --profile; of several the last one counts.\n"
+    "\n"
+    "Examples:\n"
+    "  meshwind profiles\n"
+    "  meshwind part.stl --profile glass_2400tex --profile wet_winding";
+
 constexpr const char* kValidateHelp =
     "A file with a key \"schema\" or \"eye_chain\" is read as a machine, any other as a job. Of a\n"
     "machine its class is told, its axes, and whether the main job can be run with it.\n"

@@ -55,14 +55,18 @@ fs::path found_or_none(const std::string& name) {
 
 Job job_of(const JobArguments& arguments, const fs::path& file, bool points) {
     const std::vector<JobSetting> settings = settings_of(arguments.settings);
+    Job base;
+    for (const std::string& profile : arguments.profiles) {
+        base = load_profile(find_input(profile), base);
+    }
     if (file.empty() && !arguments.text.empty()) {
-        return points ? job_of_text(arguments.text, arguments.program, {}, settings)
-                      : parse_job(arguments.text, arguments.program, settings);
+        return points ? job_of_text(arguments.text, arguments.program, {}, settings, base)
+                      : parse_job(arguments.text, arguments.program, settings, base);
     }
     if (points) {
-        return load_job(file, settings);
+        return load_job(file, settings, base);
     }
-    return file.empty() ? parse_job("{}", "job", settings) : read_job(file, settings);
+    return file.empty() ? parse_job("{}", "job", settings, base) : read_job(file, settings, base);
 }
 
 RunContext context_of(const Common& common, Progress& progress) {

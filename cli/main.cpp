@@ -174,6 +174,10 @@ void add_commands(Commands& commands) {
         "machines", "the machine files that come with meshwind", kMachinesHelp,
         [](CLI::App&, NoArguments&) {},
         [](NoArguments&, const Common& common) { return run_machines(common); });
+    commands.add<NoArguments>(
+        "profiles", "the materials and processes that come with meshwind", kProfilesHelp,
+        [](CLI::App&, NoArguments&) {},
+        [](NoArguments&, const Common& common) { return run_profiles(common); });
     commands.add<ValidateArguments>("validate", "check a machine or job file", kValidateHelp,
                                     add_validate, run_validate);
     commands.add<CarryArguments>(

@@ -5,15 +5,15 @@
 _meshwind_common='--threads --seed --units --json --verbose --quiet --force'
 # Options and commands by command; - is the program itself.
 declare -gA _meshwind_words=(
-    [-]='-h --help --version --machine --job --set -o --out --effort --png --png-size --png-colour wind post verify resume dry-run repeat show inspect make trace machines validate carry design study export strength'
-    [wind]='-h --help --machine --job --set -o --out --effort --png --png-size --png-colour'
-    [post]='-h --help --mandrel --machine --job --set --frame --within --circuits --turn --smooth -o --out --png --png-size --png-colour'
-    [verify]='-h --help --mandrel --machine --job --set --tie-on --frame --plan -o --out'
-    [resume]='-h --help --mandrel --machine --job --set --tie-on --frame --block --line -o --out'
-    [dry-run]='-h --help --mandrel --machine --job --set --tie-on --frame --clearance -o --out'
-    [repeat]='-h --help --mandrel --machine --set -o --out --png --png-size --png-colour'
+    [-]='-h --help --version --machine --job --profile --set -o --out --effort --png --png-size --png-colour wind post verify resume dry-run repeat show inspect make trace machines profiles validate carry design study export strength'
+    [wind]='-h --help --machine --job --profile --set -o --out --effort --png --png-size --png-colour'
+    [post]='-h --help --mandrel --machine --job --profile --set --frame --within --circuits --turn --smooth -o --out --png --png-size --png-colour'
+    [verify]='-h --help --mandrel --machine --job --profile --set --tie-on --frame --plan -o --out'
+    [resume]='-h --help --mandrel --machine --job --profile --set --tie-on --frame --block --line -o --out'
+    [dry-run]='-h --help --mandrel --machine --job --profile --set --tie-on --frame --clearance -o --out'
+    [repeat]='-h --help --mandrel --machine --profile --set -o --out --png --png-size --png-colour'
     [show]='-h --help --mandrel --machine -o --out'
-    [inspect]='-h --help --job --set --refine -o --out --page'
+    [inspect]='-h --help --job --profile --set --refine -o --out --page'
     [make]='-h --help -o --out --edge --irregular --solid --wall cylinder cone vessel isotensoid elbow tee combination frame torus ellipsoid'
     [make cylinder]='-h --help --radius --length'
     [make cone]='-h --help --radius1 --radius2 --length'
@@ -27,6 +27,7 @@ declare -gA _meshwind_words=(
     [make ellipsoid]='-h --help --equator-radius --pole-radius'
     [trace]='-h --help --start --direction --angle --to --lambda --length --method --frame -o --out'
     [machines]='-h --help'
+    [profiles]='-h --help'
     [validate]='-h --help --schema'
     [carry]='-h --help --from-end --bend-turn --machine --tool --speed --tolerance --tolerance-angle --tube-radius --ring-radius --ring-distance --clearance --angle --tows --tow-width --passes --at-once --spool-radius --angle-tolerance --friction --tow-tex --name -o --out'
     [design]='-h --help vessel'
@@ -43,6 +44,7 @@ declare -gA _meshwind_words=(
 declare -gA _meshwind_takes=(
     [- --machine]='machine'
     [- --job]='job'
+    [- --profile]='profile'
     [- --set]='-'
     [- -o]='folder'
     [- --out]='folder'
@@ -55,6 +57,7 @@ declare -gA _meshwind_takes=(
     [* --units]='auto um mm cm m in'
     [wind --machine]='machine'
     [wind --job]='job'
+    [wind --profile]='profile'
     [wind --set]='-'
     [wind -o]='folder'
     [wind --out]='folder'
@@ -65,6 +68,7 @@ declare -gA _meshwind_takes=(
     [post --mandrel]='mesh'
     [post --machine]='machine'
     [post --job]='job'
+    [post --profile]='profile'
     [post --set]='-'
     [post --frame]='file mandrel'
     [post --within]='-'
@@ -79,6 +83,7 @@ declare -gA _meshwind_takes=(
     [verify --mandrel]='mesh'
     [verify --machine]='machine'
     [verify --job]='job'
+    [verify --profile]='profile'
     [verify --set]='-'
     [verify --tie-on]='-'
     [verify --frame]='file mandrel'
@@ -88,6 +93,7 @@ declare -gA _meshwind_takes=(
     [resume --mandrel]='mesh'
     [resume --machine]='machine'
     [resume --job]='job'
+    [resume --profile]='profile'
     [resume --set]='-'
     [resume --tie-on]='-'
     [resume --frame]='file mandrel'
@@ -98,6 +104,7 @@ declare -gA _meshwind_takes=(
     [dry-run --mandrel]='mesh'
     [dry-run --machine]='machine'
     [dry-run --job]='job'
+    [dry-run --profile]='profile'
     [dry-run --set]='-'
     [dry-run --tie-on]='-'
     [dry-run --frame]='file mandrel'
@@ -106,6 +113,7 @@ declare -gA _meshwind_takes=(
     [dry-run --out]='mesh'
     [repeat --mandrel]='mesh'
     [repeat --machine]='machine'
+    [repeat --profile]='profile'
     [repeat --set]='-'
     [repeat -o]='folder'
     [repeat --out]='folder'
@@ -117,6 +125,7 @@ declare -gA _meshwind_takes=(
     [show -o]='-'
     [show --out]='-'
     [inspect --job]='job'
+    [inspect --profile]='profile'
     [inspect --set]='-'
     [inspect --refine]='-'
     [inspect -o]='mesh'
@@ -326,6 +335,10 @@ _meshwind_fill() {
     machine | json)
         _meshwind_files "$current" json
         _meshwind_named "$current" '*.json' machines
+        ;;
+    profile)
+        _meshwind_files "$current" json
+        _meshwind_named "$current" '*.json' data/profiles
         ;;
     job) _meshwind_files "$current" json ;;
     table) _meshwind_files "$current" csv ;;

@@ -28,6 +28,11 @@ void add_png(CLI::App& app, PreviewOptions& options) {
 }
 
 void add_settings(CLI::App& app, JobArguments& job) {
+    app.add_option("--profile", job.profiles,
+                   "a material or process, as often as wanted: a file with keys of a job, for what "
+                   "the job leaves out; meshwind profiles lists those that come along")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
     app.add_option("--set", job.settings,
                    "a value over that of the job, as often as wanted: tow.width=8, "
                    "layers.0.angle=55")

@@ -161,7 +161,8 @@ def _kind_of_file(path, o):
         return "folder"
     if kind not in ("FILE", "NAME"):
         return ""
-    by_name = {"mandrel": "mesh", "--mandrel": "mesh", "--machine": "machine", "--job": "job", "points": "table",
+    by_name = {"mandrel": "mesh", "--mandrel": "mesh", "--machine": "machine", "--job": "job",
+               "--profile": "profile", "points": "table",
                "axis": "axis", "file": "json", "program": "program", "what": "shown"}
     if name == "--out" and path == ("show",):
         return ""
@@ -269,6 +270,10 @@ _meshwind_fill() {
     machine | json)
         _meshwind_files "$current" json
         _meshwind_named "$current" '*.json' machines
+        ;;
+    profile)
+        _meshwind_files "$current" json
+        _meshwind_named "$current" '*.json' data/profiles
         ;;
     job) _meshwind_files "$current" json ;;
     table) _meshwind_files "$current" csv ;;

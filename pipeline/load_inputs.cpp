@@ -66,21 +66,27 @@ Machine load_machine(const std::filesystem::path& file) {
     return machine;
 }
 
-Job load_job(const std::filesystem::path& file, std::span<const JobSetting> settings) {
-    return file.empty()
-               ? job_of_text("{}", "job", {}, settings)
-               : job_of_text(read_text_file(file), file.string(), file.parent_path(), settings);
+Job load_job(const std::filesystem::path& file, std::span<const JobSetting> settings,
+             const Job& base) {
+    return file.empty() ? job_of_text("{}", "job", {}, settings, base)
+                        : job_of_text(read_text_file(file), file.string(), file.parent_path(),
+                                      settings, base);
 }
 
 Job job_of_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
-                std::span<const JobSetting> settings) {
-    Job job = parse_job(text, name, settings);
+                std::span<const JobSetting> settings, const Job& base) {
+    Job job = parse_job(text, name, settings, base);
     for (LayerJob& layer : job.layers) {
         if (layer.kind == LayerKind::Imported) {
             layer.points = read_landing_points(folder / layer.file);
         }
     }
     return job;
+}
+
+Job load_profile(const std::filesystem::path& file, const Job& base) {
+    require_profile_file(file);
+    return read_job(file, {}, base);
 }
 
 MandrelOf mandrel_reader(std::filesystem::path file, double unit_mm, std::string& digest) {

@@ -18,14 +18,18 @@ namespace meshwind {
 [[nodiscard]] Machine load_machine(const std::filesystem::path& file);
 
 /// A job with the landing points of its imported layers. \param file empty: settings alone
-/// \throws IoError io.cannot_read; InputError as read_job() has it
+/// \param base what it leaves out \throws IoError io.cannot_read; InputError as read_job() has it
 [[nodiscard]] Job load_job(const std::filesystem::path& file,
-                           std::span<const JobSetting> settings = {});
+                           std::span<const JobSetting> settings = {}, const Job& base = {});
 
 /// The same of a text. \param name for messages \param folder where imported layers' files are
 [[nodiscard]] Job job_of_text(std::string_view text, const std::string& name,
                               const std::filesystem::path& folder,
-                              std::span<const JobSetting> settings = {});
+                              std::span<const JobSetting> settings = {}, const Job& base = {});
+
+/// A material or process: a file with keys of a job, for `base`. \param base those before it
+/// \throws IoError io.cannot_read, with those that come with meshwind; InputError as read_job()
+[[nodiscard]] Job load_profile(const std::filesystem::path& file, const Job& base = {});
 
 /// Reads a mandrel's file as a job asks for it, for wind(). \param digest is told what the
 /// programs' heads say of the file; must outlive the reader

@@ -22,6 +22,7 @@ using nlohmann::json;
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kMm3PerCm3 = 1000.0;
+constexpr double kGPerKg = 1000.0;
 
 // The layers of all plans per face of the first surface, whose triangles the others keep.
 std::vector<double> all_layers(const Run& run) {
@@ -179,6 +180,9 @@ LayerFigures figures_of_all(const Run& run) {
     for (const double vertex_mm : thickness) {
         all.most_thickness_mm = std::max(all.most_thickness_mm, vertex_mm);
     }
+    if (const auto& price_per_kg = run.layers.front().setup.job.tow.price_per_kg) {
+        all.price = *price_per_kg * all.mass_g / kGPerKg;
+    }
     return all;
 }
 
@@ -234,6 +238,9 @@ void add_cost_report(json& report, const Run& run) {
                       {"mass_g", report_number(all.mass_g)},
                       {"scrap_m", report_number(all.scrap_m)},
                       {"time_s", report_number(all.time_s)}};
+    if (all.price) {
+        report["cost"]["price"] = report_number(*all.price);
+    }
     if (const double least_m = least_fibre_m(run); least_m > 0.0) {
         report["cost"]["least_fibre_m"] = report_number(least_m);
     }

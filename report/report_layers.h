@@ -1,6 +1,7 @@
 /// Several layers in one report: what each adds, and what they are together.
 #pragma once
 
+#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -20,13 +21,14 @@ struct LayerFigures {
     double mass_g = 0.0;   ///< of the tow as it is laid
     double scrap_m = 0.0;  ///< of the fibre, what lies in turns and is cut off
     double time_s = 0.0;
+    std::optional<double> price{};  ///< of the tow, where the job says what a kilogram costs
 };
 
 /// \pre the layer has a plan
 [[nodiscard]] LayerFigures figures_of(const WoundLayer& layer);
 
-/// What adds up. The angle is left at 0; the thickness of several layers is that of the sum per
-/// vertex.
+/// What adds up, and its price. The angle is left at 0; the thickness of several layers is that of
+/// the sum per vertex.
 [[nodiscard]] LayerFigures figures_of_all(const Run& run);
 
 /// The least fibre that is known to be needed, turns included: of the layers and walls that have a

@@ -257,6 +257,9 @@ void print_cost(std::ostream& out, const Run& run) {
         << fixed(all.most_thickness_mm, 2) << " mm\n"
         << "fibre: " << fixed(all.fibre_m, 1) << " m, " << fixed(all.mass_g, 1) << " g; scrap "
         << fixed(all.scrap_m, 1) << " m (" << percent(all.scrap_m / all.fibre_m, 1) << ") in turns";
+    if (all.price) {
+        out << "; price " << fixed(*all.price, 2);
+    }
     // A plan that covers too little takes less than all that is in reach would.
     if (const double least_m = least_fibre_m(run); least_m > 0.0 && least_m < all.fibre_m) {
         out << "; no choice of the courses found takes less than " << fixed(least_m, 1) << " m";

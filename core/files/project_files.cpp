@@ -15,8 +15,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 4> kFolders = {"data/meshes", "data", "data/materials",
-                                                 "machines"};
+constexpr const char* kMachines = "machines";
+constexpr const char* kProfiles = "data/profiles";
+
+constexpr std::array kFolders = {"data/meshes", "data", "data/materials", kProfiles, kMachines};
+
+// Names of the JSON files of a folder, in their order.
+std::vector<std::string> shipped(const char* folder) {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(project_home() / folder, ignored)) {
+        if (entry.path().extension() == ".json") {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void require_file(const fs::path& file, const char* folder, const std::string& what) {
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) {
+        return;
+    }
+    const std::vector<std::string> names = shipped(folder);
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    std::string wanted = file.filename().string();
+    if (file.extension() != ".json") {
+        wanted += ".json";
+    }
+    const auto near = nearest_word(wanted, known);
+    std::string words = "there is no such " + what + " file";
+    words += near ? "; did you mean \"" + std::string(*near) + "\"?" : ";";
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        words += i == 0 ? " These come with meshwind: " : ", ";
+        words += known[i];
+    }
+    throw IoError("io.cannot_read", file.string(), words);
+}
 
 }  // namespace
 
@@ -48,42 +85,29 @@ fs::path find_input(const std::string& name) {
             return candidate;
         }
     }
-    const fs::path machine = project_home() / "machines" / (name + ".json");
-    return fs::is_regular_file(machine, ignored) ? machine : fs::path(name);
+    for (const char* const folder : {kMachines, kProfiles}) {
+        const fs::path named = project_home() / folder / (name + ".json");
+        if (fs::is_regular_file(named, ignored)) {
+            return named;
+        }
+    }
+    return name;
 }
 
 std::vector<std::string> shipped_machines() {
-    std::vector<std::string> names;
-    std::error_code ignored;
-    for (const fs::directory_entry& entry :
-         fs::directory_iterator(project_home() / "machines", ignored)) {
-        if (entry.path().extension() == ".json") {
-            names.push_back(entry.path().filename().string());
-        }
-    }
-    std::sort(names.begin(), names.end());
-    return names;
+    return shipped(kMachines);
+}
+
+std::vector<std::string> shipped_profiles() {
+    return shipped(kProfiles);
 }
 
 void require_machine_file(const fs::path& file) {
-    std::error_code ignored;
-    if (fs::exists(file, ignored)) {
-        return;
-    }
-    const std::vector<std::string> shipped = shipped_machines();
-    const std::vector<std::string_view> known(shipped.begin(), shipped.end());
-    std::string wanted = file.filename().string();
-    if (file.extension() != ".json") {
-        wanted += ".json";
-    }
-    const auto near = nearest_word(wanted, known);
-    std::string words = "there is no such machine file";
-    words += near ? "; did you mean \"" + std::string(*near) + "\"?" : ";";
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        words += i == 0 ? " These come with meshwind: " : ", ";
-        words += known[i];
-    }
-    throw IoError("io.cannot_read", file.string(), words);
+    require_file(file, kMachines, "machine");
+}
+
+void require_profile_file(const fs::path& file) {
+    require_file(file, kProfiles, "material or process");
 }
 
 }  // namespace meshwind

@@ -13,15 +13,21 @@ namespace meshwind {
 [[nodiscard]] std::filesystem::path project_home();
 
 /// The file a user means by `name`: that path when it exists; else, for a bare name such as
-/// "tee.stl", the file of this name in data/meshes, data, data/materials or machines of
-/// `project_home()`, or the machine of this name there, "six_axis"; else `name` as given.
+/// "tee.stl", the file of this name in data/meshes, data, data/materials, data/profiles or machines
+/// of `project_home()`, or the machine or profile of this name there, "six_axis"; else `name`.
 [[nodiscard]] std::filesystem::path find_input(const std::string& name);
 
 /// Names of the machine files that come with the program, in their order.
 [[nodiscard]] std::vector<std::string> shipped_machines();
 
+/// The same of materials and processes.
+[[nodiscard]] std::vector<std::string> shipped_profiles();
+
 /// \throws IoError io.cannot_read where there is no such file, with the nearest of the machines
 /// that come with the program, and all of them
 void require_machine_file(const std::filesystem::path& file);
+
+/// The same of materials and processes.
+void require_profile_file(const std::filesystem::path& file);
 
 }  // namespace meshwind

@@ -118,6 +118,7 @@ struct Job {
         double bridging_tolerance_mm = 0.5;  ///< >= 0; gap that resin and the next layer close
         std::optional<double> most_twist_per_m{};  ///< >= 0; turns of the band a metre; none: any
         double density_g_cm3 = 1.55;  ///< > 0; of the laid tow: carbon in epoxy, 60 % fibres
+        std::optional<double> price_per_kg{};  ///< >= 0; of the laid tow, in the user's currency
     };
     struct ToleranceJob {
         double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways
@@ -155,18 +156,18 @@ struct JobSetting {
     std::string value;  ///< JSON; what is none is a word
 };
 
-/// Reads a job from text, then puts the settings over it; what both leave out keeps its default.
-/// \param name file name for messages
+/// Reads a job from text, then puts the settings over it; what both leave out stays as in `base`.
+/// \param name file name for messages \param base of a material or process, else the defaults
 /// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
 ///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced,
 ///         job.pins_unused, job.wall_amount, job.wall_place, job.wall_unused, json.no_such_place
 ///         (of a setting); each with file and JSON pointer
 [[nodiscard]] Job parse_job(std::string_view text, const std::string& name,
-                            std::span<const JobSetting> settings = {});
+                            std::span<const JobSetting> settings = {}, const Job& base = {});
 
 /// `parse_job` of a file. \throws IoError io.cannot_read; InputError as parse_job
 [[nodiscard]] Job read_job(const std::filesystem::path& file,
-                           std::span<const JobSetting> settings = {});
+                           std::span<const JobSetting> settings = {}, const Job& base = {});
 
 /// The job as a complete job file: every key present, always in the same order, so that equal jobs
 /// give equal text. Reads back as the same job.

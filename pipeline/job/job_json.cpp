@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::array<double, 6> kMillimetres = {0.0, 1e-3, 1.0, 10.0, 1e3, 25.4};
 
-Job job_of(const JsonDocument& document) {
-    Job job;
+Job job_of(const JsonDocument& document, Job job) {
     read_keys(job_keys(), document.root(), job);
     return job;
 }
@@ -41,17 +40,18 @@ std::string_view name_of(LayerKind kind) {
     return layer_words()[static_cast<std::size_t>(kind)];
 }
 
-Job parse_job(std::string_view text, const std::string& name,
-              std::span<const JobSetting> settings) {
+Job parse_job(std::string_view text, const std::string& name, std::span<const JobSetting> settings,
+              const Job& base) {
     JsonDocument document = JsonDocument::parse(text, name);
     for (const JobSetting& setting : settings) {
         document.set(setting.key, setting.value);
     }
-    return job_of(document);
+    return job_of(document, base);
 }
 
-Job read_job(const std::filesystem::path& file, std::span<const JobSetting> settings) {
-    return parse_job(read_text_file(file), file.string(), settings);
+Job read_job(const std::filesystem::path& file, std::span<const JobSetting> settings,
+             const Job& base) {
+    return parse_job(read_text_file(file), file.string(), settings, base);
 }
 
 std::string job_text(const Job& job) {

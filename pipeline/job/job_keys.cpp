@@ -220,6 +220,8 @@ const KeyTable<Job::TowJob>& tow_keys() {
                "turns a metre by which the head may twist the band, for a tape; without it any"),
         number("density", &Owner::density_g_cm3, kDensityRange,
                "g/cm3 of the tow as it is laid, resin included; for masses in the report"),
+        number("price_per_kg", &Owner::price_per_kg, kPriceRange,
+               "of the tow as it is laid, in any currency; for the price in the report"),
     }};
     return kTable;
 }

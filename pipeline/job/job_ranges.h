@@ -20,6 +20,7 @@ inline constexpr JsonRange kFrictionRange = {.min = 0.0, .max = 100.0};
 inline constexpr JsonRange kGapRange = {.min = 0.0, .max = 1'000.0};          ///< mm
 inline constexpr JsonRange kTwistRange = {.min = 0.0, .max = 1'000.0};        ///< turns/m
 inline constexpr JsonRange kDensityRange = {.min = 1e-3, .max = 100.0};       ///< g/cm3
+inline constexpr JsonRange kPriceRange = {.min = 0.0, .max = 1e6};            ///< per kg
 inline constexpr JsonRange kCutRange = {.min = 0.0, .max = 10'000.0};         ///< mm
 inline constexpr JsonRange kExtensionRange = {.min = 0.0, .max = 100'000.0};  ///< mm
 inline constexpr JsonRange kLayersRange = {.min = 1e-3, .max = 10'000.0};     ///< of a layer

@@ -6,8 +6,8 @@
 
 namespace meshwind {
 
-/// The whole key that a word names, as `--set` takes it: "tow.friction" for "friction" and
-/// "tow-friction", "layers.0.angle" for "angle"; empty where the job has none of that name.
+/// The whole key that a word names, as `--set` takes it: tow.friction for friction and
+/// tow-friction, layers.0.angle for angle; empty where the job has none of that name.
 /// \param word with or without dashes ahead; within it they stand for underscores
 [[nodiscard]] std::string job_key_named(std::string_view word);
 

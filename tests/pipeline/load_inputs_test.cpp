@@ -37,6 +37,28 @@ TEST(LoadInputs, TablesOfImportedLayersAreReadWithTheJob) {
     EXPECT_EQ(points.text.size(), fs::file_size(table));
 }
 
+TEST(Profiles, StandBelowTheJobAndItsSettings) {
+    const Job glass = load_profile(kSource / "data/profiles/glass_2400tex.json");
+    const Job both = load_profile(kSource / "data/profiles/wet_winding.json", glass);
+    EXPECT_EQ(both.tow.width_mm, glass.tow.width_mm);
+    EXPECT_NE(both.tow.friction, glass.tow.friction);
+    const JobSetting density{"tow.density", "1.7"};
+    const Job job = parse_job(R"({"tow": {"width": 5}, "mandrel": {"extension": 40}})", "j",
+                              {&density, 1}, both);
+    EXPECT_EQ(job.tow.width_mm, 5.0);
+    EXPECT_EQ(job.tow.thickness_mm, glass.tow.thickness_mm);
+    EXPECT_EQ(job.tow.friction, both.tow.friction);
+    EXPECT_EQ(job.tow.density_g_cm3, 1.7);
+    // What came of all is a job of its own.
+    EXPECT_EQ(job_text(parse_job(told_job_text(job), "told")), job_text(job));
+}
+
+TEST(Profiles, ThatAreNotThereAreAnErrorOfTheFile) {
+    const fs::path file = "glas_2400tex.json";
+    EXPECT_EQ(test::refusal_of([&] { (void)load_profile(file); }),
+              (test::Refused{"io.cannot_read", file.string()}));
+}
+
 TEST(LoadInputs, MeshesOfAMachineAreReadWithIt) {
     const fs::path file = kSource / "data/conformance/machine/valid/mesh_envelope.json";
     bool named = false;

@@ -46,7 +46,7 @@ class Completion(unittest.TestCase):
 
     def test_options(self):
         self.assertEqual(self.offered("--mac"), ["--machine"])
-        self.assertEqual(self.offered("verify", "--p"), ["--plan"])
+        self.assertEqual(self.offered("verify", "--pl"), ["--plan"])
         self.assertEqual(sorted(self.offered("make", "tee", "--b")), ["--blend-radius", "--branch-length", "--branch-radius"])
         self.assertEqual(self.offered("make", "tee", "--ed"), ["--edge"])
         self.assertEqual(self.offered("inspect", "part.stl", "--js"), ["--json"])
@@ -70,6 +70,7 @@ class Completion(unittest.TestCase):
     def test_machines_by_name(self):
         self.assertEqual(self.offered("tee.stl", "--machine", "si"), ["six_axis.json"])
         self.assertEqual(self.offered("tee.stl", "--machine", "=", "rob"), ["robot_kr16.json", "robot_track.json", "robot_winder.json"])
+        self.assertEqual(self.offered("tee.stl", "--profile", "gl"), ["glass_2400tex.json"])
         self.assertEqual(self.offered("validate", "hob"), ["hobby_grbl.json"])
 
 

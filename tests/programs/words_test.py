@@ -63,6 +63,23 @@ class Words(program.ProgramTest):
                      code="json.syntax", words=["j.json:2", "no comments"])
         self.refused(self.write("part.3mf", "PK"), code="mesh.unknown_format", words=[".step"])
 
+    def test_a_material_stands_below_the_job(self):
+        part = self.make("cylinder", "--radius", "30", "--length", "60", "--edge", "6")
+        listed = json.loads(self.run_program("profiles", "--json").stdout)
+        glass = next(entry["job"] for entry in listed if entry["file"] == "glass_2400tex.json")
+        job = self.write("job.json", json.dumps({"tow": {"friction": 0.3, "price_per_kg": 12.5}}))
+        result = self.run_program(part, "--profile", "glass_2400tex", "--job", job, "--machine", "six_axis", "-o", "out")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertEqual(report["run"]["job"]["tow"]["width"], glass["tow"]["width"])
+        self.assertEqual(report["run"]["job"]["tow"]["friction"], 0.3)
+        price = 12.5 * report["cost"]["mass_g"] / 1000
+        self.assertAlmostEqual(report["cost"]["price"], price, 4)
+        self.assertIn(f"price {price:.2f}", result.stdout)
+        refused = self.run_program(part, "--profile", "glas_2400tex")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("glass_2400tex.json", refused.stderr)
+
     def test_machines_whose_eye_keeps_its_distance_run_as_they_are(self):
         pipe = self.make("cylinder", "--radius", 40, "--length", 80, "--edge", 8)
         for name, distance in (("hobby_grbl.json", "60.000"), ("two_axis.json", "58.310")):
