@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/text/text_number.h"
 #include "core/units.h"
 #include "mesh/tube/grown_tube.h"
 #include "winding/cover/cover.h"
@@ -171,9 +172,15 @@ bool is_wound(const TriedPlan& tried) {
     return tried.trial != nullptr && tried.trial->refused.empty();
 }
 
-// What turns on pins, which are yet to be put on the mandrel, is not wound.
+// What turns on pins, which are yet to be put on the mandrel, is not wound. Nor is what covers
+// less than may be asked of patterns: it fails.
 TriedPlan wound(const LayerTask& task, Plan plan) {
     TriedPlan tried = untried(std::move(plan));
+    const double share = tried.plan.coverage.fraction;
+    if (task.options.patterns_first && tried.plan.failure.empty() &&
+        share < task.options.least_covered) {
+        tried.plan.failure = "the pattern covers " + percent(share, 1) + " of the wall";
+    }
     if (tried.plan.failure.empty() && tried.plan.pins.empty()) {
         tried.trial = task.machine.wind_all(tried.plan);
     }
@@ -269,7 +276,8 @@ TriedPlan plan_from_rim_to_rim(const LayerTask& task) {
         TriedPlan tried = wound(task, std::move(plan));
         refused += tried.trial != nullptr && !is_wound(tried) ? 1 : 0;
         const bool laid = can_be_laid(tried);
-        if (laid || !can_be_laid(best)) {
+        const bool covers_less = tried.plan.coverage.fraction < best.plan.coverage.fraction;
+        if (laid || !(can_be_laid(best) || (task.options.patterns_first && covers_less))) {
             best = std::move(tried);
         }
         return laid;

@@ -70,6 +70,7 @@ PlannedLayer cover_instead(const LayerTask& task, const LayerPlanner& cover,
 // The first plan that covers and that the machine winds; the last planner for want of one.
 PlannedLayer plan_best(const LayerTask& task) {
     std::string why;
+    Coverage covered;  // by what is the first not to be laid
     const std::span<const LayerPlanner> rows = layer_planners();
     for (const LayerPlanner& row : rows.first(rows.size() - 1)) {
         if (!row.why_not(task).empty()) {
@@ -77,6 +78,7 @@ PlannedLayer plan_best(const LayerTask& task) {
         }
         TriedPlan tried = row.plan(task);
         if (!tried.plan.failure.empty()) {
+            covered = why.empty() ? tried.plan.coverage : covered;
             why = why.empty() ? tried.plan.failure : why;
             continue;
         }
@@ -94,7 +96,14 @@ PlannedLayer plan_best(const LayerTask& task) {
               " courses and turns of the pattern cannot be wound: " + tried.trial->why;
         break;
     }
-    return why.empty() ? planned(rows.back().plan(task)) : cover_instead(task, rows.back(), why);
+    if (why.empty()) {
+        return planned(rows.back().plan(task));
+    }
+    PlannedLayer instead = cover_instead(task, rows.back(), why);
+    if (instead.plan.planner == Planner::Pattern) {
+        instead.plan.coverage = covered;
+    }
+    return instead;
 }
 
 // Of a stage of a wall what a pattern may lay of it, or else courses.

@@ -22,6 +22,7 @@ struct LayerPlanOptions {
     const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
     double least_covered = 0.0;    ///< as in CoverOptions
     /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
+    /// So it does, before it is wound, where none covers least_covered of the wall.
     bool patterns_first = false;
     const StageAsk* stage = nullptr;  ///< of a layer of kind Wall
     std::vector<PinStand> pins{};     ///< that courses turn on, by rim; empty: by friction

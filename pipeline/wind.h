@@ -33,6 +33,7 @@ struct WindOptions {
     /// A cover of less than this share of what courses reach is not wound: its plan fails.
     double least_covered = 0.0;
     /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
+    /// So it does, before it is wound, where none covers least_covered of the wall.
     bool patterns_first = false;
 };
 

@@ -30,8 +30,10 @@ constexpr double kBlendsPerMm = 1000.0;
 // Under so much of the wall a larger blend is looked for, although the plan can be wound.
 constexpr double kWellCovered = 0.95;
 
-// A pattern that covers less leaves a neck bare, which a wider blend may let it lie on.
+// A pattern that covers less leaves a neck bare, which a wider blend may let it lie on. Where none
+// covers it all, so many are wound until one holds.
 constexpr double kPatternCovers = 0.99;
+constexpr std::size_t kMostBarePatterns = 2;
 
 // By friction a turn that is 10 degrees flatter takes 1.8 times the length.
 constexpr double kLongerExtension = 2.0;
@@ -83,10 +85,10 @@ double can_cover(const Run& run) {
     return reach[std::min(fibres, reach.size()) - 1];
 }
 
-// A cover that was too bare to be wound (WindOptions::least_covered).
+// A plan that was too bare to be wound (WindOptions::least_covered).
 bool was_too_bare(const Run& run) {
     const Plan& plan = first_plan(run);
-    return plan.planner == Planner::Cover && !plan.failure.empty() && plan.coverage.fraction > 0.0;
+    return !plan.failure.empty() && plan.coverage.fraction > 0.0;
 }
 
 bool stands(const Run& run) {
@@ -242,9 +244,9 @@ public:
     }
 
 private:
-    // PatternsFirst: a part that has patterns is not covered. Reach: no cover is wound, it is said
-    // what of the wall can be covered.
-    enum class Depth { Full, WhereItCovers, PatternsFirst, Reach };
+    // PatternsFirst: a part that has patterns is not covered; WholePatterns: nor by one that leaves
+    // wall bare. Reach: no cover is wound, it is said what of the wall can be covered.
+    enum class Depth { Full, WhereItCovers, PatternsFirst, WholePatterns, Reach };
 
     // Once, and where that fails by chance and nothing stands with the next seeds; from a later
     // seed on only where what by_chance_ is of did. Throws as wind() does for the first job.
@@ -266,27 +268,35 @@ private:
         }
     }
 
-    // The smallest blend with which a part that has patterns is wound in one, on longer extensions
-    // too where the job leaves them open: flat fibre takes long to be turned by friction.
+    // The smallest blend with which a pattern covers all of a part that has patterns, on longer
+    // extensions too where the job leaves them open: flat fibre takes long to be turned by
+    // friction. Where none does, the one that covers most. Only what may stand is wound.
     void find_pattern(const Job& job) {
         const bool open = !job.mandrel.extension_given && !turns_on_pins(job) &&
                           find_revolution(best_->layers.front().setup.mandrel).body.has_value();
-        if (open && settled_in_pattern(longer(blended(job, 0.0)))) {
+        std::vector<Look> bare;
+        const auto settled = [&](const Job& each) {
+            run(each, Depth::WholePatterns);
+            bare.push_back({each, last_share_});
+            return done() || last_planner_ != Planner::Pattern;
+        };
+        if (open && settled(longer(blended(job, 0.0)))) {
             return;
         }
         for (const double widths : kBlendsInTows) {
             const Job blend = blended(job, widths);
-            if (settled_in_pattern(blend) || (open && settled_in_pattern(longer(blend)))) {
+            if (settled(blend) || (open && last_share_ == 0.0 && settled(longer(blend)))) {
                 return;
             }
         }
-    }
-
-    // Tries it. Whether no more are needed: its pattern covers the wall, or the part has none.
-    [[nodiscard]] bool settled_in_pattern(const Job& job) {
-        run(job, Depth::PatternsFirst);
-        return (done() && covered_share(*best_) >= kPatternCovers) ||
-               last_planner_ != Planner::Pattern;
+        std::stable_sort(bare.begin(), bare.end(),
+                         [](const Look& a, const Look& b) { return a.share > b.share; });
+        bare.resize(std::min(bare.size(), kMostBarePatterns));
+        for (const Look& look : bare) {
+            if (look.share > 0.0 && !done()) {
+                run(look.job, Depth::PatternsFirst);
+            }
+        }
     }
 
     static Job longer(Job job) {
@@ -410,10 +420,24 @@ private:
                                                  : ", with seed " + std::to_string(run.seed)));
         next_ = room_for(run);
         last_planner_ = first_plan(run).planner;
+        last_share_ = was_too_bare(run) ? covered_share(run) : 0.0;
         cover_put_off_ = last_planner_ == Planner::Pattern && !run.planned();
         by_chance_ = fails_by_chance(run);
         if (!best_ || is_better(run, *best_)) {
             best_ = std::move(run);
+        }
+    }
+
+    [[nodiscard]] static double least_covered(Depth depth) {
+        switch (depth) {
+            case Depth::Full:
+                return 0.0;
+            case Depth::Reach:
+                return kNeverEnough;
+            case Depth::WholePatterns:
+                return kPatternCovers;
+            default:
+                return kLeastReach;
         }
     }
 
@@ -440,10 +464,8 @@ private:
             }
         };
         options.context.seed = seed;
-        options.patterns_first = depth == Depth::PatternsFirst;
-        options.least_covered = depth == Depth::Full    ? 0.0
-                                : depth == Depth::Reach ? kNeverEnough
-                                                        : kLeastReach;
+        options.patterns_first = depth == Depth::PatternsFirst || depth == Depth::WholePatterns;
+        options.least_covered = least_covered(depth);
         options.reading_s += reading_s_;
         return wind(std::move(mandrel), machine_, job, options);
     }
@@ -456,6 +478,7 @@ private:
     std::optional<Job> next_;  // that may mend the last run that was wound
     bool by_chance_ = false;   // did that fail
     Planner last_planner_ = Planner::None;
+    double last_share_ = 0.0;     // of the wall, where that was too bare to be wound
     bool cover_put_off_ = false;  // was it a pattern that did not hold
     double reading_s_ = 0.0;      // the mandrel of the last run
     std::set<std::string> said_;

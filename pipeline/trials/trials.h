@@ -8,7 +8,8 @@ namespace meshwind {
 /// The main job, reading the mandrel, as often as it helps:
 /// - Where the job's blend is yet to be chosen and no pattern holds of a part that has patterns,
 ///   with wider and wider blends, and on longer extensions where the job does not give them, until
-///   one does. The part is covered by single courses only then.
+///   one covers the part; else with those that cover most. It is covered by single courses only
+///   then.
 /// - Where the job's blend is yet to be chosen and the plan without one fails or covers little, it
 ///   is asked of wider and wider blends what of the wall the fibres could join, without winding.
 ///   The smallest stands that lets them join most of it, or nearly as much as any.

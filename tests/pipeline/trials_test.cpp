@@ -107,9 +107,11 @@ TEST(Trials, WindsNecksInAPatternOverABlend) {
 struct BareTee {
     Job job = quick_job(LayerKind::Cover);
     double pipe_from_mm;
+    double filled_mm2;  // what its blend is said to fill
     std::vector<double> asked_mm{};
 
-    explicit BareTee(double pipe_from_mm) : pipe_from_mm(pipe_from_mm) {
+    explicit BareTee(double pipe_from_mm, double filled_mm2 = 1000.0)
+        : pipe_from_mm(pipe_from_mm), filled_mm2(filled_mm2) {
         job.tow.friction = 0.05;
         job.mandrel.blend_mm.reset();
         job.mandrel.extension_given = true;
@@ -126,7 +128,9 @@ struct BareTee {
             if (asked_mm.back() < pipe_from_mm) {
                 throw InputError("mesh.no_blend", "tee", "cannot be blended");
             }
-            return small_pipe();
+            Mandrel pipe = small_pipe();
+            pipe.winding_mesh.blended_mm2 = filled_mm2;
+            return pipe;
         };
         return wind(mandrel, shipped("six_axis"), job,
                     {.context = {.effort = kQuick}, .force = force});
@@ -140,6 +144,14 @@ TEST(Trials, LooksAtBlendsBeforeItWindsOne) {
                                                  3.0 * kPipeTow_mm, 3.0 * kPipeTow_mm}));
     EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
     EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 3.0 * kPipeTow_mm);
+}
+
+TEST(Trials, PlansOverNoBlendThatFillsNothing) {
+    BareTee tee(kPipeTow_mm, 0.9 * kPipeTow_mm * kPipeTow_mm);
+    const meshwind::Run run = tee.wound(false);
+    EXPECT_EQ(tee.asked_mm, (std::vector<double>{0.0, kPipeTow_mm, 2.0 * kPipeTow_mm,
+                                                 3.0 * kPipeTow_mm, 4.0 * kPipeTow_mm}));
+    EXPECT_EQ(run.layers.front().setup.job.mandrel.blend_mm, 0.0);
 }
 
 // What is too bare is wound by force alone.
