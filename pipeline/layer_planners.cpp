@@ -31,8 +31,7 @@ constexpr double kFlatter_deg = 2.5;
 // So many times the layers on average of the thinnest pattern: the angle counts for more.
 constexpr double kHardlyMore = 1.3;
 
-// Patterns that the machine refuses: although it winds circuits of them, each a whole winding; or
-// in a row, below one that holds.
+// Patterns that the machine refuses although it winds circuits of them: each takes a whole winding.
 constexpr int kMostRefused = 3;
 
 // Polar windings leave necks bare: of those that cover less than this, others are looked for.
@@ -231,17 +230,12 @@ void sort_by_worth(std::vector<Plan>& plans) {
 }
 
 // Patterns whose circuits the machine winds, the best first; a plan that failed for want of one.
-// Where some hold and a few flatter ones in a row do not, still flatter ones are not asked for.
 std::vector<Plan> helical_patterns(const LayerTask& task, double steepest_deg) {
     std::vector<Plan> plans;
     Plan failed;
-    int in_vain = 0;
-    for (double angle_deg = steepest_deg;
-         angle_deg >= kFlattest_deg && in_vain<kMostRefused; angle_deg -= angle_deg> kFirstAngle_deg
-             ? kAngleStep_deg
-             : kFlatter_deg) {
+    for (double angle_deg = steepest_deg; angle_deg >= kFlattest_deg;
+         angle_deg -= angle_deg > kFirstAngle_deg ? kAngleStep_deg : kFlatter_deg) {
         Plan plan = pattern_at(task, PatternKind::Helical, rad_from_deg(angle_deg));
-        in_vain = plan.failure.empty() || plans.empty() ? 0 : in_vain + 1;
         if (plan.failure.empty()) {
             plans.push_back(std::move(plan));
         } else if (angle_deg >= kFirstAngle_deg || failed.failure.empty()) {
