@@ -186,12 +186,16 @@ TriedPlan wound(const LayerTask& task, Plan plan) {
     return tried;
 }
 
+// How the machine is asked for the first circuits of a pattern.
+using Asked = Rejection (Windability::*)(std::span<const Piece>) const;
+
 // Of `auto`: it covers, and the machine winds the first circuits of it.
-Plan pattern_at(const LayerTask& task, PatternKind kind, double angle_rad) {
+Plan pattern_at(const LayerTask& task, PatternKind kind, double angle_rad,
+                Asked asked = &Windability::wind_alone) {
     PatternOptions options = pattern_options(task, kind, angle_rad);
     options.least_covered = kCoveredShare;
-    options.winds = [&task](std::span<const Piece> circuits) {
-        return task.machine.wind_circuits(circuits);
+    options.winds = [&task, asked](std::span<const Piece> circuits) {
+        return (task.machine.*asked)(circuits);
     };
     return covering(plan_pattern(task.setup.mandrel, *task.revolution().body, options));
 }
@@ -203,6 +207,10 @@ bool can_be_laid(const TriedPlan& tried) {
 // Of the wall that counts: beyond that all of it is covered.
 double covered_share(const Plan& plan) {
     return std::min(plan.coverage.fraction, kWholeWall);
+}
+
+double angle_rad_of(const Plan& plan) {
+    return std::get<LaidPattern>(plan.details).angle_rad;
 }
 
 // Of those that cover most, and with hardly more layers than the thinnest, the nearest to the usual
@@ -220,13 +228,29 @@ void sort_by_worth(std::vector<Plan>& plans) {
     const auto rank = [&](const Plan& plan) {
         const bool good =
             covered_share(plan) == most && plan.coverage.mean_layers <= kHardlyMore * thinnest;
-        const double angle_rad = std::get<LaidPattern>(plan.details).angle_rad;
         return std::tuple(good ? 0 : 1,
-                          good ? std::abs(angle_rad - rad_from_deg(kFirstAngle_deg)) : 0.0,
+                          good ? std::abs(angle_rad_of(plan) - rad_from_deg(kFirstAngle_deg)) : 0.0,
                           -covered_share(plan), plan.coverage.mean_layers);
     };
     std::stable_sort(plans.begin(), plans.end(),
                      [&](const Plan& a, const Plan& b) { return rank(a) < rank(b); });
+}
+
+// Where the flattest pattern leaves wall bare, adds flatter ones with free lengths that take long
+// to find, as far as there are any.
+void add_flatter(const LayerTask& task, std::vector<Plan>& plans) {
+    if (plans.empty() || covered_share(plans.back()) >= kWholeWall) {
+        return;
+    }
+    for (double angle_deg = deg_from_rad(angle_rad_of(plans.back())) - kFlatter_deg;
+         angle_deg >= kFlattest_deg; angle_deg -= kFlatter_deg) {
+        Plan plan = pattern_at(task, PatternKind::Helical, rad_from_deg(angle_deg),
+                               &Windability::wind_circuits);
+        if (!plan.failure.empty()) {
+            return;
+        }
+        plans.push_back(std::move(plan));
+    }
 }
 
 // Patterns whose circuits the machine winds, the best first; a plan that failed for want of one.
@@ -242,6 +266,7 @@ std::vector<Plan> helical_patterns(const LayerTask& task, double steepest_deg) {
             failed = std::move(plan);
         }
     }
+    add_flatter(task, plans);
     sort_by_worth(plans);
     if (plans.empty()) {
         plans.push_back(std::move(failed));
