@@ -312,19 +312,23 @@ private:
         const BlockList& list = made.blocks;
         const bool has_lines = made.read.blocks.size() == list.blocks.size();
         std::vector<double> time_s;
+        std::vector<double> asked_s;  // since the block before, by the program alone
         std::vector<double> axes;
         std::vector<Vector3d> eye;
         std::vector<std::int32_t> station;
         std::vector<std::uint32_t> line;
         const std::vector<double> times_s = first_.dialect->run_times_s(first_.machine, list);
         double now_s = 0.0;
+        double since_s = 0.0;
         for (std::size_t b = 0; b < list.blocks.size(); ++b) {
             const Block& block = list.blocks[b];
             now_s += times_s[b];
+            since_s += block.duration_s;
             if (b % block_every_ != 0 && b + 1 < list.blocks.size()) {
                 continue;
             }
             time_s.push_back(now_s);
+            asked_s.push_back(std::exchange(since_s, 0.0));
             for (std::size_t a = 0; a < list.axes.size(); ++a) {
                 axes.push_back(list.value(b, a));
             }
@@ -337,6 +341,7 @@ private:
             line.push_back(has_lines ? static_cast<std::uint32_t>(made.read.blocks[b].line) : 0U);
         }
         arrays_.add<double>(prefix + "time_s", 1, time_s);
+        arrays_.add_floats(prefix + "asked_s", asked_s);
         arrays_.add<double>(prefix + "axes", list.axes.size(), axes);
         arrays_.add_points(prefix + "eye_mm", eye, kShownLength_mm);
         arrays_.add<std::int32_t>(prefix + "station", 1, station);

@@ -53,9 +53,27 @@ class ReportPage(program.ProgramTest):
             if row["course"]:
                 self.assertEqual(rows[stations[k]]["course"], row["course"])
                 self.assertEqual(rows[stations[k]]["point"], row["point"])
+        self.agree_with_limits(page, prefix)
         for eye, row in zip(page[prefix + "eye_mm"], blocks):
             for value, column in zip(eye, ("ex_mm", "ey_mm", "ez_mm")):
                 self.assertAlmostEqual(value, float(row[column]), delta=SHOWN["eye_mm"] / 2 + 1e-4)
+
+    def agree_with_limits(self, page, prefix):
+        """The acceleration that blocks need, by the times that the program asks for, is that of the check."""
+        axes, asked = page[prefix + "axes"], page[prefix + "asked_s"]
+        chains = page.header["machine"]["mandrel_chain"] + page.header["machine"]["eye_chain"]
+        worst = 0.0
+        for a, axis in enumerate(chains):
+            if axis["acceleration"] is None:
+                continue
+            speed = [0.0] + [(axes[b][a] - axes[b - 1][a]) / asked[b] for b in range(1, len(axes))] + [0.0]
+            ramps = [abs(after - before) for before, after in zip(speed, speed[1:])]
+            worst = max([worst] + [(ramps[b - 1] + ramps[b]) / 2 / asked[b] / axis["acceleration"]
+                                   for b in range(1, len(axes))])
+        checks = page.header["report"]["checks"]
+        ratio = max(check["acceleration_ratio"] for name, check in checks.items() if name.startswith("limits"))
+        self.assertLessEqual(worst, 1.01 * ratio)
+        self.assertGreater(worst, 0.5 * ratio)
 
     def test_one_layer(self):
         page = self.wind()

@@ -41,7 +41,7 @@ test('without DecompressionStream the page unpacks its data itself', async (brow
 test('a fibre without blocks is shown as it lies', async (browser) => {
     const path = variant('standstill.html', (copy) => {
         for (const { fibre } of programs) {
-            for (const name of ['time_s', 'axes', 'eye_mm', 'station', 'line', 'text']) {
+            for (const name of ['time_s', 'asked_s', 'axes', 'eye_mm', 'station', 'line', 'text']) {
                 copy.header.arrays[fibre.prefix + name].count = 0;
             }
         }

@@ -19,7 +19,8 @@ export interface Fibre {
     freeLength: Float32Array; // mm
     angle: Float32Array; // deg
     piece: Uint32Array;
-    time: Float64Array; // m, s at the block's end
+    time: Float64Array; // m, s at the block's end, on the controller's clock
+    asked: Float32Array; // m, s that the program asks for the block
     axes: Float64Array; // m x axes, mm or deg
     eye: Float32Array; // m x 3, mandrel frame, mm
     station: Int32Array; // m, -1: unknown
@@ -115,6 +116,7 @@ function fibreOf(header: FibreHeader, layer: number, fibre: number, array: Page[
         angle: of<Float32Array>('angle_deg'),
         piece: of<Uint32Array>('piece'),
         time: of<Float64Array>('time_s'),
+        asked: of<Float32Array>('asked_s'),
         axes: of<Float64Array>('axes'),
         eye: of<Float32Array>('eye_mm'),
         station: of<Int32Array>('station'),

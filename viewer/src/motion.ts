@@ -28,8 +28,9 @@ export class Motion {
 
     /**
      * Speed: increment over the block's time. Acceleration: the least with which half the ramp
-     * from the block before and half the ramp to the next fit into the block, as the check of the
-     * axis limits has it; from rest at the start and to rest at the end.
+     * from the block before and half the ramp to the next fit into the block, at the speeds and
+     * times that the program asks for, as the check of the axis limits has it; from rest at the
+     * start and to rest at the end.
      */
     private compute(axis: number): AxisMotion {
         const count = this.time.length;
@@ -38,7 +39,7 @@ export class Motion {
         const speed = new Float64Array(count).fill(NaN);
         const acceleration = new Float64Array(count).fill(NaN);
         this.timeline.programs.forEach((program, p) => {
-            const { axes, time } = program.fibre;
+            const { axes, time, asked } = program.fibre;
             const base = this.first[p];
             const span = (b: number) => time[b] - time[b - 1];
             for (let b = 0; b < time.length; ++b) {
@@ -46,14 +47,15 @@ export class Motion {
                 if (b === 0 || !(span(b) > 0)) continue;
                 speed[base + b] = (position[base + b] - position[base + b - 1]) / span(b);
             }
+            const wanted = (b: number) => (position[base + b] - position[base + b - 1]) / asked[b];
             let before = 0;
             for (let b = 1; b < time.length; ++b) {
-                const v = speed[base + b];
-                if (Number.isNaN(v)) continue;
+                if (!(asked[b] > 0)) continue;
+                const v = wanted(b);
                 let next = b + 1;
-                while (next < time.length && Number.isNaN(speed[base + next])) ++next;
-                const after = next < time.length ? speed[base + next] : 0;
-                acceleration[base + b] = (Math.abs(v - before) + Math.abs(after - v)) / 2 / span(b);
+                while (next < time.length && !(asked[next] > 0)) ++next;
+                const after = next < time.length ? wanted(next) : 0;
+                acceleration[base + b] = (Math.abs(v - before) + Math.abs(after - v)) / 2 / asked[b];
                 before = v;
             }
         });
