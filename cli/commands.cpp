@@ -22,6 +22,7 @@
 #include "machines/machine_json.h"
 #include "mesh/io/export.h"
 #include "mesh/mandrel/load_mandrel.h"
+#include "mesh/shapes/make.h"
 #include "pipeline/check_controller.h"
 #include "pipeline/load_inputs.h"
 #include "pipeline/trials/trials.h"
@@ -239,12 +240,40 @@ int run_carry_command(CarryArguments& arguments, const Common& common) {
     return exit_code(arguments.axis, outcome.checks, common);
 }
 
-int run_design_command(const DesignRequest& request, const Common& common) {
-    const DesignOutcome outcome = run_design(request);
+namespace {
+
+// Edges of a design's mesh, in radii of its cylinder.
+constexpr double kEdgesOfRadius = 0.05;
+
+// Mesh and job of a design. Returns the command that winds them.
+std::string write_design(const DesignOutcome& outcome, const std::filesystem::path& folder) {
+    const VesselDesign& design = outcome.design;
+    const VesselAngle& angle = least_fibre(outcome);
+    const TriangleSoup mesh = make_isotensoid({.radius_mm = design.radius_mm,
+                                               .cylinder_length_mm = design.cylinder_length_mm,
+                                               .opening_radius_mm = design.opening_radius_mm,
+                                               .stiffness_ratio = design.stiffness_ratio,
+                                               .design_radius_mm = design.design_radius_mm},
+                                              {.edge_mm = kEdgesOfRadius * design.radius_mm});
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path part = folder / "vessel.stl";
+    const std::filesystem::path job = folder / "job.json";
+    write_file(part, mesh_file_bytes(mesh, mesh_format_of(part)));
+    write_file(job, design_job(design, angle));
+    return "meshwind " + part.string() + " --units mm --job " + job.string();
+}
+
+}  // namespace
+
+int run_design_command(const DesignArguments& arguments, const Common& common) {
+    const DesignOutcome outcome = run_design(arguments.request);
+    const std::string wind =
+        arguments.out.empty() ? std::string() : write_design(outcome, arguments.out);
     if (common.json) {
         std::cout << design_json(outcome);
     } else if (!common.quiet) {
         print_design(std::cout, outcome);
+        std::cout << (wind.empty() ? wind : "to wind it   " + wind + '\n');
     }
     return kDone;
 }

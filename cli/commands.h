@@ -56,6 +56,11 @@ struct PostArguments {
     PreviewOptions png;
 };
 
+struct DesignArguments {
+    DesignRequest request;
+    std::string out;  ///< empty: no mesh and no job
+};
+
 // The schemas that `validate --schema` prints.
 inline constexpr const char* kJobSchema = "job";
 inline constexpr const char* kMachineSchema = "machine";
@@ -106,7 +111,7 @@ struct CarryArguments {
 [[nodiscard]] int run_trace_command(TraceArguments& arguments, const Common& common);
 [[nodiscard]] int run_mesh_size(StudyArguments& arguments, const Common& common);
 [[nodiscard]] int run_carry_command(CarryArguments& arguments, const Common& common);
-[[nodiscard]] int run_design_command(const DesignRequest& request, const Common& common);
+[[nodiscard]] int run_design_command(const DesignArguments& arguments, const Common& common);
 /// Lists the machines that come with the program.
 [[nodiscard]] int run_machines(const Common& common);
 

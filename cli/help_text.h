@@ -171,11 +171,14 @@ constexpr const char* kDesignHelp =
     "A cylinder with isotensoid domes: dome, and for each winding angle turn and length of its\n"
     "geodesics, circuits and layers for the wanted wall or pressure (without either one layer of\n"
     "each hand), fibre, mass and the thickest place of the dome. Angles that no geodesic can keep\n"
-    "are named with the slip that they would need. meshwind make isotensoid makes the mesh.\n"
+    "are named with the slip that they would need. With -o mesh and job of the angle that takes\n"
+    "the least fibre are written, as the main job winds them.\n"
     "\n"
     "Examples:\n"
     "  meshwind design vessel --radius 40 --opening 15 --length 80 --e1 132 --e2 10.3 --nu12 0.25\n"
-    "  meshwind design vessel --radius 150 --opening 40 --length 600 --pressure 70 --strength 1200";
+    "  meshwind design vessel --radius 150 --opening 40 --length 600 --pressure 70 --strength "
+    "1200\n"
+    "  meshwind design vessel --radius 40 --opening 15 --length 80 --wall 1 -o vessel";
 
 constexpr const char* kCarryHelp =
     "The head stands still; the robot moves a slender frame through its two rings, which turn "

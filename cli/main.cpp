@@ -184,9 +184,9 @@ void add_commands(Commands& commands) {
         "carry", "a program for a robot that carries a frame through a fixed ring head", kCarryHelp,
         add_carry, run_carry_command);
     CLI::App& design = commands.group("design", "numbers of a part before it has a mesh");
-    commands.add<DesignRequest>(design, "vessel",
-                                "a cylinder with isotensoid domes: what each winding angle gives",
-                                kDesignHelp, add_design_vessel, run_design_command);
+    commands.add<DesignArguments>(design, "vessel",
+                                  "a cylinder with isotensoid domes: what each winding angle gives",
+                                  kDesignHelp, add_design_vessel, run_design_command);
     CLI::App& study = commands.group("study", "studies of accuracy, and of many cases");
     commands.add<StudyArguments>(study, "mesh-size",
                                  "accuracy of paths and motion against mesh size", kMeshSizeHelp,

@@ -508,7 +508,8 @@ void add_carry(CLI::App& app, CarryArguments& text) {
 }
 
 // The moduli are one ply, all three of them.
-void add_design_vessel(CLI::App& app, DesignRequest& request) {
+void add_design_vessel(CLI::App& app, DesignArguments& arguments) {
+    DesignRequest& request = arguments.request;
     VesselDesign& design = request.design;
     const auto number = [&](const char* name, const char* unit, double& value, const char* help) {
         app.add_option(name, value, help)->type_name(unit)->capture_default_str();
@@ -562,6 +563,9 @@ void add_design_vessel(CLI::App& app, DesignRequest& request) {
     app.add_option("--strength", design.strength_mpa,
                    "of the band along its fibres, MPa, safety taken off")
         ->type_name("MPA");
+    app.add_option("-o,--out", arguments.out,
+                   "folder for vessel.stl and job.json, of the angle that takes the least fibre")
+        ->type_name("DIR");
 }
 
 }  // namespace meshwind

@@ -39,6 +39,6 @@ void add_merge(CLI::App& app, CaseArguments& arguments);
 void add_export_fe(CLI::App& app, ShellArguments& arguments);
 void add_strength(CLI::App& app, ShellArguments& arguments);
 void add_carry(CLI::App& app, CarryArguments& text);
-void add_design_vessel(CLI::App& app, DesignRequest& request);
+void add_design_vessel(CLI::App& app, DesignArguments& arguments);
 
 }  // namespace meshwind

@@ -5,9 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "pipeline/job/job.h"
 #include "report/report_checks.h"
 
 namespace meshwind {
@@ -194,6 +196,42 @@ void print_design(std::ostream& out, const DesignOutcome& outcome) {
                              : "no slip ratio up to 1 turns it there\n");
         }
     }
+}
+
+const VesselAngle& least_fibre(const DesignOutcome& outcome) {
+    const VesselAngle* least = nullptr;
+    for (const VesselAngle& row : outcome.rows) {
+        if (row.pass && (least == nullptr || row.fibre_length_mm < least->fibre_length_mm)) {
+            least = &row;
+        }
+    }
+    if (least == nullptr) {
+        throw InputError("vessel.no_geodesic", "--angles",
+                         "no geodesic of these angles turns on the domes; they do from " +
+                             fixed(deg_from_rad(std::asin(outcome.design.opening_radius_mm /
+                                                          outcome.design.radius_mm)),
+                                   2) +
+                             " deg on");
+    }
+    return *least;
+}
+
+std::string design_job(const VesselDesign& design, const VesselAngle& angle) {
+    constexpr double kKgPerM3 = 1000.0;  // of 1 g/cm3
+    Job job;
+    job.tow.width_mm = design.band_mm;
+    job.tow.thickness_mm = design.ply_mm;
+    job.tow.density_g_cm3 = design.density_kg_m3 / kKgPerM3;
+    LayerJob& wound = job.layers.front();
+    wound.kind = LayerKind::Helical;
+    wound.angle_deg = deg_from_rad(angle.angle_rad);
+    wound.target_layers = angle.layers;
+    if (angle.hoop_layers > 0) {
+        LayerJob& hoops = job.layers.emplace_back();
+        hoops.kind = LayerKind::Hoop;
+        hoops.target_layers = angle.hoop_layers;
+    }
+    return told_job_text(job) + "\n";
 }
 
 }  // namespace meshwind

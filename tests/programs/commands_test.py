@@ -69,6 +69,20 @@ class Commands(program.ProgramTest):
         self.assertIn("slip ratio", lines[7])
         self.assertEqual(len(lines), 8)
 
+    def test_a_design_is_wound_from_what_it_writes(self):
+        result = self.done(*self.VESSEL, "--wall", "0.5", "--angles", "20,30,40", "-o", "vessel")
+        designed = json.loads((self.folder / "vessel/job.json").read_text())
+        self.assertEqual([layer["kind"] for layer in designed["layers"]], ["helical"])
+        self.assertGreaterEqual(designed["layers"][0]["target_layers"] * 0.25, 0.5)
+        command = result.stdout.splitlines()[-1].split("meshwind ")[1].split()
+        self.done(*command, "--machine", "six_axis", "-o", "out")
+        plan = json.loads((self.folder / "out/report.json").read_text())["plan"]
+        self.assertAlmostEqual(plan["pattern"]["angle_deg"], designed["layers"][0]["angle"], delta=3)
+        self.assertGreater(plan["coverage"]["mean_layers"], designed["layers"][0]["target_layers"])
+        refused = self.run_program(*self.VESSEL, "--angles", "10", "-o", "none")
+        self.assertEqual(refused.returncode, 2)
+        self.assertFalse((self.folder / "none").exists())
+
     def test_inspect_has_the_keys_of_the_contract(self):
         mandrel = self.make("tee", "--edge", "12")
         report = json.loads(self.done("inspect", mandrel, "--json").stdout)
