@@ -34,7 +34,8 @@ constexpr double kHardlyMore = 1.3;
 // Patterns that the machine refuses although it winds circuits of them: each takes a whole winding.
 constexpr int kMostRefused = 3;
 
-// Polar windings leave necks bare: of those that cover less than this, others are looked for.
+// Polar windings and flat helices leave necks and poles bare: where these cover less than this,
+// others are looked for.
 constexpr double kPolarCovers = 0.95;
 
 // A pattern that covers less is looked for at smaller angles.
@@ -236,10 +237,10 @@ void sort_by_worth(std::vector<Plan>& plans) {
                      [&](const Plan& a, const Plan& b) { return rank(a) < rank(b); });
 }
 
-// Where the flattest pattern leaves wall bare, adds flatter ones with free lengths that take long
-// to find, as far as there are any.
+// Where the flattest pattern leaves much of the wall bare, adds flatter ones with free lengths that
+// take long to find, as far as there are any.
 void add_flatter(const LayerTask& task, std::vector<Plan>& plans) {
-    if (plans.empty() || covered_share(plans.back()) >= kWholeWall) {
+    if (plans.empty() || covered_share(plans.back()) >= kPolarCovers) {
         return;
     }
     for (double angle_deg = deg_from_rad(angle_rad_of(plans.back())) - kFlatter_deg;

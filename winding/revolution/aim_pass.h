@@ -23,8 +23,8 @@ struct PassAim {
 
 /// The slip ratios below and above the widest place with which a pass comes to both ends.
 ///  - An end that closes towards the axis is a cap: the parts before it that are curved or lean by
-///    45 deg or more, where that one is convex and narrows to the end. A pass that turns there, or
-///    runs over its opening, needs no steering.
+///    45 deg or more, where that one narrows to the end and is convex, but for a hollow lip. A pass
+///    that turns there, or runs over its opening, needs no steering.
 ///  - To any other end it must come at no more than the angle asked for or 70 deg, whichever is
 ///    more: beyond, layers pile up as 1 / cos. Of the slips with which it is no steeper on its way
 ///    either, the least is taken; where the friction does not suffice for that, all of it, and the

@@ -129,6 +129,27 @@ double steepest_deg(const MeridianPass& pass) {
     return deg_from_rad(most);
 }
 
+// An isotensoid turns back near the radius that its fibres turn at: its lip is hollow, and fibres
+// that turn on the dome do not come there.
+TEST(AimAtEnds, AHollowLipOfADomeIsPartOfItsCap) {
+    const BodyOfRevolution body = body_of(
+        make_isotensoid({.radius_mm = 40.0, .cylinder_length_mm = 80.0, .opening_radius_mm = 15.0},
+                        {.edge_mm = 2.0}));
+    ASSERT_LT(body.meridian.at(0.0).curvature_per_mm, 0.0);
+    EXPECT_NE(cap_mm(body, 0), 0.0);
+    EXPECT_NE(cap_mm(body, 1), body.meridian.length_mm());
+    for (const double angle_deg : {30.0, 40.0, 55.0}) {
+        SCOPED_TRACE(angle_deg);
+        const PassAim aim = aim_at_ends(body, task(angle_deg, 0.17, 18.0));
+        EXPECT_EQ(aim.failure, "");
+        // No nearer to the opening than the band's touching it.
+        const MeridianPass pass = pass_of(body, angle_deg, aim.slip);
+        EXPECT_GT(pass.stations.front().place.radius_mm, 18.0 - 0.1);
+        EXPECT_LT(pass.stations.front().place.radius_mm,
+                  40.0 * std::sin(rad_from_deg(angle_deg)) + 0.1);
+    }
+}
+
 TEST(AimAtEnds, KeepsFlatAtTheCornerOfANarrowPipe) {
     const PassAim aim = aim_at_ends(reducer(), task(40.0, 0.2));
     EXPECT_EQ(aim.failure, "");
