@@ -232,12 +232,11 @@ public:
             best_ = once(Job(best_->layers.front().setup.job), Depth::Full, best_->seed);
         }
         if (tried_.size() > 1) {
-            options_.context.report_remark(tried_.back());
             tried_.push_back(
                 "what stands is the job with " + settings_words(best_->layers.front().setup.job) +
                 (best_->seed == options_.context.seed ? ""
                                                       : " --seed " + std::to_string(best_->seed)));
-            options_.context.report_remark(tried_.back());
+            tell_tried();
             best_->remarks.insert(best_->remarks.end(), tried_.begin(), tried_.end());
         }
         return *std::move(best_);
@@ -263,6 +262,7 @@ private:
                     throw;
                 }
                 note_refused(job, error);
+                last_share_ = 0.0;
                 return;  // of no use for what stands
             }
         }
@@ -409,6 +409,13 @@ private:
         tried_.push_back(settings_words(job) + " cannot be wound: " + error.what());
     }
 
+    // What has not been told yet: a blend that is passed over adds nothing.
+    void tell_tried() {
+        for (; told_ < tried_.size(); ++told_) {
+            options_.context.report_remark(tried_[told_]);
+        }
+    }
+
     static std::optional<Job> room_for(const Run& run) {
         const Job& job = run.layers.front().setup.job;
         return stands(run) ? more_fibres(job, first_plan(run)) : more_room(job, first_plan(run));
@@ -446,9 +453,7 @@ private:
     }
 
     [[nodiscard]] Mandrel read(const Job& job) {
-        if (!tried_.empty()) {
-            options_.context.report_remark(tried_.back());
-        }
+        tell_tried();
         const auto begun = std::chrono::steady_clock::now();
         Mandrel mandrel = mandrel_(job);
         reading_s_ =
@@ -483,6 +488,7 @@ private:
     double reading_s_ = 0.0;      // the mandrel of the last run
     std::set<std::string> said_;
     std::vector<std::string> tried_;
+    std::size_t told_ = 0;  // of those
 };
 
 }  // namespace

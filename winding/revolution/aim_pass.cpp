@@ -172,6 +172,8 @@ double cap_mm(const BodyOfRevolution& body, std::size_t end) {
     const MeridianPlace last = body.meridian.at(end_mm);
     const MeridianPart& outmost = upper ? body.parts.back() : body.parts.front();
     const bool closed = body.end[end].kind == MeridianEnd::Kind::Pole;
+    // An isotensoid is hollow just before it turns back; fibre that turns on it stays clear of
+    // there.
     const MeridianPlace middle = body.meridian.at(0.5 * (outmost.from_mm + outmost.to_mm));
     const bool convex = std::max(last.curvature_per_mm, middle.curvature_per_mm) > 0.0;
     const bool dome =
