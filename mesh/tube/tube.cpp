@@ -28,6 +28,10 @@ constexpr double kMeantShare = 0.25;
 // Or one that is not this much worse than the free line.
 constexpr double kNotWorse = 1.5;
 
+// A free line that is off by so many limits has sections that are no circles, as in the steep dome
+// of a vessel; its bends are noise, by the hundred, and no chain is looked for among them.
+constexpr double kNoTube = 20.0;
+
 std::string has_two_ends(const Mandrel& mandrel) {
     const Surface& surface = mandrel.surface;
     if (mandrel.rims.size() != 2) {
@@ -147,7 +151,9 @@ TubeFinding find_tube(const Mandrel& mandrel) {
         return {std::nullopt, "there is no line from rim to rim about which it is round"};
     }
     Tube tube = free_tube(mandrel, sections);
-    if (std::optional<Tube> chain = chain_tube(mandrel.rims, mandrel.surface, tube)) {
+    if (std::optional<Tube> chain = tube.residual_mm <= kNoTube * limit_mm
+                                        ? chain_tube(mandrel.rims, mandrel.surface, tube)
+                                        : std::nullopt) {
         chain->residual_mm = residual_of(*chain, mandrel.surface);
         const double most_mm = std::max(kMeantShare * limit_mm, kNotWorse * tube.residual_mm);
         if (chain->residual_mm <= most_mm) {
