@@ -7,5 +7,6 @@ import './looks.mjs';
 import './motion.mjs';
 import './controls.mjs';
 import './panels.mjs';
+import './closer.mjs';
 
 await runTests(tests, tidy);

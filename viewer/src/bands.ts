@@ -44,6 +44,7 @@ export class Bands {
             },
             side: DoubleSide,
             depthWrite: false,
+            clipping: true,
         });
         this.mesh = new Mesh(bandGeometry(fibre, widthMm, this.values), material);
         this.mesh.frustumCulled = false;

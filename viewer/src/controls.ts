@@ -8,6 +8,8 @@ import { helpHtml, listenToKeys } from './keyboard';
 import { connectRange } from './rangeSlider';
 import { Readout } from './readout';
 import { SidePanel } from './sidePanels';
+import { connectTools } from './tools';
+import type { Tools } from './tools';
 
 const kSpeeds = [0.1, 0.3, 1, 3, 10, 30, 100];
 
@@ -22,11 +24,12 @@ export function connectControls(app: App, rows: CourseRow[]): Controls {
     colouring.addEventListener('change', () => app.setColouring(colouring.value as ColouringId));
     const layer = connectLayers(app);
     connectCamera(app);
+    const tools = connectTools(app);
     connectPlayback(app);
     const showRange = connectRange(app);
     const showAxes = connectAxes(app);
     const hoverAgain = followPointer(element('scene'), (at) => app.hover(at));
-    connectKeys(app, rows);
+    connectKeys(app, rows, tools);
 
     const slider = element<HTMLInputElement>('slider');
     const play = element('play');
@@ -121,7 +124,7 @@ function connectAxes(app: App): () => void {
     return show;
 }
 
-function connectKeys(app: App, rows: CourseRow[]): void {
+function connectKeys(app: App, rows: CourseRow[], tools: Tools): void {
     const side = new SidePanel('side');
     const plots = new SidePanel('plots');
     const help = element<HTMLDialogElement>('help');
@@ -166,6 +169,8 @@ function connectKeys(app: App, rows: CourseRow[]): void {
         allCourses: () => app.setRange(0, Infinity),
         foldSide: () => side.toggle(),
         foldPlots: () => plots.toggle(),
+        section: tools.nextSection,
+        measure: tools.toggleMeasure,
         camera: () => app.setMode(app.mode() === 'machine' ? 'mandrel' : 'machine'),
         fit: () => app.parts.stage?.fit(),
         help: () => help.showModal(),

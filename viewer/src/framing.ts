@@ -21,7 +21,7 @@ interface HeadLink {
 export class Framing {
     private readonly part: Vector3[]; // mandrel frame
     private readonly head: HeadLink[];
-    private readonly clouds: Partial<Record<CameraMode, Vector3[]>> = {};
+    private readonly clouds = new Map<string, Vector3[]>();
 
     constructor(
         private readonly page: Page,
@@ -40,8 +40,11 @@ export class Framing {
     }
 
     /** What is to be seen, in the frame that the camera stands in. */
-    points(mode: CameraMode): Vector3[] {
-        return (this.clouds[mode] ??= this.gather(mode));
+    points(mode: CameraMode, withHead: boolean): Vector3[] {
+        const key = `${mode} ${withHead}`;
+        let cloud = this.clouds.get(key);
+        if (!cloud) this.clouds.set(key, (cloud = this.gather(mode, withHead)));
+        return cloud;
     }
 
     /** Eye and head, base frame. */
@@ -58,9 +61,9 @@ export class Framing {
         return this.part.map((p) => p.clone().applyMatrix4(pose.baseFromMandrel));
     }
 
-    private gather(mode: CameraMode): Vector3[] {
+    private gather(mode: CameraMode, withHead: boolean): Vector3[] {
         const all = this.poses().flatMap((pose) => {
-            const seen = [...this.partAt(pose), ...this.headAt(pose)];
+            const seen = [...this.partAt(pose), ...(withHead ? this.headAt(pose) : [])];
             const back = mode === 'machine' ? new Matrix4() : pose.baseFromMandrel.clone().invert();
             return seen.map((p) => p.applyMatrix4(back));
         });

@@ -12,6 +12,8 @@ export interface KeyActions {
     allCourses: () => void;
     foldSide: () => void;
     foldPlots: () => void;
+    section: () => void;
+    measure: () => void;
     camera: () => void;
     fit: () => void;
     help: () => void;
@@ -26,6 +28,8 @@ const kKeys: [string, string][] = [
     ['B E', 'the course under way is the first, the last one drawn'],
     ['A', 'draw all courses'],
     ['M', 'camera with the machine or on the mandrel'],
+    ['X', 'section square to x, y, z, none'],
+    ['D', 'measure a distance: click two places'],
     ['F', 'see part and head, wherever they go'],
     ['S P', 'fold or show the findings, the axes and plots'],
     ['?', 'this list'],
@@ -68,7 +72,7 @@ function actionOf(
     const { key, shiftKey } = event;
     if (/^[1-8]$/.test(key)) return () => actions.colouring(Number(key));
     if (target.getAttribute('role') === 'tab' && key.startsWith('Arrow')) return null;
-    if (target.closest('.range, .border') && /^(Arrow|Home|End)/.test(key)) return null;
+    if (target.closest('.range, .border, #section-at') && /^(Arrow|Home|End)/.test(key)) return null;
     switch (key) {
         case ' ':
             // Buttons and boxes keep their own meaning of the space bar.
@@ -102,6 +106,10 @@ function actionOfLetter(letter: string, actions: KeyActions): (() => void) | nul
             return actions.foldSide;
         case 'p':
             return actions.foldPlots;
+        case 'x':
+            return actions.section;
+        case 'd':
+            return actions.measure;
         case 'm':
             return actions.camera;
         case 'f':

@@ -28,6 +28,7 @@ export function bodyMaterial(ambient = 0.45): ShaderMaterial {
         fragmentShader: kBodyFragment,
         uniforms: { colour: { value: new Color() }, ambient: { value: ambient } },
         side: DoubleSide,
+        clipping: true,
     });
 }
 

@@ -10,6 +10,7 @@ import {
     Mesh,
     ShaderMaterial,
 } from 'three';
+import type { Material } from 'three';
 import { kBare, sequentialTexture } from './colour';
 import type { Colouring } from './colour';
 import type { Page } from './data';
@@ -39,6 +40,7 @@ export class Mandrel {
                 map: { value: sequentialTexture },
             },
             side: DoubleSide,
+            clipping: true,
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
@@ -75,6 +77,11 @@ export class Mandrel {
         if (!values) return;
         this.setPerFace('value', (face) => values[face]);
         uniforms.range.value = [by.min, by.max];
+    }
+
+    /** What draws it. */
+    materials(): Material[] {
+        return [this.mesh.material, this.lines.material];
     }
 
     showBare(on: boolean): void {

@@ -2,6 +2,7 @@
 import { Raycaster, Vector2, Vector3 } from 'three';
 import type { Camera, Mesh } from 'three';
 import type { Fibre } from './data';
+import type { Section } from './section';
 
 /** Stations hashed by place, in buckets that follow one another. */
 class StationGrid {
@@ -87,11 +88,13 @@ export class Picker {
     /**
      * \param at pointer, -1..1 both ways
      * \param shown what is drawn of the fibres, in the order of winding
+     * \param section what it cuts away is not seen
      */
-    pick(at: Vector2, camera: Camera, shown: Drawn[]): Hit | null {
+    pick(at: Vector2, camera: Camera, shown: Drawn[], section: Section): Hit | null {
         this.caster.setFromCamera(at, camera);
         const targets = this.extension?.visible ? [this.mandrel, this.extension] : [this.mandrel];
-        const first = this.caster.intersectObjects(targets, false)[0];
+        const hits = this.caster.intersectObjects(targets, false);
+        const first = hits.find((hit) => section.keeps(hit.point));
         if (!first || !first.face) return null;
         const place = this.mandrel.worldToLocal(first.point.clone());
         const normal = first.face.normal.clone();

@@ -38,6 +38,7 @@ export class View {
     ) {
         // The buffer is kept for printing and for reading the picture back.
         this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+        this.renderer.localClippingEnabled = true;
         this.renderer.outputColorSpace = LinearSRGBColorSpace; // shaders write screen colours
         this.camera.up.copy(up);
         this.controls = new OrbitControls(this.camera, canvas);

@@ -1,4 +1,4 @@
-/** Shader text shared by mandrel, bands and machine. Colours are screen colours throughout. */
+/** Shader text shared by mandrel, bands and machine. Colours are screen colours throughout; a section cuts all of it. */
 
 /** A lamp beside the camera: shade of a view-space normal, both sides lit. */
 export const kShade = /* glsl */ `
@@ -12,17 +12,22 @@ float shade(vec3 normal, float ambient) {
 
 export const kBodyVertex = /* glsl */ `
 varying vec3 vNormal;
+#include <clipping_planes_pars_vertex>
 void main() {
     vNormal = normalMatrix * normal;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * mvPosition;
+    #include <clipping_planes_vertex>
 }`;
 
 export const kBodyFragment = /* glsl */ `
 uniform vec3 colour;
 uniform float ambient;
 varying vec3 vNormal;
+#include <clipping_planes_pars_fragment>
 ${kShade}
 void main() {
+    #include <clipping_planes_fragment>
     gl_FragColor = vec4(colour * shade(vNormal, ambient), 1.0);
 }`;
 
@@ -33,11 +38,14 @@ attribute float state; // 0 wall, 1 bare wall, 2 not to be wound
 varying vec3 vNormal;
 varying float vValue;
 varying float vState;
+#include <clipping_planes_pars_vertex>
 void main() {
     vNormal = normalMatrix * normal;
     vValue = value;
     vState = state;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * mvPosition;
+    #include <clipping_planes_vertex>
 }`;
 
 export const kMandrelFragment = /* glsl */ `
@@ -51,8 +59,10 @@ uniform sampler2D map;
 varying vec3 vNormal;
 varying float vValue;
 varying float vState;
+#include <clipping_planes_pars_fragment>
 ${kShade}
 void main() {
+    #include <clipping_planes_fragment>
     vec3 base = vState > 1.5 ? otherColour : colour;
     float ambient = 0.5;
     if (useValue > 0.5 && vState < 1.5) {
@@ -81,15 +91,17 @@ varying vec3 vNormal;
 varying vec3 vView;
 varying float vValue;
 varying float vAcross;
+#include <clipping_planes_pars_vertex>
 void main() {
     vNormal = normalMatrix * normal;
     vValue = value;
     vAcross = across;
-    vec4 place = modelViewMatrix * vec4(position, 1.0);
-    vView = -place.xyz;
-    gl_Position = projectionMatrix * place;
-    vec4 lifted = projectionMatrix * vec4(place.xy, place.z + lift, 1.0);
+    vec4 mvPosition = modelViewMatrix * vec4(position, 1.0);
+    vView = -mvPosition.xyz;
+    gl_Position = projectionMatrix * mvPosition;
+    vec4 lifted = projectionMatrix * vec4(mvPosition.xy, mvPosition.z + lift, 1.0);
     gl_Position.z = lifted.z / lifted.w * gl_Position.w;
+    #include <clipping_planes_vertex>
 }`;
 
 export const kBandFragment = /* glsl */ `
@@ -103,7 +115,9 @@ varying vec3 vNormal;
 varying vec3 vView;
 varying float vValue;
 varying float vAcross;
+#include <clipping_planes_pars_fragment>
 void main() {
+    #include <clipping_planes_fragment>
     vec3 n = normalize(vNormal);
     if (dot(n, vView) < 0.0) discard;
     vec3 base;

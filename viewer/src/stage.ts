@@ -1,5 +1,6 @@
 /** The picture: mandrel, bands, machine, marker; what it shows follows from a moment. */
 import {
+    Box3,
     BufferGeometry,
     Group,
     Line,
@@ -11,6 +12,7 @@ import {
     Vector2,
     Vector3,
 } from 'three';
+import type { Material } from 'three';
 import { Bands } from './bands';
 import { kBare } from './colour';
 import type { Colouring } from './colour';
@@ -21,12 +23,15 @@ import { Framing } from './framing';
 import type { Kinematics, Pose } from './kinematics';
 import { bodyMaterial, MachineView, meshGeometry } from './machineView';
 import { Mandrel } from './mandrel';
+import { Measure } from './measure';
 import { Picker } from './picking';
 import type { Drawn, Hit } from './picking';
 import { View } from './scene';
+import { Section } from './section';
 import { nearestNormal } from './shape';
 import { cssVariable } from './theme';
 import type { Landing, Moment, Timeline } from './timeline';
+import { TravelBox } from './travelBox';
 import { Triad } from './triad';
 
 export type CameraMode = 'machine' | 'mandrel';
@@ -38,6 +43,9 @@ const kCloseWidths = 26; // distance of the camera from a place, in widths of th
 
 export class Stage {
     readonly view: View;
+    readonly section: Section;
+    readonly measure: Measure;
+    readonly travel: TravelBox;
     mode: CameraMode = 'machine';
     private readonly mandrel: Mandrel;
     private readonly onMandrel = new Group(); // all that turns with the mandrel
@@ -75,8 +83,18 @@ export class Stage {
             this.onMandrel.add(this.extension);
         }
         this.marker = this.makeMarker(width);
-        this.onMandrel.add(this.marker, this.makeAxis());
-        this.view.world.add(this.onMandrel, this.machine.group, this.machine.fibre);
+        const solids = [this.mandrel.mesh, ...(this.extension ? [this.extension] : [])];
+        const extent = new Box3();
+        for (const solid of solids) extent.expandByObject(solid);
+        this.measure = new Measure(extent.getSize(new Vector3()).length());
+        this.onMandrel.add(this.marker, this.makeAxis(), this.measure.group);
+        this.section = new Section(extent, [
+            ...this.mandrel.materials(),
+            ...this.bands.map((b) => b.mesh.material),
+            ...(this.extension ? [this.extension.material as Material] : []),
+        ]);
+        this.travel = new TravelBox(kinematics, timeline);
+        this.view.world.add(this.onMandrel, this.machine.group, this.machine.fibre, this.travel.lines);
         this.framing = new Framing(page, kinematics, timeline);
         this.triad = new Triad(element('triad'), kinematics.axes);
         this.triad.setFrame(this.mode);
@@ -99,6 +117,8 @@ export class Stage {
             cssVariable('--mandrel-edge'),
         );
         this.machine.setTheme(cssVariable('--machine'), cssVariable('--eye'), cssVariable('--fibre'));
+        this.measure.setTheme(cssVariable('--text'));
+        this.travel.setTheme(cssVariable('--muted'));
         const material = this.extension?.material as ReturnType<typeof bodyMaterial> | undefined;
         material?.uniforms.colour.value.setStyle(cssVariable('--extension'), '');
         this.view.request();
@@ -122,6 +142,7 @@ export class Stage {
 
     showMachine(on: boolean): void {
         this.machine.group.visible = this.machine.fibre.visible = on;
+        if (this.view.fitted) this.fit();
         this.view.request();
     }
 
@@ -169,11 +190,19 @@ export class Stage {
         if (!this.pose) return;
         const matrix = this.mode === 'machine' ? new Matrix4() : this.pose.baseFromMandrel.clone().invert();
         this.view.setWorld(matrix);
+        this.placeSection();
+    }
+
+    /** Cuts where the section stands now. */
+    placeSection(): void {
+        this.view.world.updateMatrixWorld();
+        this.section.place(this.onMandrel.matrixWorld);
+        this.view.request();
     }
 
     fit(): void {
         this.view.resize();
-        this.view.fit(this.framing.points(this.mode), kFirstView);
+        this.view.fit(this.framing.points(this.mode, this.machine.group.visible), kFirstView);
     }
 
     /** Where part and head are seen now: left, right, lower and upper end, -1..1 across the picture. */
@@ -209,7 +238,7 @@ export class Stage {
 
     pick(at: Vector2): Hit | null {
         this.view.world.updateMatrixWorld();
-        return this.picker.pick(at, this.view.camera, this.shown);
+        return this.picker.pick(at, this.view.camera, this.shown, this.section);
     }
 
     /** What the camera looks at, mandrel frame; where the marker is, if it is shown. */
