@@ -432,6 +432,7 @@ TriedPlan plan_cover_layer(const LayerTask& task) {
     cover.fibres = setup.job.fibres;
     cover.context = task.options.context;
     cover.least_covered = task.options.least_covered;
+    cover.least_joined = task.options.least_joined;
     cover.stage = task.options.stage;
     cover.most_bare = task.setup.job.tolerance.bare;
     return plan_cover(setup.mandrel, *setup.obstacles, cover, &task.machine);

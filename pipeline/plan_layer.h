@@ -21,6 +21,7 @@ struct LayerPlanOptions {
     double build_up_mm = 0.0;      ///< of the layers before at most
     const Plan* before = nullptr;  ///< of the layer before: its fibre goes on where it can
     double least_covered = 0.0;    ///< as in CoverOptions
+    double least_joined = 0.0;     ///< as in CoverOptions
     /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
     /// So it does, before it is wound, where none covers least_covered of the wall.
     bool patterns_first = false;

@@ -225,6 +225,7 @@ private:
         }
         options.stage_done = [this](const char* stage) { watch_.stage(stage); };
         options.least_covered = number == 0 ? options_.least_covered : 0.0;
+        options.least_joined = number == 0 ? options_.least_joined : 0.0;
         options.patterns_first = number == 0 && options_.patterns_first;
         wind_layer(layer, options);
         if (wall_ && wall_->laid() && !layer.plan.failure.empty()) {

@@ -32,6 +32,8 @@ struct WindOptions {
     double reading_s = 0.0;  ///< that the inputs took before; counts as "import"
     /// A cover of less than this share of what courses reach is not wound: its plan fails.
     double least_covered = 0.0;
+    /// Nor one whose fibres can join less than this share of the wall.
+    double least_joined = 0.0;
     /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
     /// So it does, before it is wound, where none covers least_covered of the wall.
     bool patterns_first = false;

@@ -56,6 +56,7 @@ private:
             plan.bare = options_.bare;
             plan.build_up_mm = options_.build_up_mm;
             plan.least_covered = options_.least_covered;
+            plan.least_joined = options_.least_joined;
             plan.patterns_first = options_.patterns_first;
             plan.stage = options_.stage;
             plan.before = options_.before != nullptr ? &options_.before->plan : nullptr;

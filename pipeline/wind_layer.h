@@ -44,6 +44,7 @@ struct WindLayerOptions {
     const Mandrel* bare = nullptr;       ///< under all layers; none for the first
     double build_up_mm = 0.0;            ///< of the layers before at most
     double least_covered = 0.0;          ///< as in CoverOptions
+    double least_joined = 0.0;           ///< as in CoverOptions
     bool patterns_first = false;         ///< as in LayerPlanOptions
     const StageAsk* stage = nullptr;     ///< of a layer of kind Wall
     RunContext context{};

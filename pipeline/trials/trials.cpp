@@ -91,6 +91,13 @@ bool was_too_bare(const Run& run) {
     return !plan.failure.empty() && plan.coverage.fraction > 0.0;
 }
 
+// A cover that was not wound, and that fibres could join enough of.
+bool joins_enough(const Run& run) {
+    const Plan& plan = first_plan(run);
+    return was_too_bare(run) && plan.planner == Planner::Cover &&
+           can_cover(run) >= kLeastReach * plan.coverage.reachable;
+}
+
 bool stands(const Run& run) {
     return run.planned() && run.passed();
 }
@@ -202,7 +209,10 @@ public:
             if (done() || turns_on_pins(job)) {
                 return;
             }
-            run(sharp, Depth::WhereItCovers);
+            run(sharp, Depth::WhereMostIsJoined);
+        }
+        if (first == 0 && last_joins_ > 0.0) {
+            put_off_.push_back({sharp, last_joins_});
         }
         if (!(done() && covers_well()) && !pins_first()) {
             choose_blend(job);
@@ -225,6 +235,12 @@ public:
                 mend_room(job);
             }
         }
+        for (const Look& look : put_off_) {
+            if (!done()) {
+                run(look.job, Depth::WhereItCovers);
+                mend_room(look.job);
+            }
+        }
     }
 
     [[nodiscard]] Run best() && {
@@ -244,8 +260,22 @@ public:
 
 private:
     // PatternsFirst: a part that has patterns is not covered; WholePatterns: nor by one that leaves
-    // wall bare. Reach: no cover is wound, it is said what of the wall can be covered.
-    enum class Depth { Full, WhereItCovers, PatternsFirst, WholePatterns, Reach };
+    // wall bare. WhereMostIsJoined: a cover is put off, as by PatternsFirst, whose fibres join less
+    // than is well covered. Reach: no cover is wound, it is said what of the wall can be covered.
+    enum class Depth {
+        Full,
+        WhereItCovers,
+        WhereMostIsJoined,
+        PatternsFirst,
+        WholePatterns,
+        Reach
+    };
+
+    // A blend, and what of the wall fibres can join with it.
+    struct Look {
+        Job job;
+        double share = 0.0;
+    };
 
     // Once, and where that fails by chance and nothing stands with the next seeds; from a later
     // seed on only where what by_chance_ is of did. Throws as wind() does for the first job.
@@ -254,6 +284,7 @@ private:
                                     : depth == Depth::Full ? kMostSeeds
                                                            : kSeedsOfTries;
         by_chance_ = by_chance_ || first == 0;
+        last_joins_ = 0.0;
         for (std::uint64_t k = first; by_chance_ && k < seeds && (k == 0 || !pins_first()); ++k) {
             try {
                 take(once(job, depth, options_.context.seed + k));
@@ -310,6 +341,12 @@ private:
         const double before = was_done ? can_cover(*best_) + kWorthMore : 0.0;
         double most = before;
         std::vector<Look> looks;
+        for (const Look& look : put_off_) {
+            if (look.job.mandrel.turn == job.mandrel.turn) {
+                looks.push_back(look);
+                most = std::max(most, look.share);
+            }
+        }
         for (const double widths : kBlendsInTows) {
             Look& look = looks.emplace_back(Look{blended(job, widths), most});
             if (most < kWellInReach) {
@@ -373,12 +410,6 @@ private:
         return job;
     }
 
-    // A blend, and what of the wall fibres can join with it.
-    struct Look {
-        Job job;
-        double share = 0.0;
-    };
-
     // Share of the wall that fibres can join; 0 where it cannot be enough. Where one fibre cannot
     // do the job gets as many as can.
     [[nodiscard]] double look_at(Job& job) {
@@ -389,11 +420,10 @@ private:
             }
             Run look = once(std::move(mandrel), job, Depth::Reach, options_.context.seed);
             const Plan& plan = first_plan(look);
-            const double least = kLeastReach * plan.coverage.reachable;
             double share = 0.0;
-            if (was_too_bare(look) && can_cover(look) >= least) {
+            if (joins_enough(look)) {
                 share = can_cover(look);
-                if (plan.coverage.joinable < least) {
+                if (plan.coverage.joinable < kLeastReach * plan.coverage.reachable) {
                     job = more_fibres(job, plan).value_or(job);
                 }
             }
@@ -428,6 +458,7 @@ private:
         next_ = room_for(run);
         last_planner_ = first_plan(run).planner;
         last_share_ = was_too_bare(run) ? covered_share(run) : 0.0;
+        last_joins_ = joins_enough(run) ? can_cover(run) : 0.0;
         cover_put_off_ = last_planner_ == Planner::Pattern && !run.planned();
         by_chance_ = fails_by_chance(run);
         if (!best_ || is_better(run, *best_)) {
@@ -471,6 +502,8 @@ private:
         options.context.seed = seed;
         options.patterns_first = depth == Depth::PatternsFirst || depth == Depth::WholePatterns;
         options.least_covered = least_covered(depth);
+        options.least_joined =
+            depth == Depth::PatternsFirst || depth == Depth::WhereMostIsJoined ? kWellCovered : 0.0;
         options.reading_s += reading_s_;
         return wind(std::move(mandrel), machine_, job, options);
     }
@@ -480,10 +513,12 @@ private:
     const WindOptions& options_;
     bool pins_open_;  // they have not been tried, and may be
     std::optional<Run> best_;
-    std::optional<Job> next_;  // that may mend the last run that was wound
-    bool by_chance_ = false;   // did that fail
+    std::vector<Look> put_off_;  // covers without a blend that join too little
+    std::optional<Job> next_;    // that may mend the last run that was wound
+    bool by_chance_ = false;     // did that fail
     Planner last_planner_ = Planner::None;
     double last_share_ = 0.0;     // of the wall, where that was too bare to be wound
+    double last_joins_ = 0.0;     // of the wall by fibres, where a cover was not wound
     bool cover_put_off_ = false;  // was it a pattern that did not hold
     double reading_s_ = 0.0;      // the mandrel of the last run
     std::set<std::string> said_;

@@ -4,7 +4,7 @@
     golden.py PROGRAM                 compares; exit code 1 where a digest or a figure differs
     golden.py PROGRAM --only NAME ... only these jobs
     golden.py PROGRAM --update        takes what the program makes now; the commit says why it differs
-    golden.py PROGRAM --keep DIR      leaves the outputs there, to be looked at
+    golden.py PROGRAM --keep DIR      leaves the outputs there, to be looked at, and DIR/NAME/summary.txt
 
 Digests (SHA-256) are of programs, motions, paths and lay-ups. The figures beside them say how far a change went:
 blocks, time, fibre, courses, covered share. All mandrels are made by the program itself, but for data/tee.stl.
@@ -61,6 +61,7 @@ def run(program, *arguments):
                             capture_output=True, text=True)
     if result.returncode not in (0, 1):
         sys.exit(f"golden: {' '.join(map(str, arguments))}: exit code {result.returncode}: {result.stderr}")
+    return result.stdout
 
 
 def wind(program, name, folder):
@@ -73,11 +74,12 @@ def wind(program, name, folder):
         run(program, "make", *made, "-o", mandrel)
     machine = ROOT / f"machines/{machine}.json"
     if job is None:
-        run(program, "carry", mandrel, "--machine", machine, "-o", out)
-        return out
-    text = folder / "job.json"
-    text.write_text(json.dumps(job))
-    run(program, mandrel, "--machine", machine, "--job", text, "-o", out)
+        summary = run(program, "carry", mandrel, "--machine", machine, "-o", out)
+    else:
+        text = folder / "job.json"
+        text.write_text(json.dumps(job))
+        summary = run(program, mandrel, "--machine", machine, "--job", text, "-o", out)
+    (folder / "summary.txt").write_text(summary)
     return out
 
 

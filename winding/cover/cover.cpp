@@ -112,7 +112,8 @@ public:
         }
         find_routes();
         joinable_ = prove_reach();
-        if (const double share = reached_share(joinable_); !is_enough(share)) {
+        if (const double share = reached_share(joinable_);
+            !is_enough(share) || share < options_.least_joined) {
             plan_.coverage.fraction = share;
             return too_bare("the courses that the fibres can join reach only ");
         }

@@ -27,6 +27,7 @@ struct CoverOptions {
     RunContext context{};               ///< `effort`: how long courses are annealed
     double most_bare = kMostBelow;      ///< share of the wall in reach; what of it lacks layers
     double least_covered = 0.0;         ///< of the wall in reach; what covers less fails, not wound
+    double least_joined = 0.0;          ///< of the wall; so it does where fibres join less of it
     int candidates = 16000;             ///< tried over the whole surface
     int rounds = 3;                     ///< of further candidates aimed at what is not reached yet
     int aimed_candidates = 4000;        ///< in each such round
