@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/text/text_number.h"
+#include "core/text/xml_text.h"
 
 namespace meshwind {
 namespace {
@@ -29,35 +30,12 @@ constexpr std::string_view kVtkType<std::int32_t> = "Int32";
 template <>
 constexpr std::string_view kVtkType<std::uint8_t> = "UInt8";
 
-std::string xml_escaped(std::string_view raw) {
-    std::string text;
-    for (const char c : raw) {
-        switch (c) {
-            case '&':
-                text += "&amp;";
-                break;
-            case '<':
-                text += "&lt;";
-                break;
-            case '>':
-                text += "&gt;";
-                break;
-            case '"':
-                text += "&quot;";
-                break;
-            default:
-                text += c;
-        }
-    }
-    return text;
-}
-
 void open_array(std::string& text, std::string_view type, std::string_view name,
                 int components = 1) {
     text += "<DataArray type=\"";
     text += type;
     text += "\" Name=\"";
-    text += xml_escaped(name);
+    text += xml_text(name);
     if (components > 1) {
         text += "\" NumberOfComponents=\"";
         text += std::to_string(components);

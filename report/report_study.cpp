@@ -1,10 +1,12 @@
 #include "report/report_study.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "core/text/text_number.h"
+#include "core/text/xml_text.h"
 #include "core/version.h"
 #include "report/report_checks.h"
 #include "report/study_files.h"
@@ -86,6 +88,42 @@ void print_quantity(std::ostream& out, const StudyOutcome& outcome, Quantity qua
     }
 }
 
+void print_findings(std::ostream& out, const StudyOutcome& outcome) {
+    for (const Quantity quantity : {Quantity::PathEnd, Quantity::WindingAngle, Quantity::Slip,
+                                    Quantity::SpindleAngle, Quantity::EyePoint}) {
+        print_quantity(out, outcome, quantity);
+    }
+    for (const std::string& remark : outcome.study.remarks) {
+        out << remark << '\n';
+    }
+    for (const MeshSizeTiming& t : outcome.study.timing) {
+        out << t.mandrel << ", " << t.method << ", lambda " << fixed(t.slip_ratio, 2)
+            << ", edges of " << fixed(t.edge_mm, 2) << " mm: " << fixed(t.ns_per_crossing, 0)
+            << " ns per crossing, " << fixed(t.ms_per_metre, 3) << " ms per metre\n";
+    }
+    out << "advice of Fu and others (2009):\n";
+    for (const Advice& advice : judged_advice(outcome)) {
+        out << "  " << (advice.holds ? "holds:        " : "does not hold: ") << advice.claim
+            << "\n    " << advice.because << '\n';
+    }
+}
+
+constexpr const char* kPageHead = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Study of mesh size</title>
+<style>
+body { margin: 2em auto; padding: 0 1em; max-width: 1200px; font: 14px/1.45 system-ui, sans-serif; }
+svg { width: 100%; height: auto; background: #fff; }
+pre { overflow-x: auto; font-size: 12px; }
+</style>
+</head>
+<body>
+<h1>Study of mesh size</h1>
+)";
+
 }  // namespace
 
 std::string study_json(const StudyOutcome& outcome) {
@@ -117,26 +155,17 @@ std::string study_json(const StudyOutcome& outcome) {
     return json_text(json);
 }
 
+std::string study_page(const StudyOutcome& outcome) {
+    std::ostringstream findings;
+    print_findings(findings, outcome);
+    return kPageHead + study_svg(outcome) + "\n<pre>\n" + xml_text(findings.str()) +
+           "</pre>\n</body>\n</html>\n";
+}
+
 void print_study(std::ostream& out, const StudyOutcome& outcome,
                  const std::filesystem::path& folder) {
-    for (const Quantity quantity : {Quantity::PathEnd, Quantity::WindingAngle, Quantity::Slip,
-                                    Quantity::SpindleAngle, Quantity::EyePoint}) {
-        print_quantity(out, outcome, quantity);
-    }
-    for (const std::string& remark : outcome.study.remarks) {
-        out << remark << '\n';
-    }
-    for (const MeshSizeTiming& t : outcome.study.timing) {
-        out << t.mandrel << ", " << t.method << ", lambda " << fixed(t.slip_ratio, 2)
-            << ", edges of " << fixed(t.edge_mm, 2) << " mm: " << fixed(t.ns_per_crossing, 0)
-            << " ns per crossing, " << fixed(t.ms_per_metre, 3) << " ms per metre\n";
-    }
-    out << "advice of Fu and others (2009):\n";
-    for (const Advice& advice : judged_advice(outcome)) {
-        out << "  " << (advice.holds ? "holds:        " : "does not hold: ") << advice.claim
-            << "\n    " << advice.because << '\n';
-    }
-    out << "written to " << folder.string() << ": study.csv, study.json, study.svg"
+    print_findings(out, outcome);
+    out << "written to " << folder.string() << ": study.html, study.csv, study.json, study.svg"
         << (outcome.options.timing ? ", timing.csv" : "") << '\n';
 }
 
@@ -144,6 +173,7 @@ void write_study(const StudyOutcome& outcome, OutputFolder& folder) {
     folder.add("study.csv", study_csv(outcome.study));
     folder.add("study.json", study_json(outcome));
     folder.add("study.svg", study_svg(outcome));
+    folder.add("study.html", study_page(outcome));
     if (outcome.options.timing) {
         folder.add("timing.csv", timing_csv(outcome.study));
     } else {

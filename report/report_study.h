@@ -14,11 +14,14 @@ namespace meshwind {
 /// docs/study.md. Timing is left out: it differs from run to run.
 [[nodiscard]] std::string study_json(const StudyOutcome& outcome);
 
+/// The plot and the tables, for a browser: one file that asks no network.
+[[nodiscard]] std::string study_page(const StudyOutcome& outcome);
+
 /// The table and what it says about the advice of fu_2009_post_processing.
 void print_study(std::ostream& out, const StudyOutcome& outcome,
                  const std::filesystem::path& folder);
 
-/// Writes study.csv, study.json, study.svg and, where timing was asked for, timing.csv.
+/// Writes study.html, study.csv, study.json, study.svg and, where timing was asked for, timing.csv.
 void write_study(const StudyOutcome& outcome, OutputFolder& folder);
 
 }  // namespace meshwind

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/text/text_number.h"
+#include "core/text/xml_text.h"
 
 namespace meshwind {
 namespace {
@@ -59,26 +60,6 @@ struct Range {
     }
     [[nodiscard]] bool empty() const { return !(high > 0.0); }
 };
-
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                safe += "&amp;";
-                break;
-            case '<':
-                safe += "&lt;";
-                break;
-            case '>':
-                safe += "&gt;";
-                break;
-            default:
-                safe += c;
-        }
-    }
-    return safe;
-}
 
 class Drawing {
 public:
@@ -147,7 +128,7 @@ private:
 
     void words(double x, double y, const char* kind, const char* anchor, const std::string& text) {
         svg_ += "<text class=\"" + std::string(kind) + "\" text-anchor=\"" + anchor + "\" x=\"" +
-                number(x) + "\" y=\"" + number(y) + "\">" + escaped(text) + "</text>\n";
+                number(x) + "\" y=\"" + number(y) + "\">" + xml_text(text) + "</text>\n";
     }
 
     void stroke(const std::string& kind, double x1, double y1, double x2, double y2) {

@@ -57,7 +57,7 @@ JOBS = {
 
 def run(program, *arguments):
     home = dict(os.environ, MESHWIND_HOME=str(ROOT))
-    result = subprocess.run([program, *map(str, arguments), "--quiet"], env=home, stdin=subprocess.DEVNULL,
+    result = subprocess.run([program, *map(str, arguments)], env=home, stdin=subprocess.DEVNULL,
                             capture_output=True, text=True)
     if result.returncode not in (0, 1):
         sys.exit(f"golden: {' '.join(map(str, arguments))}: exit code {result.returncode}: {result.stderr}")

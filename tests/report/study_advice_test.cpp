@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "report/picture/log_plot.h"
+#include "report/report_study.h"
 #include "report/study_files.h"
 #include "tests/support/tells.h"
 
@@ -77,6 +78,16 @@ TEST(StudyCsv, QuotesNamesWithCommas) {
     study.lines.push_back(line("a,\"b\".stl", TangentRule::Chord, 0.2, 0.1));
     EXPECT_NE(study_csv(study).find("\n\"a,\"\"b\"\".stl\",walk,0,spindle-angle,deg,chord,10,"),
               std::string::npos);
+}
+
+TEST(StudyPage, HasPlotAndTablesAndNoTagsOfNames) {
+    StudyOutcome outcome = outcome_of({{"<b>.stl", 2.0, 1.0, 0.1}});
+    outcome.study.edges_mm = {10.0, 5.0};
+    const std::string page = study_page(outcome);
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_NE(page.find("&lt;b&gt;.stl"), std::string::npos);
+    EXPECT_EQ(page.find("<b>"), std::string::npos);
+    EXPECT_NE(page.find("57.29578"), std::string::npos);  // 1 rad
 }
 
 TEST(LogPlot, TakesZerosAndSingleValues) {
