@@ -10,13 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/counted.h"
 #include "core/error.h"
-#include "core/text/text_number.h"
 #include "mesh/revolution/revolution.h"
 #include "pipeline/plan_layer.h"
+#include "pipeline/trials/judged_run.h"
 #include "pipeline/trials/more_room.h"
-#include "postproc/verify/check_kinds.h"
 
 namespace meshwind {
 namespace {
@@ -47,141 +45,14 @@ constexpr double kNeverEnough = 2.0;
 // More fibres and longer extensions are tried so many times at most.
 constexpr int kMostMends = 2;
 
-// A cover of less of what courses reach does not fail by chance. What does is planned with so many
-// seeds at most, and with fewer where other blends, fibres and extensions are tried too.
-constexpr double kCoversMost = 0.75;
+// A cover that fails by chance is planned with so many seeds at most, and with fewer where other
+// blends, fibres and extensions are tried too.
 constexpr std::uint64_t kMostSeeds = 3;
 constexpr std::uint64_t kSeedsOfTries = 2;
-
-// By so much of the wall covers with two seeds differ; by .2 % mostly.
-constexpr double kSeedsDiffer = 0.005;
-
-// More fibres or a larger blend cover so much more of the wall, or they are not worth it; pins are
-// made and put on.
-constexpr double kWorthMore = 0.005;
-constexpr double kWorthPins = 0.03;
-
-// Share of what courses reach that fibres have to be able to join: a plan has to cover
-// kCoveredShare of it, and what is planned later to join the courses covers .02 on top at most.
-constexpr double kLeastReach = kCoveredShare - 0.02;
-
-const Plan& first_plan(const Run& run) {
-    return run.layers.front().plan;
-}
-
-double covered_share(const Run& run) {
-    return first_plan(run).coverage.fraction;
-}
-
-// Share of the wall that fibres could join, as many as the job may take.
-double can_cover(const Run& run) {
-    const std::vector<double>& reach = first_plan(run).reach_of_fibres;
-    const Job& job = run.layers.front().setup.job;
-    if (reach.empty()) {
-        return covered_share(run);
-    }
-    const std::size_t fibres =
-        job.fibres_given ? static_cast<std::size_t>(job.fibres) : reach.size();
-    return reach[std::min(fibres, reach.size()) - 1];
-}
-
-// A plan that was too bare to be wound (WindOptions::least_covered).
-bool was_too_bare(const Run& run) {
-    const Plan& plan = first_plan(run);
-    return !plan.failure.empty() && plan.coverage.fraction > 0.0;
-}
-
-// A cover that was not wound, and that fibres could join enough of.
-bool joins_enough(const Run& run) {
-    const Plan& plan = first_plan(run);
-    return was_too_bare(run) && plan.planner == Planner::Cover &&
-           can_cover(run) >= kLeastReach * plan.coverage.reachable;
-}
-
-bool stands(const Run& run) {
-    return run.planned() && run.passed();
-}
-
-bool turns_on_pins(const Job& job) {
-    return traits_of(job.mandrel.turn).reads_pins;
-}
 
 bool can_turn_on_pins(const Job& job) {
     const TurnKindTraits& pins = traits_of(TurnKind::Pins);
     return pins.why_not == nullptr || pins.why_not(job, false).empty();
-}
-
-// What a run has to cover more than one that asks less: each fibre is a stop of the machine, a
-// blend another shape than the file's.
-double worth_of(const Run& run, const Run& than) {
-    const Job& job = run.layers.front().setup.job;
-    const Job& other = than.layers.front().setup.job;
-    if (turns_on_pins(job) && !turns_on_pins(other)) {
-        return kWorthPins;
-    }
-    const bool asks_more =
-        first_plan(run).fibres > first_plan(than).fibres ||
-        job.mandrel.blend_mm.value_or(0.0) > other.mandrel.blend_mm.value_or(0.0);
-    return asks_more ? kWorthMore : 0.0;
-}
-
-bool is_better(const Run& run, const Run& than) {
-    if (stands(run) != stands(than)) {
-        return stands(run);
-    }
-    if (run.planned() != than.planned()) {
-        return run.planned();
-    }
-    const double worth = stands(run) ? worth_of(run, than) : 0.0;
-    return covered_share(run) > covered_share(than) + worth;
-}
-
-// A cover that is wound, covers most of what it can, and fails: courses that the machine refuses
-// in their places, which another choice of courses has elsewhere, leave wall bare or fail
-// themselves. What fails for bare wall alone does so by chance where little lacks.
-bool fails_by_chance(const Run& run) {
-    const Plan& plan = first_plan(run);
-    if (plan.planner != Planner::Cover || !run.walls.empty() || !run.planned() || run.passed()) {
-        return false;
-    }
-    const bool covers_alone = std::all_of(
-        run.checks.begin(), run.checks.end(),
-        [](const Check& check) { return check.ok || check.name == check_kind::kCoverage.name; });
-    const double bare = run.layers.front().setup.job.tolerance.bare;
-    return plan.coverage.fraction >= (covers_alone
-                                          ? least_covered(plan.coverage, bare) - kSeedsDiffer
-                                          : kCoversMost * plan.coverage.reachable);
-}
-
-// "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
-std::string tried_words(const Run& run) {
-    const Job& job = run.layers.front().setup.job;
-    const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
-                                      [](const Check& check) { return !check.ok; });
-    return "with " + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
-           (turns_on_pins(job) ? ", turns on pins" : "") + ", extensions of " +
-           fixed(job.mandrel.extension_mm, 0) + " mm and " +
-           (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
-                                       : std::string("no blend ")) +
-           percent(covered_share(run), 1) + " of the wall " +
-           (was_too_bare(run) ? "can be covered, and nothing is wound"
-                              : "is covered, and " + counted(failed, "check") +
-                                    (failed == 1 ? " fails" : " fail"));
-}
-
-// What the job has to say for the same run.
-std::string settings_words(const Job& job) {
-    std::string words = "--set fibres=" + std::to_string(job.fibres);
-    if (turns_on_pins(job)) {
-        words += " --set mandrel.turn=pins";
-    }
-    words += " --set mandrel.extension=";
-    append_shortest(words, job.mandrel.extension_mm);
-    if (job.mandrel.blend_mm > 0.0) {
-        words += " --set mandrel.blend=";
-        append_shortest(words, *job.mandrel.blend_mm);
-    }
-    return words;
 }
 
 // Runs of the main job on one file, of which the best stands.
