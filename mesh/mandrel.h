@@ -56,6 +56,13 @@ struct WallPiece {
     std::vector<std::int32_t> regions;                    ///< ids, sorted
 };
 
+/// A flat face that ends a leg and is no circle (mesh/segment/end_caps.h).
+struct AngularEnd {
+    std::int32_t region = -1;
+    double area_mm2 = 0.0;
+    Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero();  ///< mandrel frame
+};
+
 /// Where something is that a remark tells of.
 struct RemarkPlace {
     std::size_t remark = 0;                           ///< index in Mandrel::remarks
@@ -76,6 +83,7 @@ struct Mandrel {
     std::vector<std::int32_t> cad_face;  ///< per face of `surface`: index in cad_faces, -1: none
     TriangleSoup details;           ///< lettering and the like that was taken off, mandrel frame
     std::vector<WallPiece> pieces;  ///< largest first; one where all of it hangs together
+    std::vector<AngularEnd> angular_ends;  ///< none where the job names what is kept
     SpindleAxis axis;
     /// Mandrel-frame point in mm = linear * file point in file units + translation; the linear part
     /// is a rotation times `unit_mm`.

@@ -65,6 +65,9 @@ void require_sound_wall(const Mandrel& mandrel, bool turns_on_extensions) {
     if (mandrel.pieces.size() > 1) {
         throw InputError("mesh.pieces", mandrel.file, pieces_words(mandrel.pieces));
     }
+    if (turns_on_extensions && !mandrel.angular_ends.empty()) {
+        throw InputError("mesh.end_not_round", mandrel.file, angular_end_words(mandrel));
+    }
     const Rim* worst = worst_off_circle(mandrel);
     if (turns_on_extensions && worst != nullptr) {
         throw InputError("mesh.rim_not_round", mandrel.file, off_circle_words(mandrel, *worst));

@@ -16,8 +16,8 @@ namespace meshwind {
 /// \pre two at least, largest first
 [[nodiscard]] std::string pieces_words(const std::vector<WallPiece>& pieces);
 
-/// Refuses a wall in pieces, and rims that are no circles where fibre turns on cylinders beyond
-/// them. \throws InputError mesh.pieces, mesh.rim_not_round
+/// Refuses a wall in pieces, and ends that are no circles where fibre turns on cylinders beyond
+/// them. \throws InputError mesh.pieces, mesh.end_not_round, mesh.rim_not_round
 void require_sound_wall(const Mandrel& mandrel, bool turns_on_extensions);
 
 /// What of the wall is too sharp for the tow, and the key that fills it up; empty where hardly

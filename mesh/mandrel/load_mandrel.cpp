@@ -211,6 +211,30 @@ void check_wall(const std::vector<Region>& regions, const std::string& name) {
                          "{\"keep_regions\": [0]}, else export the part's outside");
 }
 
+// Largest first, in the frame of the whole.
+std::vector<AngularEnd> angular_ends_of(const TriangleSoup& whole, const Segmentation& s) {
+    std::vector<AngularEnd> ends;
+    for (const std::int32_t id : s.angular_ends) {
+        AngularEnd& end = ends.emplace_back(AngularEnd{.region = id});
+        for (std::size_t f = 0; f < whole.faces.size(); ++f) {
+            if (s.region[f] == id) {
+                const auto& [a, b, c] = whole.faces[f];
+                const Eigen::Vector3d& p = whole.points_mm[static_cast<std::size_t>(a)];
+                const Eigen::Vector3d& q = whole.points_mm[static_cast<std::size_t>(b)];
+                const Eigen::Vector3d& r = whole.points_mm[static_cast<std::size_t>(c)];
+                const double area_mm2 = 0.5 * (q - p).cross(r - p).norm();
+                end.area_mm2 += area_mm2;
+                end.middle_mm += area_mm2 / 3.0 * (p + q + r);
+            }
+        }
+        end.middle_mm /= end.area_mm2;
+    }
+    std::stable_sort(ends.begin(), ends.end(), [](const AngularEnd& a, const AngularEnd& b) {
+        return a.area_mm2 > b.area_mm2;
+    });
+    return ends;
+}
+
 std::vector<CadFace> moved(std::vector<CadFace> faces, const Eigen::Isometry3d& motion) {
     for (CadFace& face : faces) {
         face.axis_point_mm = motion * face.axis_point_mm;
@@ -315,6 +339,7 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     std::vector<Eigen::Vector3d> crumbs_mm;
     if (options.keep_regions.empty() && options.keep_faces.empty()) {
         crumbs_mm = leave_crumbs(mandrel.pieces, segmentation.regions);
+        mandrel.angular_ends = angular_ends_of(mandrel.whole, segmentation);
     }
     check_interrupt();
     std::optional<MandrelOptions::Axis> given = options.axis;
@@ -378,6 +403,9 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     }
     move(rims.holes_mm, frame.mandrel_from_file);
     move(crumbs_mm, frame.mandrel_from_file);
+    for (AngularEnd& end : mandrel.angular_ends) {
+        end.middle_mm = frame.mandrel_from_file * end.middle_mm;
+    }
     add_remarks(mandrel, rims.holes_mm, crumbs_mm);
     if (cad != nullptr) {
         add_cad_remarks(*cad, mandrel);

@@ -78,6 +78,10 @@ void add_rim_remarks(Mandrel& mandrel) {
                        places_mm);
         }
     }
+    if (!mandrel.angular_ends.empty()) {
+        const std::array places_mm{mandrel.angular_ends.front().middle_mm};
+        add_remark(mandrel, angular_end_words(mandrel) + "; the main job refuses it", places_mm);
+    }
     for (const Rim& rim : mandrel.rims) {
         if (rim.cut_off_mm > 0.0) {
             const std::array places_mm{

@@ -46,4 +46,14 @@ std::string off_circle_words(const Mandrel& mandrel, const Rim& rim) {
                   "it or export the whole part");
 }
 
+std::string angular_end_words(const Mandrel& mandrel) {
+    const AngularEnd& end = mandrel.angular_ends.front();
+    const Eigen::Vector3d& p = end.middle_mm;
+    return "the flat face around (" + fixed(p.x(), 1) + ", " + fixed(p.y(), 1) + ", " +
+           fixed(p.z(), 1) + "), " + fixed(end.area_mm2 / 100.0, 1) +
+           " cm2, ends a leg that is not round; take the leg off where it is round in the "
+           "modeller, or name what is to be wound, with region " +
+           std::to_string(end.region) + " as it is: \"mandrel\": {\"keep_regions\": [...]}";
+}
+
 }  // namespace meshwind

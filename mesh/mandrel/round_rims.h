@@ -1,4 +1,4 @@
-/// Rims that are no circles: nothing turns round on a cylinder beyond them.
+/// Ends that are no circles: nothing turns round on a cylinder beyond them.
 #pragma once
 
 #include <string>
@@ -21,5 +21,8 @@ inline constexpr double kMostOffCircle = 0.05;
 
 /// Which rim, where, how far off, what may be the cause and what mends it. \pre rim of the mandrel
 [[nodiscard]] std::string off_circle_words(const Mandrel& mandrel, const Rim& rim);
+
+/// Where the largest of a part's ends is that are angular, and what mends it. \pre there is one
+[[nodiscard]] std::string angular_end_words(const Mandrel& mandrel);
 
 }  // namespace meshwind

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/index.h"
@@ -24,6 +25,12 @@ constexpr double kCapRadiusShare = 0.25;
 // Share of the part's area that an end's outline encloses at least: that of a pipe 5000 radii long.
 // What is smaller is a sliver.
 constexpr double kCapAreaShare = 1e-4;
+
+// The end of an angular leg against pads on a wall, by area relative to the smallest end cap.
+constexpr double kAngularShare = 0.5;
+
+// A plateau without a hole encloses no more than its own area.
+constexpr double kDisc = 1.01;
 
 // Area of the faces in the plane through the region's median height along its mean normal.
 double planar_area(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& normals,
@@ -187,7 +194,7 @@ void mark_end_caps(const TriangleSoup& soup, const std::vector<std::int32_t>& fl
     }
     std::vector<char> cap(facts.size(), 0);
     for (std::size_t id = 0; id < facts.size(); ++id) {
-        const bool disc = facts[id].outline_mm2 < 1.01 * facts[id].area_mm2;
+        const bool disc = facts[id].outline_mm2 < kDisc * facts[id].area_mm2;
         const bool flat_of_box =
             disc &&
             std::any_of(facts[id].beside.begin(), facts[id].beside.end(), [&](std::int32_t other) {
@@ -203,6 +210,30 @@ void mark_end_caps(const TriangleSoup& soup, const std::vector<std::int32_t>& fl
             s.regions[id].kind = RegionKind::EndCap;
         }
     }
+}
+
+std::vector<std::int32_t> angular_ends(const TriangleSoup& soup, const Segmentation& s,
+                                       std::vector<RegionFacts> facts) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Region& region : s.regions) {
+        if (region.kind == RegionKind::EndCap) {
+            smallest = std::min(smallest, facts[at(region.id)].outline_mm2);
+        }
+    }
+    std::vector<std::int32_t> ends;
+    for (const Region& region : s.regions) {
+        RegionFacts& r = facts[at(region.id)];
+        if (!region.kept || !(r.area_mm2 >= kAngularShare * smallest) || !is_plateau(r) ||
+            !std::all_of(r.beside.begin(), r.beside.end(),
+                         [&](std::int32_t other) { return is_plateau(facts[at(other)]); })) {
+            continue;
+        }
+        trace_outline(soup, s, region.id, r);
+        if (r.outline_mm2 < kDisc * r.area_mm2) {
+            ends.push_back(region.id);
+        }
+    }
+    return ends;
 }
 
 }  // namespace meshwind

@@ -43,4 +43,11 @@ void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t
 void mark_end_caps(const TriangleSoup& soup, const std::vector<std::int32_t>& flat_end,
                    Segmentation& s, std::vector<RegionFacts>& facts);
 
+/// Regions that end a leg of angular section, as the end of a square bar does: plateaus of the wall
+/// without a hole, beside nothing but other plateaus, and at least half as large as the smallest
+/// end cap. None where there is no end cap. \param facts with the outlines of all end caps
+[[nodiscard]] std::vector<std::int32_t> angular_ends(const TriangleSoup& soup,
+                                                     const Segmentation& s,
+                                                     std::vector<RegionFacts> facts);
+
 }  // namespace meshwind

@@ -518,6 +518,7 @@ Segmentation segment(const TriangleSoup& soup) {
         mark_bores(s, facts, total_mm2);
     }
     classify(s, facts);
+    s.angular_ends = angular_ends(soup, s, std::move(facts));
     return s;
 }
 

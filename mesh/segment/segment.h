@@ -15,6 +15,7 @@ struct Segmentation {
     std::vector<std::int32_t> region;                  ///< per face
     std::vector<std::array<std::uint8_t, 3>> feature;  ///< per face and edge, see feature_edges.h
     std::vector<std::array<std::int32_t, 3>> neighbours;  ///< per face and edge, see edge_table.h
+    std::vector<std::int32_t> angular_ends;               ///< region ids, see end_caps.h
 };
 
 /// Regions are bounded by feature edges, and by flat ends (flat_ends.h). End caps: see end_caps.h.

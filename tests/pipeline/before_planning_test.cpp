@@ -144,6 +144,61 @@ TEST(BeforePlanning, ARimOffItsCircleIsRefusedWithItsPlace) {
     EXPECT_EQ(outcome(shipped("six_axis"), cut_off_square(0.3)).code, "");
 }
 
+// A rod of radius 20 that goes over into a bar of square section, or of a round one.
+TriangleSoup rod_with_bar(double half_width_mm, bool square) {
+    constexpr int kAround = 64;  // with points in the corners
+    TriangleSoup soup;
+    const auto ring = [&](double z, double radius, bool angular) {
+        for (int k = 0; k < kAround; ++k) {
+            const double angle = 2.0 * kPi * k / kAround;
+            const Eigen::Vector2d u(std::cos(angle), std::sin(angle));
+            const double reach = angular ? radius / u.cwiseAbs().maxCoeff() : radius;
+            soup.points_mm.emplace_back(reach * u.x(), reach * u.y(), z);
+        }
+    };
+    ring(-80.0, 20.0, false);
+    ring(0.0, 20.0, false);
+    ring(0.0, half_width_mm, square);
+    ring(60.0, half_width_mm, square);
+    soup.points_mm.emplace_back(0.0, 0.0, -80.0);
+    soup.points_mm.emplace_back(0.0, 0.0, 60.0);
+    for (int k = 0; k < kAround; ++k) {
+        const int next = (k + 1) % kAround;
+        for (int r = 0; r < 3; ++r) {
+            const int low = r * kAround;
+            const int high = low + kAround;
+            soup.faces.push_back({low + k, low + next, high + next});
+            soup.faces.push_back({high + next, high + k, low + k});
+        }
+        soup.faces.push_back({4 * kAround, next, k});
+        soup.faces.push_back({4 * kAround + 1, 3 * kAround + k, 3 * kAround + next});
+    }
+    return soup;
+}
+
+TEST(BeforePlanning, ALegOfSquareSectionIsRefusedWithItsPlace) {
+    const Mandrel bar = build_mandrel(rod_with_bar(25.0, true), "bar.stl");
+    const Outcome found = outcome(shipped("six_axis"), bar);
+    EXPECT_EQ(found.code, "mesh.end_not_round");
+    ASSERT_EQ(bar.angular_ends.size(), 1U);
+    const AngularEnd& end = bar.angular_ends.front();
+    EXPECT_NEAR(end.area_mm2, 50.0 * 50.0, 1e-6);
+    const Eigen::Vector3d in_file = bar.file_to_mandrel.inverse() * end.middle_mm;
+    EXPECT_LT((in_file - Eigen::Vector3d(0.0, 0.0, 60.0)).norm(), 1e-6);
+    EXPECT_TRUE(tells(found.words, "region " + std::to_string(end.region))) << found.words;
+
+    MandrelOptions named;
+    for (const Region& region : bar.regions) {
+        if (region.kept) {
+            named.keep_regions.push_back(region.id);
+        }
+    }
+    EXPECT_TRUE(build_mandrel(rod_with_bar(25.0, true), "bar.stl", named).angular_ends.empty());
+    // A round bar ends in a circle, and a small square one is a pad.
+    EXPECT_TRUE(build_mandrel(rod_with_bar(25.0, false), "bar.stl").angular_ends.empty());
+    EXPECT_TRUE(build_mandrel(rod_with_bar(8.0, true), "bar.stl").angular_ends.empty());
+}
+
 // Two pipes that do not touch: nothing goes from one to the other. A crumb is left out instead.
 TEST(BeforePlanning, AWallInPiecesIsRefusedWithTheirPlaces) {
     const auto pipe_at = [](double radius, double length, double x) {
