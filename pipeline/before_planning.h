@@ -21,7 +21,7 @@ struct PlannedTask {
     std::filesystem::path job_file;      ///< empty: there is none
 };
 
-/// Refuses, in a fraction of a second, what no plan can change: a wall in pieces, a rim that is no
+/// Refuses, in a fraction of a second, what no plan can change: a wall in pieces, an end that is no
 /// circle, a part beyond the travel of the axes or in the way of a body of the machine, a tow that
 /// is no band on it, an extension on which nothing can be turned round. All rules are necessary
 /// conditions: what they refuse could not be wound, and what is near the limit is planned
@@ -32,8 +32,8 @@ struct PlannedTask {
 /// point therefore never gets higher or further out than the eye can; and each friction turn runs
 /// around its rim once as a hoop, with the eye at the hoop's height, at least the shortest free
 /// fibre away, and the head as far from the extension as the clearance asks.
-/// \throws InputError mesh.pieces, mesh.rim_not_round, plan.travel, plan.body, plan.tow_width,
-/// plan.no_turn, plan.free_length, plan.amount
+/// \throws InputError mesh.pieces, mesh.end_not_round, mesh.rim_not_round, plan.travel, plan.body,
+/// plan.tow_width, plan.no_turn, plan.free_length, plan.amount
 void require_can_be_wound(const PlannedTask& task);
 
 /// One line each: what the mandrel has to tell, and what may be meant otherwise but can be wound.

@@ -201,7 +201,7 @@ class Commands(program.ProgramTest):
                            "-o", out, "--timing")
         self.assertIn("holds:", result.stdout)
         self.assertEqual(sorted(f.name for f in out.iterdir()),
-                         ["study.csv", "study.json", "study.svg", "timing.csv"])
+                         ["study.csv", "study.html", "study.json", "study.svg", "timing.csv"])
         with open(out / "study.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual({r["mandrel"] for r in rows}, {"cylinder-40", "cylinder-60", "torus"})
