@@ -88,6 +88,7 @@ void print_quantity(std::ostream& out, const StudyOutcome& outcome, Quantity qua
     }
 }
 
+// All that is the same from run to run.
 void print_findings(std::ostream& out, const StudyOutcome& outcome) {
     for (const Quantity quantity : {Quantity::PathEnd, Quantity::WindingAngle, Quantity::Slip,
                                     Quantity::SpindleAngle, Quantity::EyePoint}) {
@@ -95,11 +96,6 @@ void print_findings(std::ostream& out, const StudyOutcome& outcome) {
     }
     for (const std::string& remark : outcome.study.remarks) {
         out << remark << '\n';
-    }
-    for (const MeshSizeTiming& t : outcome.study.timing) {
-        out << t.mandrel << ", " << t.method << ", lambda " << fixed(t.slip_ratio, 2)
-            << ", edges of " << fixed(t.edge_mm, 2) << " mm: " << fixed(t.ns_per_crossing, 0)
-            << " ns per crossing, " << fixed(t.ms_per_metre, 3) << " ms per metre\n";
     }
     out << "advice of Fu and others (2009):\n";
     for (const Advice& advice : judged_advice(outcome)) {
@@ -165,6 +161,11 @@ std::string study_page(const StudyOutcome& outcome) {
 void print_study(std::ostream& out, const StudyOutcome& outcome,
                  const std::filesystem::path& folder) {
     print_findings(out, outcome);
+    for (const MeshSizeTiming& t : outcome.study.timing) {
+        out << t.mandrel << ", " << t.method << ", lambda " << fixed(t.slip_ratio, 2)
+            << ", edges of " << fixed(t.edge_mm, 2) << " mm: " << fixed(t.ns_per_crossing, 0)
+            << " ns per crossing, " << fixed(t.ms_per_metre, 3) << " ms per metre\n";
+    }
     out << "written to " << folder.string() << ": study.html, study.csv, study.json, study.svg"
         << (outcome.options.timing ? ", timing.csv" : "") << '\n';
 }

@@ -230,12 +230,23 @@ private:
         }
         for (const Look& look : looks) {
             if (look.share > before && look.share >= most - kWorthMore) {
+                if (look.job.mandrel.blend_mm == 0.0) {
+                    forget_put_off(job.mandrel.turn);
+                }
                 run(look.job, Depth::WhereItCovers);
                 if (done()) {
                     return;
                 }
             }
         }
+    }
+
+    // What is wound now need not be at the end.
+    void forget_put_off(TurnKind turn) {
+        put_off_.erase(
+            std::remove_if(put_off_.begin(), put_off_.end(),
+                           [&](const Look& look) { return look.job.mandrel.turn == turn; }),
+            put_off_.end());
     }
 
     [[nodiscard]] bool done() const { return stands(*best_); }

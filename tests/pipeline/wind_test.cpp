@@ -67,6 +67,18 @@ TEST(Wind, DoesNotWindACoverThatIsTooBare) {
     EXPECT_TRUE(run.layers.front().programs.empty());
 }
 
+// What fibres join is told apart from what single courses reach: the limit is a share of the wall.
+TEST(Wind, DoesNotWindACoverThatFibresJoinTooLittleOf) {
+    for (const double least : {0.5, 1.01}) {
+        const auto run = wind(small_pipe(), shipped("six_axis"), quick_job(LayerKind::Cover),
+                              {.least_joined = least});
+        const Plan& plan = run.layers.front().plan;
+        EXPECT_EQ(run.planned(), least < 1.0);
+        EXPECT_EQ(plan.pieces.empty(), least > 1.0);
+        EXPECT_GT(plan.coverage.joinable, 0.5);
+    }
+}
+
 TEST(Wind, OnlyTheMainJobChoosesABlend) {
     Job job = quick_job();
     job.mandrel.blend_mm.reset();

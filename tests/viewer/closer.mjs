@@ -29,8 +29,8 @@ async function places(page, across = 12, down = 8) {
 }
 
 /** The part alone, standing still. */
-async function openPart(browser, options) {
-    const page = await open(browser, file, options);
+async function openPart(browser) {
+    const page = await open(browser, file);
     await page.click('#on-mandrel');
     await page.uncheck('#show-machine');
     await page.waitForTimeout(300);
