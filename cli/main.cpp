@@ -165,9 +165,9 @@ void add_commands(Commands& commands) {
     commands.add<InspectArguments>(
         "inspect", "what is read from a mandrel file: units, repairs, regions, rims, axis",
         kInspectHelp, add_inspect, run_inspect);
-    commands.add<MakeRequest>("make",
-                              "write the mesh of a parametric mandrel: pipe, vessel, elbow, tee",
-                              kMakeHelp, add_make, run_make_command);
+    commands.add<MakeRequest>(
+        "make", "write the mesh of a parametric mandrel: pipe, vessel, elbow, tee, wye, cross",
+        kMakeHelp, add_make, run_make_command);
     commands.add<TraceArguments>("trace", "one fibre path over a mandrel, as a table", kTraceHelp,
                                  add_trace, run_trace_command);
     commands.add<NoArguments>(

@@ -48,6 +48,11 @@ struct BlendArc {
 /// tests/mesh/shapes/make_tee_test.cpp.
 [[nodiscard]] ShapeFoot tee_foot(const TeeShape& shape, const Eigen::Vector3d& point_mm);
 
+/// The same of a wye and of a cross; their stem and one half of the run are the Run, their other
+/// pipes Branches; tests/mesh/shapes/make_star_test.cpp.
+[[nodiscard]] ShapeFoot wye_foot(const WyeShape& shape, const Eigen::Vector3d& point_mm);
+[[nodiscard]] ShapeFoot cross_foot(const CrossShape& shape, const Eigen::Vector3d& point_mm);
+
 /// Nearest point of the other shapes. Two pieces equally near (on a bisector of a sharp ring): the
 /// lower. \pre shape is valid; the point is not on the axis or a centre line Accuracy: 1e-9 mm in
 /// distance on parts of some 100 mm; tests/mesh/shapes/analytic_test.cpp.

@@ -8,6 +8,7 @@
 #include "mesh/shapes/make_checks.h"
 #include "mesh/shapes/make_parts.h"
 #include "mesh/shapes/make_walls.h"
+#include "mesh/shapes/pipe_star.h"
 #include "mesh/shapes/remesh.h"
 
 namespace meshwind {
@@ -69,6 +70,22 @@ double least_size(const TeeShape& shape) {
     return std::min(0.5 * shape.branch_radius_mm, 0.5 * blend_to_rim);
 }
 
+double least_size(const PipeStar& star) {
+    double least = 0.5 * star.pipe_radius_mm;
+    for (std::size_t k = 0; k < star.pipes.size(); ++k) {
+        least = std::min(least, 0.5 * (star.pipes[k].length_mm - star.blend_end_mm(k)));
+    }
+    return least;
+}
+
+double least_size(const WyeShape& shape) {
+    return least_size(star_of(shape));
+}
+
+double least_size(const CrossShape& shape) {
+    return least_size(star_of(shape));
+}
+
 // Rough area of the outer surface, enough to foresee the number of triangles.
 double rough_area(const CylinderShape& shape) {
     return 2.0 * kPi * shape.radius_mm * shape.length_mm;
@@ -114,6 +131,14 @@ double rough_area(const TeeShape& shape) {
     return 2.0 * kPi *
            (shape.run_radius_mm * shape.run_length_mm +
             shape.branch_radius_mm * shape.branch_length_mm);
+}
+
+double rough_area(const WyeShape& shape) {
+    return 2.0 * kPi * shape.pipe_radius_mm * (shape.stem_length_mm + 2.0 * shape.arm_length_mm);
+}
+
+double rough_area(const CrossShape& shape) {
+    return 2.0 * kPi * shape.pipe_radius_mm * (shape.run_length_mm + 2.0 * shape.branch_length_mm);
 }
 
 template <class Shape>
@@ -189,6 +214,18 @@ TeeShape inside(TeeShape shape, double wall) {
     return shape;
 }
 
+WyeShape inside(WyeShape shape, double wall) {
+    shape.pipe_radius_mm -= wall;
+    shape.blend_radius_mm += wall;
+    return shape;
+}
+
+CrossShape inside(CrossShape shape, double wall) {
+    shape.pipe_radius_mm -= wall;
+    shape.blend_radius_mm += wall;
+    return shape;
+}
+
 ShapeFoot foot(const ElbowShape& shape, const Eigen::Vector3d& p) {
     return elbow_foot(shape, p);
 }
@@ -199,6 +236,10 @@ ShapeFoot foot(const TorusShape& shape, const Eigen::Vector3d& p) {
 
 ShapeFoot foot(const TeeShape& shape, const Eigen::Vector3d& p) {
     return tee_foot(shape, p);
+}
+
+ShapeFoot foot(const PipeStar& star, const Eigen::Vector3d& p) {
+    return star_foot(star, p);
 }
 
 ShapeFoot foot(const Profile& profile, const Eigen::Vector3d& p) {
@@ -219,6 +260,8 @@ template <class Shape>
 TriangleSoup wall_with(const Shape& shape, const MakeOptions& options, std::uint64_t seed) {
     if constexpr (requires { profile_of(shape); }) {
         return wall_on(profile_of(shape), options, seed);
+    } else if constexpr (requires { star_of(shape); }) {
+        return wall_on(star_of(shape), options, seed);
     } else {
         return wall_on(shape, options, seed);
     }
@@ -266,6 +309,14 @@ TriangleSoup make_elbow(const ElbowShape& shape, const MakeOptions& options) {
 }
 
 TriangleSoup make_tee(const TeeShape& shape, const MakeOptions& options) {
+    return make(shape, options);
+}
+
+TriangleSoup make_wye(const WyeShape& shape, const MakeOptions& options) {
+    return make(shape, options);
+}
+
+TriangleSoup make_cross(const CrossShape& shape, const MakeOptions& options) {
     return make(shape, options);
 }
 

@@ -35,6 +35,8 @@ struct MakeOptions {
                                            const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_elbow(const ElbowShape& shape, const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_tee(const TeeShape& shape, const MakeOptions& options = {});
+[[nodiscard]] TriangleSoup make_wye(const WyeShape& shape, const MakeOptions& options = {});
+[[nodiscard]] TriangleSoup make_cross(const CrossShape& shape, const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_combination(const CombinationShape& shape,
                                             const MakeOptions& options = {});
 [[nodiscard]] TriangleSoup make_torus(const TorusShape& shape, const MakeOptions& options = {});

@@ -20,6 +20,8 @@ constexpr ElbowShape kElbow;
 // The frame is an elbow with long legs, as bicycle and window frames have.
 constexpr ElbowShape kFrame{20.0, 60.0, 0.5 * kPi, 300.0, 300.0};
 constexpr TeeShape kTee;
+constexpr WyeShape kWye;
+constexpr CrossShape kCross;
 constexpr CombinationShape kCombination;
 constexpr TorusShape kTorus;
 constexpr EllipsoidShape kEllipsoid;
@@ -79,6 +81,25 @@ constexpr std::array kTeeTable{
                   "from the run's axis to the branch's end"},
     MakeParameter{"lean", kAngle, kTee.lean_rad,
                   "how far the branch leans, from square towards one end of the run"},
+};
+constexpr std::array kWyeTable{
+    MakeParameter{"pipe-radius", kLength, kWye.pipe_radius_mm, "radius of the three pipes"},
+    MakeParameter{"blend-radius", kLength, kWye.blend_radius_mm,
+                  "radius of the ball that rounds the joints"},
+    MakeParameter{"stem-length", kLength, kWye.stem_length_mm,
+                  "from where the axes meet to the stem's end"},
+    MakeParameter{"arm-length", kLength, kWye.arm_length_mm,
+                  "from where the axes meet to each arm's end"},
+    MakeParameter{"angle", kAngle, kWye.angle_rad, "between the arms"},
+};
+constexpr std::array kCrossTable{
+    MakeParameter{"pipe-radius", kLength, kCross.pipe_radius_mm, "radius of both pipes"},
+    MakeParameter{"blend-radius", kLength, kCross.blend_radius_mm,
+                  "radius of the ball that rounds the joints"},
+    MakeParameter{"run-length", kLength, kCross.run_length_mm,
+                  "whole length of the pipe along the spindle"},
+    MakeParameter{"branch-length", kLength, kCross.branch_length_mm,
+                  "from the run's axis to each branch's end"},
 };
 constexpr std::array kCombinationTable{
     MakeParameter{"radius1", kLength, kCombination.radius1_mm, "radius of the first cylinder"},
@@ -142,6 +163,10 @@ constexpr std::array kKinds{
     row<make_elbow, elbow_foot>(kElbow, "elbow", "pipe bend with straight legs", kElbowTable),
     row<make_tee, tee_foot>(
         kTee, "tee", "pipe with a branch, square or leaning, and a rolling-ball blend", kTeeTable),
+    row<make_wye, wye_foot>(kWye, "wye", "stem and two arms of equal pipes, blended as the tee",
+                            kWyeTable),
+    row<make_cross, cross_foot>(kCross, "cross", "two equal pipes that cross, blended as the tee",
+                                kCrossTable),
     row<make_combination, combination_foot>(kCombination, "combination",
                                             "cylinder, cone, cylinder and dome in a row",
                                             kCombinationTable),

@@ -37,7 +37,8 @@ struct MakeKind {
 /// Values by parameter name, mm, rad or without unit; what is missing takes its default.
 using MakeValues = std::map<std::string, double, std::less<>>;
 
-/// cylinder, cone, vessel, isotensoid, elbow, tee, combination, frame, torus, ellipsoid.
+/// cylinder, cone, vessel, isotensoid, elbow, tee, wye, cross, combination, frame, torus,
+/// ellipsoid.
 [[nodiscard]] std::span<const MakeKind> make_kinds();
 
 /// \throws InputError make.unknown_kind, make.unknown_parameter; what the kind's make function

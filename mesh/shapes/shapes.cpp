@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <boost/math/tools/roots.hpp>
 
 #include "core/units.h"
 #include "mesh/shapes/analytic.h"
 #include "mesh/shapes/make_checks.h"
+#include "mesh/shapes/pipe_star.h"
 
 namespace meshwind {
 namespace {
@@ -57,6 +59,27 @@ double fold(const TeeShape& shape) {
         }
     }
     return worst;
+}
+
+// A blend in a crotch between equal pipes curves along the crotch by pipe and ball together times
+// the sine of half the angle between them.
+// \param lengths names of the pipes' lengths
+void check_star(const PipeStar& star, std::initializer_list<const char*> lengths) {
+    double narrowest = kPi;
+    for (std::size_t k = 0; k < star.pipes.size(); ++k) {
+        narrowest = std::min(narrowest, star.angle_after(k));
+    }
+    const double share = kNearFolding * std::sin(0.5 * narrowest);
+    const double limit = share / (1.0 - share) * star.pipe_radius_mm;
+    require(star.blend_radius_mm <= limit, "make.blend_too_large", "blend-radius",
+            star.blend_radius_mm, "at most, lest the blend fold,", limit);
+    std::size_t k = 0;
+    for (const char* const length : lengths) {
+        const double end = star.blend_end_mm(k);
+        require(star.pipes[k].length_mm > end, "make.leg_too_short", length,
+                star.pipes[k].length_mm, "more than what the blend takes of it,", end);
+        ++k;
+    }
 }
 
 }  // namespace
@@ -124,6 +147,29 @@ void ElbowShape::validate() const {
             "more than the pipe radius", pipe_radius_mm);
     require(angle_rad <= kPi, "make.angle_too_large", "angle", deg_from_rad(angle_rad),
             "at most, in degrees,", 180.0);
+}
+
+void WyeShape::validate() const {
+    require_positive("pipe-radius", pipe_radius_mm);
+    require_positive("blend-radius", blend_radius_mm);
+    require_positive("stem-length", stem_length_mm);
+    require_positive("arm-length", arm_length_mm);
+    require_positive("angle", angle_rad);
+    // The arms lie against each other below the one, and one is the other's run beyond the other.
+    require(angle_rad >= kPi / 6.0, "make.arms_angle", "angle", deg_from_rad(angle_rad),
+            "at least, in degrees,", 30.0);
+    require(angle_rad <= 5.0 * kPi / 6.0, "make.arms_angle", "angle", deg_from_rad(angle_rad),
+            "at most, in degrees,", 150.0);
+    check_star(star_of(*this), {"stem-length", "arm-length", "arm-length"});
+}
+
+void CrossShape::validate() const {
+    require_positive("pipe-radius", pipe_radius_mm);
+    require_positive("blend-radius", blend_radius_mm);
+    require_positive("run-length", run_length_mm);
+    require_positive("branch-length", branch_length_mm);
+    const char* const half = "half of run-length";
+    check_star(star_of(*this), {half, "branch-length", half, "branch-length"});
 }
 
 void CombinationShape::validate() const {

@@ -132,4 +132,32 @@ struct TeeShape {
     void validate() const;
 };
 
+/// Three equal pipes in one plane, joined by a rolling-ball blend (see the tee): the stem along z
+/// below the point where the axes meet, two arms above it, at either side of the z axis in the
+/// plane of x and z. The blend vanishes in two points, where the crotches meet. Three rims.
+struct WyeShape {
+    double pipe_radius_mm = 40.0;
+    double blend_radius_mm = 15.0;  ///< of the ball
+    double stem_length_mm = 200.0;  ///< from the meeting point to the stem's end
+    double arm_length_mm = 200.0;   ///< the same of both arms
+    double angle_rad = 0.5 * kPi;   ///< between the arms, pi / 6 to 5 pi / 6
+
+    /// \throws InputError make.not_positive, make.arms_angle, make.blend_too_large,
+    /// make.leg_too_short
+    void validate() const;
+};
+
+/// Two equal pipes that cross square in one point, joined by a rolling-ball blend (see the tee):
+/// the run along z, centred, and branches along +x and -x. The blend vanishes in two points. Four
+/// rims.
+struct CrossShape {
+    double pipe_radius_mm = 40.0;
+    double blend_radius_mm = 15.0;    ///< of the ball
+    double run_length_mm = 400.0;     ///< whole length
+    double branch_length_mm = 200.0;  ///< from the run's axis to each branch's end
+
+    /// \throws InputError make.not_positive, make.blend_too_large, make.leg_too_short
+    void validate() const;
+};
+
 }  // namespace meshwind

@@ -34,6 +34,19 @@ double worth_of(const Run& run, const Run& than) {
     return asks_more ? kWorthMore : 0.0;
 }
 
+// "2 checks fail: slip, laydown"
+std::string failed_words(const std::vector<Check>& checks) {
+    std::size_t failed = 0;
+    std::string names;
+    for (const Check& check : checks) {
+        if (!check.ok) {
+            ++failed;
+            names.append(names.empty() ? ": " : ", ").append(check.name);
+        }
+    }
+    return counted(failed, "check") + (failed == 1 ? " fails" : " fail") + names;
+}
+
 }  // namespace
 
 const Plan& first_plan(const Run& run) {
@@ -99,19 +112,18 @@ bool fails_by_chance(const Run& run) {
                                           : kCoversMost * plan.coverage.reachable);
 }
 
-std::string tried_words(const Run& run) {
+std::string tried_words(const Run& run, std::uint64_t usual_seed) {
     const Job& job = run.layers.front().setup.job;
-    const auto failed = std::count_if(run.checks.begin(), run.checks.end(),
-                                      [](const Check& check) { return !check.ok; });
-    return "with " + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
+    const std::string seed =
+        run.seed == usual_seed ? "" : "seed " + std::to_string(run.seed) + ", ";
+    return "with " + seed + std::to_string(job.fibres) + (job.fibres == 1 ? " fibre" : " fibres") +
            (turns_on_pins(job) ? ", turns on pins" : "") + ", extensions of " +
            fixed(job.mandrel.extension_mm, 0) + " mm and " +
            (job.mandrel.blend_mm > 0.0 ? "a blend of " + fixed(*job.mandrel.blend_mm, 1) + " mm "
                                        : std::string("no blend ")) +
            percent(covered_share(run), 1) + " of the wall " +
            (was_too_bare(run) ? "can be covered, and nothing is wound"
-                              : "is covered, and " + counted(failed, "check") +
-                                    (failed == 1 ? " fails" : " fail"));
+                              : "is covered, and " + failed_words(run.checks));
 }
 
 std::string settings_words(const Job& job) {

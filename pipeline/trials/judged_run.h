@@ -1,6 +1,7 @@
 /// What a run of the main job came to, and which of two is better.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "pipeline/plan_layer.h"
@@ -43,8 +44,10 @@ inline constexpr double kLeastReach = kCoveredShare - 0.02;
 /// themselves. What fails for bare wall alone does so by chance where little lacks.
 [[nodiscard]] bool fails_by_chance(const Run& run);
 
-/// "with 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is covered, ..."
-[[nodiscard]] std::string tried_words(const Run& run);
+/// "with seed 3, 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is
+/// covered, and 1 check fails: slip"
+/// \param usual_seed with which no seed is told
+[[nodiscard]] std::string tried_words(const Run& run, std::uint64_t usual_seed);
 
 /// What the job has to say for the same run.
 [[nodiscard]] std::string settings_words(const Job& job);

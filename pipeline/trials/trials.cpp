@@ -334,9 +334,7 @@ private:
     }
 
     void take(Run&& run) {
-        tried_.push_back(tried_words(run) + (run.seed == options_.context.seed
-                                                 ? ""
-                                                 : ", with seed " + std::to_string(run.seed)));
+        tried_.push_back(tried_words(run, options_.context.seed));
         next_ = room_for(run);
         last_planner_ = first_plan(run).planner;
         last_share_ = was_too_bare(run) ? covered_share(run) : 0.0;
