@@ -1,6 +1,7 @@
 /// The ways that continuous fibres take among the nodes (see balance.h) of a library.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -31,6 +32,25 @@ struct FibreRoute {
     /// True when a course may lead from a node to another as often as there are fibres, too.
     [[nodiscard]] bool leads(const NodePair& nodes) const {
         return stage[nodes.first] >= 0 && stage[nodes.first] <= stage[nodes.second];
+    }
+};
+
+/// The routes of a plan's fibres.
+struct PlanRoutes {
+    std::vector<FibreRoute> routes;  ///< of each fibre that needs one of its own
+    int most_fibres = 1;             ///< that the plan may take
+
+    [[nodiscard]] int fibres_needed() const { return std::max(1, static_cast<int>(routes.size())); }
+    /// Fibres that no route needs may go from stage to stage by other courses than the links.
+    [[nodiscard]] bool has_fibres_to_spare() const { return most_fibres > fibres_needed(); }
+    [[nodiscard]] int fibres() const {
+        return has_fibres_to_spare() ? most_fibres : fibres_needed();
+    }
+    /// True when courses may lead from a node to another.
+    [[nodiscard]] bool hold(const NodePair& nodes) const {
+        return std::any_of(routes.begin(), routes.end(), [&](const FibreRoute& route) {
+            return has_fibres_to_spare() ? route.leads(nodes) : route.holds(nodes);
+        });
     }
 };
 

@@ -162,6 +162,49 @@ std::vector<std::pair<std::size_t, Rejection>> CourseProver::wind_all(
     return refused;
 }
 
+ProvenLibrary::ProvenLibrary(Library library, PlanEffort& effort)
+    : library_(std::move(library)),
+      size_(library_.members.size()),
+      allowed_(size_, 1),
+      rejection_(size_, Rejection::None),
+      effort_(effort) {}
+
+void ProvenLibrary::strike_off(std::size_t member, Rejection reason) {
+    allowed_[member] = 0;
+    rejection_[member] = reason;
+    ++effort_.rejections[static_cast<std::size_t>(reason)];
+    effort_.rejected_courses += reason == Rejection::Apart ? 0 : 1;
+}
+
+void ProvenLibrary::strike_off_all(Rejection reason) {
+    allowed_.assign(size_, 0);
+    rejection_.assign(size_, reason);
+}
+
+void ProvenLibrary::note_refused(std::vector<std::int32_t> footprint, Rejection reason) {
+    const std::lock_guard lock(refused_mutex_);
+    refused_.emplace_back(std::move(footprint), reason);
+    ++effort_.rejections[static_cast<std::size_t>(reason)];
+    ++effort_.rejected_courses;
+}
+
+void ProvenLibrary::refuse(const PlacedCourse& course, Rejection reason) {
+    if (course.of_library < 0) {
+        note_refused(course.member.footprint, reason);
+    } else if (allowed_[at(course.of_library)] != 0) {
+        strike_off(at(course.of_library), reason);
+    }
+}
+
+void ProvenLibrary::append_refused() {
+    library_.members.resize(rejection_.size());
+    for (auto& [footprint, reason] : refused_) {
+        library_.members.emplace_back().footprint = std::move(footprint);
+        rejection_.push_back(reason);
+    }
+    refused_.clear();
+}
+
 ProvenWays prove_ways(std::span<const Member> members, const Ways& ways,
                       const std::function<Rejection(PlacedCourse&)>& prove,
                       const std::function<void(double share)>& progress) {

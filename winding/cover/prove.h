@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,6 +52,59 @@ public:
 private:
     const CourseRules& rules_;
     const Windability* machine_;
+};
+
+/// The library with the last word on its members, and courses besides that were refused. What is
+/// refused is counted in the plan's effort.
+class ProvenLibrary {
+public:
+    /// \param effort of the plan; must outlive it
+    ProvenLibrary(Library library, PlanEffort& effort);
+
+    [[nodiscard]] const Library& library() const { return library_; }
+    /// Of the library itself.
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::span<Member> members() { return std::span(library_.members).first(size_); }
+    /// With the courses of the plan behind those of the library, where gather() put them.
+    [[nodiscard]] std::vector<Member>& members_and_placed() { return library_.members; }
+    /// Per sample.
+    [[nodiscard]] std::vector<char>& reached() { return library_.reached; }
+    /// Per member of the library: whether it may be laid.
+    [[nodiscard]] std::span<const char> allowed() const { return allowed_; }
+    /// Per member of the library, then per course besides: why it may not.
+    [[nodiscard]] std::span<const Rejection> rejection() const { return rejection_; }
+    [[nodiscard]] PlanEffort& effort() const { return effort_; }
+
+    /// A member of the library as a course; not followed yet.
+    [[nodiscard]] PlacedCourse placed(const LaidCourse& course) const {
+        return {.member = library_.members[static_cast<std::size_t>(course.member)],
+                .path = {},
+                .backward = course.backward,
+                .of_library = course.member};
+    }
+
+    void strike_off(std::size_t member, Rejection reason);
+
+    /// Strikes off all members, which are not counted.
+    void strike_off_all(Rejection reason);
+
+    /// Notes a course besides the library. Thread-safe.
+    void note_refused(std::vector<std::int32_t> footprint, Rejection reason);
+
+    /// Strikes off the member that the course is, if that is still allowed; else notes the course.
+    void refuse(const PlacedCourse& course, Rejection reason);
+
+    /// Puts the courses that were noted behind the members, in place of those of the plan.
+    void append_refused();
+
+private:
+    Library library_;
+    std::size_t size_;
+    std::vector<char> allowed_;
+    std::vector<Rejection> rejection_;
+    PlanEffort& effort_;
+    std::mutex refused_mutex_;
+    std::vector<std::pair<std::vector<std::int32_t>, Rejection>> refused_;  // in any order
 };
 
 struct ProvenWays {

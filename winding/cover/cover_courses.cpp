@@ -1,0 +1,271 @@
+#include "winding/cover/cover_courses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "core/index.h"
+#include "core/margins.h"
+#include "core/random.h"
+#include "winding/cover/anneal.h"
+#include "winding/cover/joints.h"
+#include "winding/cover/placed_course.h"
+#include "winding/cover/select.h"
+
+namespace meshwind {
+namespace {
+
+// So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
+// each, and without one a stage is lost.
+constexpr std::size_t kMostSpares = 200;
+
+// What does not hold of the courses that fill thin places makes room for others so many times.
+constexpr int kMostFills = 10;
+
+// Proposals at an effort of 1, and where a few courses had to be given up.
+constexpr double kProposals = 30'000.0;
+constexpr std::int64_t kMendingProposals = 4'000;
+
+// What a fibre too many costs where courses lead on to a stage from which none leads back: then it
+// cannot be mended by joining.
+constexpr double kDearFibre = 6.0;
+
+// What a layer short of the target costs, of AnnealOptions: in the last stage of a wall, and in
+// those whose thin places are filled later.
+constexpr double kLastBare = 2.0;
+constexpr double kEarlyBare = 0.3;
+
+// Courses that come of the bound are moved, but not thrown about, and keep short turns: values of
+// AnnealOptions. Its own are for a wanted winding angle, which takes other courses.
+constexpr double kStartedHot = 0.02;
+constexpr double kStartedTurnShare = 6.0;
+
+CourseRules rules_of(const Mandrel& mandrel, const RayQuery& obstacles,
+                     const FootprintFinder& footprints, const LiftedWall& lifted,
+                     const CoverOptions& options) {
+    CourseRules rules{mandrel,
+                      obstacles,
+                      footprints,
+                      options.tow,
+                      options.turns,
+                      options.free_fibre,
+                      max_half_length_mm(mandrel.surface)};
+    rules.turns.rule.friction = options.tow.friction;
+    rules.turns.rule.band_mm = options.tow.width_mm;
+    rules.angle_rad = options.angle_rad;
+    rules.lifted = &lifted;
+    rules.free_fibre.clearance_mm += margin::kCandidates_mm;
+    return rules;
+}
+
+// What courses are annealed for.
+enum class AnnealAim {
+    Evenness,
+    Mending  // a few courses are missing
+};
+
+// How much courses are annealed, and at what prices; what is specific to a plan is left open.
+AnnealOptions annealing_prices(const CoverTask& task, const PlanRoutes& routes, AnnealAim aim) {
+    AnnealOptions annealing;
+    const bool mending = aim == AnnealAim::Mending;
+    const double bare = task.is_last_stage() ? kLastBare : kEarlyBare;
+    annealing.bare_hot *= bare;
+    annealing.bare_cold *= bare;
+    if (!task.options.angle_rad.has_value()) {
+        annealing.hot = kStartedHot;
+        annealing.turn_share = kStartedTurnShare;
+    }
+    annealing.fibre_share = routes.has_fibres_to_spare() ? kDearFibre : annealing.fibre_share;
+    annealing.proposals =
+        mending ? kMendingProposals : std::llround(task.options.context.effort * kProposals);
+    if (mending) {
+        annealing.hot = annealing.cold;
+        annealing.bare_hot = annealing.bare_cold;
+    }
+    return annealing;
+}
+
+// The others are refused. \param to_stay their own programs are wound as well
+std::vector<PlacedCourse> those_that_hold(const CoverTask& task, std::vector<PlacedCourse> courses,
+                                          bool to_stay, ProvenLibrary& library) {
+    task.report_progress("prove", 0.0);
+    const std::vector<Rejection> found = task.prover.prove_all(courses, to_stay);
+    std::vector<PlacedCourse> holding;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (found[i] == Rejection::None) {
+            holding.push_back(std::move(courses[i]));
+        } else {
+            library.refuse(courses[i], found[i]);
+        }
+    }
+    return holding;
+}
+
+// Which of these hold; the others are struck off the library. \param proven what holds, kept
+std::vector<char> which_hold(const CoverTask& task, std::span<const LaidCourse> courses,
+                             ProvenLibrary& library, std::map<LaidCourse, PlacedCourse>& proven) {
+    std::set<LaidCourse> unknown;
+    std::copy_if(courses.begin(), courses.end(), std::inserter(unknown, unknown.end()),
+                 [&](const LaidCourse& course) { return !proven.contains(course); });
+    std::vector<PlacedCourse> tried;
+    tried.reserve(unknown.size());
+    for (const LaidCourse& course : unknown) {
+        tried.push_back(library.placed(course));
+    }
+    for (PlacedCourse& course : those_that_hold(task, std::move(tried), false, library)) {
+        proven.emplace(LaidCourse{course.of_library, course.backward}, std::move(course));
+    }
+    std::vector<char> holds;
+    for (const LaidCourse& course : courses) {
+        holds.push_back(proven.contains(course));
+    }
+    return holds;
+}
+
+void anneal_proven(const CoverTask& task, const AnnealGround& ground, const PlanRoutes& routes,
+                   AnnealAim aim, ProvenLibrary& library, PlanCourses& courses) {
+    const CoverOptions& options = task.options;
+    const bool mending = aim == AnnealAim::Mending;
+    AnnealOptions annealing = annealing_prices(task, routes, aim);
+    annealing.select = task.select;
+    annealing.select.targets = task.stage.weighed.layers;
+    annealing.beyond_layers = task.stage.beyond_layers;
+    annealing.fibres = routes.fibres();
+    annealing.seed =
+        seed_of(Stream::Annealing, options.context.seed) + (++courses.annealings << 32U);
+    annealing.progress = [&task](double share) { task.report_progress("anneal", share); };
+    annealing.way = [&routes](const NodePair& nodes) { return routes.hold(nodes); };
+    annealing.verify = [&task, &library, mending](PlacedCourse& course) {
+        const Rejection rejection =
+            mending ? task.prover.prove_and_wind(course) : task.prover.prove(course);
+        if (rejection != Rejection::None) {
+            // On the samples of the plan, not on those of the annealing.
+            FootprintFinder::Scratch scratch = task.footprints.make_scratch();
+            library.note_refused(task.footprints.footprint(course.path, scratch), rejection);
+        }
+        return rejection == Rejection::None;
+    };
+    const AnnealEffort effort = anneal(task.rules, ground, library.members_and_placed(),
+                                       library.allowed(), courses.placed, annealing);
+    library.effort().proposals += effort.proposals;
+    library.effort().taken += effort.accepted;
+}
+
+void fill_where_thin(const CoverTask& task, const std::vector<char>& joinable,
+                     ProvenLibrary& library, PlanCourses& courses) {
+    for (int round = 0; round < kMostFills; ++round) {
+        const std::vector<std::int32_t> members = fill_thin_places(
+            library.members(), library.allowed(), joinable,
+            layers_of(courses.placed, task.samples.size()), task.select, task.stage.filled_to);
+        if (members.empty()) {
+            return;
+        }
+        Joints joints(task.nodes(), courses.placed);
+        std::vector<PlacedCourse> filling;
+        for (const std::int32_t i : members) {
+            const Member& member = library.members()[at(i)];
+            const bool backward = joints.evener_backward(member);
+            joints.add(member, backward, 1);
+            filling.push_back(library.placed({i, backward}));
+        }
+        filling = those_that_hold(task, std::move(filling), true, library);
+        std::move(filling.begin(), filling.end(), std::back_inserter(courses.placed));
+    }
+}
+
+// The next course that holds in place of the link between two stages that did not.
+void replace_link(const CoverTask& task, const ProvenLibrary& library, std::int32_t link,
+                  PlanCourses& courses) {
+    std::vector<LaidCourse>& spares = courses.spare_links[at(link)];
+    for (std::size_t tried = 0; !spares.empty() && tried < kMostSpares; ++tried) {
+        PlacedCourse course = library.placed(spares.back());
+        spares.pop_back();
+        course.link = link;
+        if (task.prover.prove_and_wind(course) == Rejection::None) {
+            courses.placed.push_back(std::move(course));
+            return;
+        }
+    }
+}
+
+}  // namespace
+
+CoverTask::CoverTask(const Mandrel& part, const RayQuery& obstacles, const CoverOptions& asked,
+                     const Windability* winder)
+    : mandrel(part),
+      options(asked),
+      machine(winder),
+      stage(asked.stage != nullptr
+                ? *asked.stage
+                : whole_cover(part.surface, asked.tow.width_mm, asked.context.seed,
+                              asked.select.target_layers, asked.most_bare)),
+      select(asked.select),
+      samples(samples_at(part.surface, stage.measured.at)),
+      footprints(part.surface, samples, asked.tow.width_mm),
+      lifted(part.surface),
+      rules(rules_of(part, obstacles, footprints, lifted, asked)),
+      prover(rules, winder) {
+    select.targets = stage.measured.layers;
+}
+
+std::optional<double> choose_courses(const CoverTask& task, const std::vector<char>& joinable,
+                                     ProvenLibrary& library, PlanCourses& courses) {
+    courses.placed = those_that_hold(task, std::move(courses.placed), false, library);
+    std::map<LaidCourse, PlacedCourse> proven;
+    const FirstChoice first = choose_first(
+        library.members(), library.allowed(), joinable, task.samples.position_mm, task.nodes(),
+        task.select, task.stage,
+        [&](std::span<const LaidCourse> some) { return which_hold(task, some, library, proven); });
+    for (const LaidCourse& course : first.courses) {
+        courses.placed.push_back(proven.at(course));
+    }
+    return first.least_fibre_mm;
+}
+
+void make_courses_even(const CoverTask& task, const AnnealGround& ground, const FibreReach& reach,
+                       ProvenLibrary& library, PlanCourses& courses) {
+    if (task.stage.stages_left > 0) {
+        anneal_proven(task, ground, reach.routes, AnnealAim::Evenness, library, courses);
+    }
+    if (task.is_last_stage()) {
+        fill_where_thin(task, reach.joinable, library, courses);
+    }
+}
+
+void give_up_courses(const CoverTask& task,
+                     const std::vector<std::pair<std::size_t, Rejection>>& refused,
+                     ProvenLibrary& library, PlanCourses& courses) {
+    for (std::size_t k = refused.size(); k-- > 0;) {
+        const auto& [index, reason] = refused[k];
+        const PlacedCourse course = std::move(courses.placed[index]);
+        courses.placed.erase(courses.placed.begin() + static_cast<std::ptrdiff_t>(index));
+        library.refuse(course, reason);
+        if (course.link >= 0) {
+            replace_link(task, library, course.link, courses);
+        }
+    }
+}
+
+void replace_lost_courses(const CoverTask& task, const AnnealGround& ground,
+                          const FibreReach& reach, ProvenLibrary& library, PlanCourses& courses) {
+    if (task.is_last_stage()) {
+        // Annealing would take out again what fills thin places.
+        fill_where_thin(task, reach.joinable, library, courses);
+    } else {
+        anneal_proven(task, ground, reach.routes, AnnealAim::Mending, library, courses);
+    }
+}
+
+void keep_courses_that_wind(const CoverTask& task, const AnnealGround& ground,
+                            const FibreReach& reach, ProvenLibrary& library, PlanCourses& courses) {
+    task.report_progress("prove", 0.0);
+    const auto refused = task.prover.wind_all(courses.placed);
+    if (!refused.empty()) {
+        give_up_courses(task, refused, library, courses);
+        replace_lost_courses(task, ground, reach, library, courses);
+    }
+}
+
+}  // namespace meshwind

@@ -1,0 +1,92 @@
+/// The courses of a cover: chosen, made even, and replaced where they do not hold.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "geodesic/lifted_wall.h"
+#include "mesh/mandrel.h"
+#include "mesh/ray_query.h"
+#include "winding/cover/anneal_ground.h"
+#include "winding/cover/cover.h"
+#include "winding/cover/fibre_routes.h"
+#include "winding/cover/library.h"
+#include "winding/cover/prove.h"
+#include "winding/laminate/samples.h"
+#include "winding/laminate/stage_ask.h"
+#include "winding/plan/course.h"
+#include "winding/plan/rejection.h"
+#include "winding/plan/windability.h"
+
+namespace meshwind {
+
+/// What courses are to cover, and by which rules. References must outlive it.
+struct CoverTask {
+    /// \param machine null: none
+    CoverTask(const Mandrel& mandrel, const RayQuery& obstacles, const CoverOptions& options,
+              const Windability* machine);
+    CoverTask(const CoverTask&) = delete;
+    CoverTask& operator=(const CoverTask&) = delete;
+
+    /// At which fibres are joined: two for each rim.
+    [[nodiscard]] std::size_t nodes() const { return 2 * mandrel.rims.size(); }
+    /// Of a wall: thin places are filled.
+    [[nodiscard]] bool is_last_stage() const { return stage.stages_left < 2; }
+    void report_progress(const char* step, double share) const {
+        options.context.report_progress(step, share);
+    }
+
+    const Mandrel& mandrel;
+    const CoverOptions& options;
+    const Windability* machine;
+    StageAsk stage;
+    SelectOptions select;  ///< with the targets of the stage
+    CoverageSamples samples;
+    FootprintFinder footprints;  ///< on these samples
+    LiftedWall lifted;
+    CourseRules rules;
+    CourseProver prover;
+};
+
+/// Where the plan's fibres lead.
+struct FibreReach {
+    PlanRoutes routes;
+    std::vector<char> joinable;  ///< per sample: in reach of the fibres
+};
+
+/// The courses of a plan, not in order.
+struct PlanCourses {
+    std::vector<PlacedCourse> placed;
+    std::vector<std::vector<LaidCourse>> spare_links;  ///< per link: in its place, the best last
+    std::uint64_t annealings = 0;                      ///< so far
+};
+
+/// Leaves of the courses those that hold, and adds those to begin with (select.h).
+/// \return the least fibre, as in Plan
+[[nodiscard]] std::optional<double> choose_courses(const CoverTask& task,
+                                                   const std::vector<char>& joinable,
+                                                   ProvenLibrary& library, PlanCourses& courses);
+
+/// Anneals the courses, and adds others for the sake of the last thin places. Behind the last stage
+/// nothing is made even.
+void make_courses_even(const CoverTask& task, const AnnealGround& ground, const FibreReach& reach,
+                       ProvenLibrary& library, PlanCourses& courses);
+
+/// Takes courses out, and strikes them off the library. Another comes in place of a link.
+/// \param refused the numbers of the courses, in order, each once
+void give_up_courses(const CoverTask& task,
+                     const std::vector<std::pair<std::size_t, Rejection>>& refused,
+                     ProvenLibrary& library, PlanCourses& courses);
+
+/// Adds courses in place of those given up.
+void replace_lost_courses(const CoverTask& task, const AnnealGround& ground,
+                          const FibreReach& reach, ProvenLibrary& library, PlanCourses& courses);
+
+/// Replaces the courses whose own programs do not lay them as planned.
+void keep_courses_that_wind(const CoverTask& task, const AnnealGround& ground,
+                            const FibreReach& reach, ProvenLibrary& library, PlanCourses& courses);
+
+}  // namespace meshwind
