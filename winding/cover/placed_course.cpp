@@ -9,8 +9,29 @@
 #include "core/margins.h"
 
 namespace meshwind {
+namespace {
 
 using Eigen::Vector3d;
+
+// Spread of a nudge at its widest: sideways in bands, turned in rad, steered in shares of the
+// friction. Its narrowest is this many times less.
+constexpr double kNudgeBands = 1.0;
+constexpr double kNudgeTurn_rad = 0.1;
+constexpr double kNudgeSteering = 0.1;
+constexpr double kNudgeRange = 16.0;
+
+// Neighbours are turned by this much at most, on some of the draws.
+constexpr double kBesideTurn_rad = 0.02;
+
+// From any of its stations. Where it is steered in two ways, from the one where they meet.
+Candidate moved_from_any(const CourseRules& rules, const PlacedCourse& course,
+                         const CourseMove& move, Draws& draws) {
+    const std::size_t any = draws.below(course.path.size());
+    const bool anywhere = course.member.candidate.more_behind == 0.0;
+    return moved(rules, course, anywhere ? any : seed_station(course), move);
+}
+
+}  // namespace
 
 std::vector<std::int32_t> layers_of(std::span<const PlacedCourse> courses, std::size_t samples) {
     std::vector<std::int32_t> layers(samples, 0);
@@ -55,6 +76,26 @@ Candidate moved(const CourseRules& rules, const PlacedCourse& course, std::size_
     const double behind = std::clamp(from.slip_ratio + from.more_behind + move.behind, -most, most);
     return {place.at, direction_angle(normal, side * place.tangent.cross(normal)) + move.turn_rad,
             ahead, behind - ahead};
+}
+
+Candidate nudged(const CourseRules& rules, const PlacedCourse& course, Draws& draws) {
+    const double scale = std::pow(kNudgeRange, -draws.unit());
+    const double steering = rules.tow.friction.share(scale * kNudgeSteering);
+    CourseMove move{scale * kNudgeBands * rules.tow.width_mm * draws.normal(),
+                    scale * kNudgeTurn_rad * draws.normal()};
+    const double how = draws.unit();
+    if (how > 0.5) {
+        move.steering = steering * draws.normal();
+        move.behind = how > 0.75 ? steering * draws.normal() : move.steering;
+    }
+    return moved_from_any(rules, course, move, draws);
+}
+
+Candidate moved_beside(const CourseRules& rules, const PlacedCourse& course, Draws& draws) {
+    const bool turned = draws.unit() < 0.5;
+    const double left = draws.either() * rules.tow.width_mm;
+    return moved_from_any(
+        rules, course, {left, turned ? kBesideTurn_rad * (2.0 * draws.unit() - 1.0) : 0.0}, draws);
 }
 
 }  // namespace meshwind
