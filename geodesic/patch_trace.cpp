@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -99,6 +100,202 @@ double first_root(double b, double rate, double half) {
     return kNever;
 }
 
+double slip_ratio_of(const Steering& steering, double kn) {
+    return kn > 0.0 ? steering.slip_ratio : steering.slip_ratio_concave;
+}
+
+Motion motion_of(const PatchPlace& place, const Vector2d& rate, const Steering& steering) {
+    Motion m{place, place.normal(), place.along(rate), {}, 0.0};
+    const Vector3d second = place.second(rate);
+    m.kn_per_mm = -m.normal.dot(second) / m.tangent.squaredNorm();
+    const double kg = slip_ratio_of(steering, m.kn_per_mm) * m.kn_per_mm;
+    m.acceleration = in_parameters(place, kg * m.normal.cross(m.tangent) - second);
+    return m;
+}
+
+// Where the path is on a patch.
+struct Standing {
+    State state;
+    Motion motion;
+    std::size_t entry = kNoEdge;  // bary index that is zero on the edge by which it was entered
+};
+
+struct Exit {
+    double length_mm = kNever;
+    std::size_t opposite = kNoEdge;  // bary index that becomes zero
+};
+
+// Where the parabola that the path starts with leaves the triangle.
+Exit predict_exit(const Standing& here) {
+    Exit exit;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double b = std::max(0.0, bary(here.state.uv, i, 1.0));
+        const double rate = bary(here.state.rate, i, 0.0);
+        const double half = 0.5 * bary(here.motion.acceleration, i, 0.0);
+        const double length = i == here.entry ? first_root(0.0, std::max(0.0, rate), half)
+                                              : first_root(b, rate, half);
+        if (length < exit.length_mm) {
+            exit = {length, i};
+        }
+    }
+    return exit;
+}
+
+// The state after `h` by Nystrom's fourth-order step; two of its stages share a place.
+State advanced(const Patch& patch, const Standing& here, const Steering& steering, double h) {
+    const Vector2d& x = here.state.uv;
+    const Vector2d& v = here.state.rate;
+    const Vector2d& a1 = here.motion.acceleration;
+    const PatchPlace middle = patch.at(x + 0.5 * h * v + 0.125 * h * h * a1);
+    const Vector2d a2 = motion_of(middle, v + 0.5 * h * a1, steering).acceleration;
+    const Vector2d a3 = motion_of(middle, v + 0.5 * h * a2, steering).acceleration;
+    const PatchPlace end = patch.at(x + h * v + 0.5 * h * h * a3);
+    const Vector2d a4 = motion_of(end, v + h * a3, steering).acceleration;
+    return {x + h * v + h * h / 6.0 * (a1 + a2 + a3), v + h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4),
+            a4};
+}
+
+// Length to the edge opposite corner i, < 0 where it lies behind; infinite where the path does
+// not go there.
+double time_to(const State& state, std::size_t i) {
+    const double rate = bary(state.rate, i, 0.0);
+    return rate < 0.0 ? bary(state.uv, i, 1.0) / -rate : kNever;
+}
+
+// Moves the end of a step onto the edge by which the path leaves: of the edges already behind
+// it the first, else the predicted one, else none. False where that is too far for this step:
+// then `exit` says how long another should be.
+bool land(State& state, Exit& exit, double clearance_mm) {
+    for (int i = 0; i < kMaxLandings; ++i) {
+        double time = exit.opposite == kNoEdge ? kNever : time_to(state, exit.opposite);
+        bool returning = false;  // out of the triangle and on its way back in
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (bary(state.uv, k, 1.0) < -kOutside) {
+                const double back = time_to(state, k);
+                returning = returning || back == kNever;
+                if (back < time) {
+                    time = back;
+                    exit.opposite = k;
+                }
+            }
+        }
+        if (exit.length_mm > clearance_mm && (returning || time < -exit.length_mm)) {
+            exit = {0.5 * exit.length_mm, kNoEdge};
+            return false;
+        }
+        if (time == kNever) {
+            exit.opposite = kNoEdge;
+            return true;
+        }
+        exit.length_mm = std::max(0.0, exit.length_mm + time);
+        if (std::abs(time) > kLandingShare * exit.length_mm + clearance_mm) {
+            return false;
+        }
+        // By the parabola: over so short a way its error is far below the step's.
+        state.uv += time * state.rate + 0.5 * time * time * state.acceleration;
+        state.rate += time * state.acceleration;
+        if (std::abs(time) <= clearance_mm) {
+            return true;
+        }
+    }
+    return true;
+}
+
+// A step and where it ends.
+struct Leap {
+    State end;
+    Exit exit;
+};
+
+struct StepLimits {
+    double left_mm;  // of the path
+    double longest_mm;
+    double clearance_mm;
+};
+
+// To the edge by which the path leaves, or within the patch where that is far.
+Leap leap_from(const Patch& patch, const Standing& here, const Steering& steering,
+               const StepLimits& limits) {
+    Exit exit = predict_exit(here);
+    if (exit.length_mm > std::min(limits.left_mm, limits.longest_mm)) {
+        const double length = std::min(limits.left_mm, exit.length_mm);
+        exit = {length / std::max(1.0, std::ceil(length / limits.longest_mm)), kNoEdge};
+    }
+    State next = advanced(patch, here, steering, exit.length_mm);
+    for (int i = 0; i < kMaxLandings && !land(next, exit, limits.clearance_mm); ++i) {
+        next = advanced(patch, here, steering, exit.length_mm);
+    }
+    return {next, exit};
+}
+
+// To a crease a patch is drawn over about its length, flat or not.
+double longest_step_mm(const Patch& patch, const TraceOptions& options) {
+    const double turn_rad = patch.is_exact() ? kMaxKnownTurn_rad : kMaxStepTurn_rad;
+    return std::min({options.max_step_mm, patch.shortest_crease_mm(),
+                     turn_rad / std::max(patch.curvature_per_mm(), 1e-12)});
+}
+
+// The tangent on the other side of an edge: turned about the edge's tangent, and steered for
+// the turn of the normal there, unless that would turn it back.
+Vector3d unfolded(const PathPoint& leaving, const Vector3d& edge, const Vector3d& normal,
+                  const Steering& steering, bool feature) {
+    const double across = leaving.tangent.dot(leaving.normal.cross(edge));
+    const Vector3d straight = leaving.tangent.dot(edge) * edge + across * normal.cross(edge);
+    if (feature) {
+        return straight;
+    }
+    const double turn = slip_ratio_of(steering, leaving.kn_per_mm) * 0.5 *
+                        (normal - leaving.normal).dot(leaving.tangent + straight);
+    const Vector3d steered = straight + turn * normal.cross(straight);
+    return steered.dot(normal.cross(edge)) * across > 0.0 ? steered : straight;
+}
+
+Vector2d corner_uv(std::size_t i) {
+    return {i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+}
+
+void set_curvature(PathPoint& point, const Steering& steering, double kn) {
+    point.kn_per_mm = kn;
+    point.kg_per_mm = slip_ratio_of(steering, kn) * kn;
+}
+
+PathPoint station_of(Index face, const Standing& here, const Steering& steering, double s_mm) {
+    const Vector2d& uv = here.state.uv;
+    const Motion& motion = here.motion;
+    PathPoint point;
+    const Vector3d shares = Vector3d(1.0 - uv.sum(), uv.x(), uv.y()).cwiseMax(0.0);
+    point.at = {face, shares / shares.sum()};
+    point.position_mm = motion.place.position_mm;
+    point.normal = motion.normal;
+    point.tangent =
+        (motion.tangent - motion.normal * motion.normal.dot(motion.tangent)).normalized();
+    point.s_mm = s_mm;
+    set_curvature(point, steering, motion.kn_per_mm);
+    return point;
+}
+
+// On an edge that is no feature: curved as the patches of both sides are on average.
+PathPoint between_patches(PathPoint leaving, const Steering& steering, double entering_kn) {
+    set_curvature(leaving, steering, 0.5 * (leaving.kn_per_mm + entering_kn));
+    return leaving;
+}
+
+// Unless it is the station before once more.
+void add(const PathPoint& point, double min_station_mm, SurfacePath& path) {
+    if (path.empty() || point.s_mm - path.back().s_mm >= min_station_mm ||
+        path.back().normal.dot(point.normal) <= 1.0 - kSameNormal) {
+        path.push_back(point);
+    }
+}
+
+// The corner of a face at a vertex.
+std::size_t corner_at(const Surface& surface, Index face, Index vertex) {
+    const auto& vertices = surface.face[at(face)];
+    return static_cast<std::size_t>(std::find(vertices.begin(), vertices.end(), vertex) -
+                                    vertices.begin());
+}
+
+// A path that is walked over the patches, one after the other.
 class PatchWalker {
 public:
     PatchWalker(const Surface& surface, const SurfacePoint& start, const Vector3d& direction,
@@ -107,17 +304,14 @@ public:
           steering_(steering),
           options_(options),
           patch_(surface, start.face),
-          face_(start.face),
-          min_station_mm_(kMinStationShare * surface.mean_edge_mm),
-          clearance_mm_(kVertexClearance * surface.mean_edge_mm),
-          idle_mm_(kIdleShare * surface.mean_edge_mm) {
+          face_(start.face) {
         const Vector2d uv(start.bary[1], start.bary[2]);
         begin(uv, patch_.at(uv), direction);
     }
 
     TraceResult run() {
         result_.path.reserve(256);
-        record(motion_.kn_per_mm);
+        record(station());
         int idle = 0;
         for (int steps = 0; steps < options_.max_faces; ++steps) {
             const double before_mm = length_mm_;
@@ -126,7 +320,7 @@ public:
             }
             idle = length_mm_ - before_mm < idle_mm_ ? idle + 1 : 0;
             if (idle == kIdleSteps) {
-                fold();
+                end(TraceStop::Folded);
                 return std::move(result_);
             }
         }
@@ -135,157 +329,51 @@ public:
     }
 
 private:
-    struct Exit {
-        double length_mm = kNever;
-        std::size_t opposite = kNoEdge;  // bary index that becomes zero
-    };
-
-    [[nodiscard]] double slip_ratio(double kn) const {
-        return kn > 0.0 ? steering_.slip_ratio : steering_.slip_ratio_concave;
-    }
-
-    [[nodiscard]] Motion motion_of(const PatchPlace& place, const Vector2d& rate) const {
-        Motion m{place, place.normal(), place.along(rate), {}, 0.0};
-        const Vector3d second = place.second(rate);
-        m.kn_per_mm = -m.normal.dot(second) / m.tangent.squaredNorm();
-        const double kg = slip_ratio(m.kn_per_mm) * m.kn_per_mm;
-        m.acceleration = in_parameters(place, kg * m.normal.cross(m.tangent) - second);
-        return m;
-    }
-
     // Into the patch at `uv` along `direction`, which is projected.
     void begin(const Vector2d& uv, const PatchPlace& place, const Vector3d& direction) {
-        state_.uv = uv;
-        state_.rate = in_parameters(place, direction);
-        state_.rate /= place.along(state_.rate).norm();
-        motion_ = motion_of(place, state_.rate);
-        // To a crease a patch is drawn over about its length, flat or not.
-        const double turn_rad = patch_.is_exact() ? kMaxKnownTurn_rad : kMaxStepTurn_rad;
-        max_step_mm_ = std::min({options_.max_step_mm, patch_.shortest_crease_mm(),
-                                 turn_rad / std::max(patch_.curvature_per_mm(), 1e-12)});
+        here_.state.uv = uv;
+        here_.state.rate = in_parameters(place, direction);
+        here_.state.rate /= place.along(here_.state.rate).norm();
+        here_.motion = motion_of(place, here_.state.rate, steering_);
+        max_step_mm_ = longest_step_mm(patch_, options_);
     }
 
-    // Where the parabola that the path starts with leaves the triangle.
-    [[nodiscard]] Exit predict_exit() const {
-        Exit exit;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const double b = std::max(0.0, bary(state_.uv, i, 1.0));
-            const double rate = bary(state_.rate, i, 0.0);
-            const double half = 0.5 * bary(motion_.acceleration, i, 0.0);
-            const double length = i == entry_ ? first_root(0.0, std::max(0.0, rate), half)
-                                              : first_root(b, rate, half);
-            if (length < exit.length_mm) {
-                exit = {length, i};
-            }
-        }
-        return exit;
-    }
-
-    // The state after `h` by Nystrom's fourth-order step; two of its stages share a place.
-    [[nodiscard]] State advanced(double h) const {
-        const Vector2d& x = state_.uv;
-        const Vector2d& v = state_.rate;
-        const Vector2d& a1 = motion_.acceleration;
-        const PatchPlace middle = patch_.at(x + 0.5 * h * v + 0.125 * h * h * a1);
-        const Vector2d a2 = motion_of(middle, v + 0.5 * h * a1).acceleration;
-        const Vector2d a3 = motion_of(middle, v + 0.5 * h * a2).acceleration;
-        const PatchPlace end = patch_.at(x + h * v + 0.5 * h * h * a3);
-        const Vector2d a4 = motion_of(end, v + h * a3).acceleration;
-        return {x + h * v + h * h / 6.0 * (a1 + a2 + a3), v + h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4),
-                a4};
-    }
-
-    // One step: to the edge by which the path leaves, or within the patch where that is far.
     bool step() {
         const double left = options_.max_length_mm - length_mm_;
-        Exit exit = predict_exit();
-        if (exit.length_mm > std::min(left, max_step_mm_)) {
-            const double length = std::min(left, exit.length_mm);
-            exit = {length / std::max(1.0, std::ceil(length / max_step_mm_)), kNoEdge};
-        }
-        State next = advanced(exit.length_mm);
-        for (int i = 0; i < kMaxLandings && !land(next, exit); ++i) {
-            next = advanced(exit.length_mm);
-        }
+        auto [next, exit] =
+            leap_from(patch_, here_, steering_, {left, max_step_mm_, clearance_mm_});
         if (exit.opposite != kNoEdge && exit.length_mm < left) {
             return cross(next, exit.opposite, exit.length_mm);
         }
         if (exit.opposite != kNoEdge) {  // the edge lies just beyond the end
             exit.length_mm = left;
-            next = advanced(left);
+            next = advanced(patch_, here_, steering_, left);
         }
         if (!move_within(next, exit.length_mm)) {
-            return fold();
+            return end(TraceStop::Folded);
         }
         if (exit.length_mm < left) {
-            record(motion_.kn_per_mm);
+            record(station());
             return true;
         }
         length_mm_ = options_.max_length_mm;
-        result_.stop = TraceStop::Length;
-        result_.path.push_back(station(motion_.kn_per_mm));
-        return false;
-    }
-
-    // Moves the end of a step onto the edge by which the path leaves: of the edges already behind
-    // it the first, else the predicted one, else none. False where that is too far for this step:
-    // then `exit` says how long another should be.
-    bool land(State& state, Exit& exit) const {
-        for (int i = 0; i < kMaxLandings; ++i) {
-            double time = exit.opposite == kNoEdge ? kNever : time_to(state, exit.opposite);
-            bool returning = false;  // out of the triangle and on its way back in
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (bary(state.uv, k, 1.0) < -kOutside) {
-                    const double back = time_to(state, k);
-                    returning = returning || back == kNever;
-                    if (back < time) {
-                        time = back;
-                        exit.opposite = k;
-                    }
-                }
-            }
-            if (exit.length_mm > clearance_mm_ && (returning || time < -exit.length_mm)) {
-                exit = {0.5 * exit.length_mm, kNoEdge};
-                return false;
-            }
-            if (time == kNever) {
-                exit.opposite = kNoEdge;
-                return true;
-            }
-            exit.length_mm = std::max(0.0, exit.length_mm + time);
-            if (std::abs(time) > kLandingShare * exit.length_mm + clearance_mm_) {
-                return false;
-            }
-            // By the parabola: over so short a way its error is far below the step's.
-            state.uv += time * state.rate + 0.5 * time * time * state.acceleration;
-            state.rate += time * state.acceleration;
-            if (std::abs(time) <= clearance_mm_) {
-                return true;
-            }
-        }
-        return true;
-    }
-
-    // Length to the edge opposite corner i, < 0 where it lies behind; infinite where the path does
-    // not go there.
-    [[nodiscard]] static double time_to(const State& state, std::size_t i) {
-        const double rate = bary(state.rate, i, 0.0);
-        return rate < 0.0 ? bary(state.uv, i, 1.0) / -rate : kNever;
+        result_.path.push_back(station());
+        return end(TraceStop::Length);
     }
 
     // False where there is no surface.
     bool move_within(const State& next, double length) {
-        state_ = next;
-        state_.uv = state_.uv.cwiseMax(0.0);
-        state_.uv /= std::max(1.0, state_.uv.sum());
+        here_.state = next;
+        here_.state.uv = here_.state.uv.cwiseMax(0.0);
+        here_.state.uv /= std::max(1.0, here_.state.uv.sum());
         length_mm_ += length;
-        entry_ = kNoEdge;
-        motion_ = motion_of(patch_.at(state_.uv), state_.rate);
-        return patch_.holds(motion_.normal);
+        here_.entry = kNoEdge;
+        here_.motion = motion_of(patch_.at(here_.state.uv), here_.state.rate, steering_);
+        return patch_.holds(here_.motion.normal);
     }
 
-    bool fold() {
-        result_.stop = TraceStop::Folded;
+    bool end(TraceStop stop) {
+        result_.stop = stop;
         return false;
     }
 
@@ -298,105 +386,61 @@ private:
         if (!move_within(
                 {corner_uv(from) + share * (corner_uv(to) - corner_uv(from)), at_edge.rate},
                 length)) {
-            return fold();
+            return end(TraceStop::Folded);
         }
-        const Index next = surface_.neighbour[at(face_)][from];
-        if (next == kNoFace) {
-            record(motion_.kn_per_mm);
-            result_.stop = TraceStop::Rim;
+        const PathPoint leaving = station();
+        if (surface_.neighbour[at(face_)][from] == kNoFace) {
+            record(leaving);
             result_.rim = surface_.rim[at(face_)][from];
-            return false;
+            return end(TraceStop::Rim);
         }
-        const PathPoint leaving = station(motion_.kn_per_mm);
         const bool feature = surface_.feature[at(face_)][from] != 0;
-        const Vector3d edge = motion_.place.along(corner_uv(to) - corner_uv(from)).normalized();
-        const Index first_vertex = surface_.face[at(face_)][to];
-        const auto& vertices = surface_.face[at(next)];
-        const auto first = static_cast<std::size_t>(
-            std::find(vertices.begin(), vertices.end(), first_vertex) - vertices.begin());
-        const std::size_t second = (first + 1) % 3;
-        face_ = next;
-        entry_ = (first + 2) % 3;
-        patch_ = Patch(surface_, next);
-        const Vector2d uv = corner_uv(second) + share * (corner_uv(first) - corner_uv(second));
-        const PatchPlace place = patch_.at(uv);
-        begin(uv, place, unfolded(leaving, edge, place.normal(), feature));
-        if (!patch_.holds(motion_.normal)) {
-            add(leaving);
-            return fold();
+        enter(leaving, from, share, feature);
+        if (!patch_.holds(here_.motion.normal)) {
+            record(leaving);
+            return end(TraceStop::Folded);
         }
         if (feature) {
-            add(leaving);
-            record(motion_.kn_per_mm);
+            record(leaving);
+            record(station());
         } else {
-            PathPoint mean = leaving;
-            set_curvature(mean, 0.5 * (leaving.kn_per_mm + motion_.kn_per_mm));
-            add(mean);
+            record(between_patches(leaving, steering_, here_.motion.kn_per_mm));
         }
         return true;
     }
 
-    // The tangent on the other side of an edge: turned about the edge's tangent, and steered for
-    // the turn of the normal there, unless that would turn it back.
-    [[nodiscard]] Vector3d unfolded(const PathPoint& leaving, const Vector3d& edge,
-                                    const Vector3d& normal, bool feature) const {
-        const double across = leaving.tangent.dot(leaving.normal.cross(edge));
-        const Vector3d straight = leaving.tangent.dot(edge) * edge + across * normal.cross(edge);
-        if (feature) {
-            return straight;
-        }
-        const double turn = slip_ratio(leaving.kn_per_mm) * 0.5 *
-                            (normal - leaving.normal).dot(leaving.tangent + straight);
-        const Vector3d steered = straight + turn * normal.cross(straight);
-        return steered.dot(normal.cross(edge)) * across > 0.0 ? steered : straight;
+    // The next face, `share` of the way along the edge that begins at corner `from` of this one.
+    void enter(const PathPoint& leaving, std::size_t from, double share, bool feature) {
+        const std::size_t to = (from + 1) % 3;
+        const Vector3d edge =
+            here_.motion.place.along(corner_uv(to) - corner_uv(from)).normalized();
+        const Index next = surface_.neighbour[at(face_)][from];
+        const std::size_t first = corner_at(surface_, next, surface_.face[at(face_)][to]);
+        const std::size_t second = (first + 1) % 3;
+        face_ = next;
+        here_.entry = (first + 2) % 3;
+        patch_ = Patch(surface_, next);
+        const Vector2d uv = corner_uv(second) + share * (corner_uv(first) - corner_uv(second));
+        const PatchPlace place = patch_.at(uv);
+        begin(uv, place, unfolded(leaving, edge, place.normal(), steering_, feature));
     }
 
-    [[nodiscard]] static Vector2d corner_uv(std::size_t i) {
-        return {i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+    [[nodiscard]] PathPoint station() const {
+        return station_of(face_, here_, steering_, length_mm_);
     }
 
-    void set_curvature(PathPoint& point, double kn) const {
-        point.kn_per_mm = kn;
-        point.kg_per_mm = slip_ratio(kn) * kn;
-    }
-
-    [[nodiscard]] PathPoint station(double kn) const {
-        PathPoint point;
-        const Vector3d shares =
-            Vector3d(1.0 - state_.uv.sum(), state_.uv.x(), state_.uv.y()).cwiseMax(0.0);
-        point.at = {face_, shares / shares.sum()};
-        point.position_mm = motion_.place.position_mm;
-        point.normal = motion_.normal;
-        point.tangent =
-            (motion_.tangent - motion_.normal * motion_.normal.dot(motion_.tangent)).normalized();
-        point.s_mm = length_mm_;
-        set_curvature(point, kn);
-        return point;
-    }
-
-    void record(double kn) { add(station(kn)); }
-
-    // Unless it is the station before once more.
-    void add(const PathPoint& point) {
-        if (result_.path.empty() || point.s_mm - result_.path.back().s_mm >= min_station_mm_ ||
-            result_.path.back().normal.dot(point.normal) <= 1.0 - kSameNormal) {
-            result_.path.push_back(point);
-        }
-    }
+    void record(const PathPoint& point) { add(point, min_station_mm_, result_.path); }
 
     const Surface& surface_;
     const Steering& steering_;
     const TraceOptions& options_;
+    const double min_station_mm_ = kMinStationShare * surface_.mean_edge_mm;
+    const double clearance_mm_ = kVertexClearance * surface_.mean_edge_mm;
+    const double idle_mm_ = kIdleShare * surface_.mean_edge_mm;
+    TraceResult result_;
     Patch patch_;
     Index face_;
-    double min_station_mm_;
-    double clearance_mm_;
-    double idle_mm_;
-    TraceResult result_;
-    std::size_t entry_ =
-        kNoEdge;  // bary index that is zero on the edge by which the face was entered
-    State state_;
-    Motion motion_;
+    Standing here_;
     double max_step_mm_ = 0.0;
     double length_mm_ = 0.0;
 };
