@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -46,6 +48,9 @@ constexpr double kChordShare = 1e-6;
 
 // The arc length at which a path is abreast of the target settles in two or three traces.
 constexpr int kMaxCuts = 6;
+
+// Share of the tolerance to which the place abreast of the target is found.
+constexpr double kCutShare = 0.1;
 
 // A shot that leaves more than this share of the miss is not followed by another Newton step.
 constexpr double kGoodStep = 0.5;
@@ -132,186 +137,188 @@ struct Bracket {
     }
 };
 
-class Shooter {
-public:
-    Shooter(const Surface& surface, const SurfacePoint& from, const Place& target,
-            double slip_ratio, const ConnectOptions& options)
-        : surface_(surface),
-          from_(from),
-          start_(place_of(surface, from, options.trace)),
-          target_(target),
-          slip_ratio_(slip_ratio),
-          options_(options) {}
+// What is shot at what, and how.
+struct Aim {
+    const Surface& surface;
+    const SurfacePoint& from;
+    Place start;  // of `from`
+    Place target;
+    Vector3d ahead;  // tangent there from which start angles count
+    double slip_ratio;
+    const ConnectOptions& options;
+};
 
-    ConnectResult run(const ConnectGuess& guess) {
-        if ((start_.position_mm - target_.position_mm).norm() <= options_.tolerance_mm &&
-            start_.normal.dot(target_.normal) > 0.0) {
-            result_.stop = ConnectStop::SamePoint;
-            return std::move(result_);
-        }
-        const Vector3d& n = start_.normal;
-        ahead_ = (guess.direction - n * n.dot(guess.direction)).normalized();
-        search(shoot(0.0, guess.length_mm));
-        return std::move(result_);
+TraceResult trace_to(const Aim& aim, double angle_rad, double length_mm) {
+    TraceOptions options = aim.options.trace;
+    options.max_length_mm = std::min(length_mm, options.max_length_mm);
+    const Vector3d direction =
+        std::cos(angle_rad) * aim.ahead + std::sin(angle_rad) * aim.start.normal.cross(aim.ahead);
+    return trace(aim.surface, aim.from, direction, {aim.slip_ratio, aim.slip_ratio}, options);
+}
+
+// The target seen from the end of a path, in the tangent plane there.
+void measure_miss(const Aim& aim, Shot& shot) {
+    const PathPoint& end = shot.path.back();
+    const Vector3d miss = aim.target.position_mm - end.position_mm;
+    shot.along_mm = miss.dot(end.tangent);
+    shot.across_mm = miss.dot(end.normal.cross(end.tangent));
+    shot.on_sheet = end.normal.dot(aim.target.normal) >= 0.0 &&
+                    std::abs(miss.dot(end.normal)) < kHeightEdges * aim.surface.mean_edge_mm;
+}
+
+void follow_neighbours(const Aim& aim, Shot& shot) {
+    const std::vector<double> field = jacobi_field_mm(aim.surface, shot.path, aim.slip_ratio);
+    shot.jacobi_mm = field.back();
+    for (std::size_t i = 2; i < field.size(); ++i) {
+        shot.conjugate_points += (field[i] > 0.0) != (field[i - 1] > 0.0) ? 1 : 0;
     }
+}
 
-private:
-    [[nodiscard]] TraceResult trace_to(double angle_rad, double length_mm) const {
-        TraceOptions options = options_.trace;
-        options.max_length_mm = std::min(length_mm, options.max_length_mm);
-        const Vector3d direction =
-            std::cos(angle_rad) * ahead_ + std::sin(angle_rad) * start_.normal.cross(ahead_);
-        return trace(surface_, from_, direction, {slip_ratio_, slip_ratio_}, options);
-    }
-
-    // The target seen from the end of a path, in the tangent plane there.
-    void measure(Shot& shot) const {
-        const PathPoint& end = shot.path.back();
-        const Vector3d miss = target_.position_mm - end.position_mm;
-        shot.along_mm = miss.dot(end.tangent);
-        shot.across_mm = miss.dot(end.normal.cross(end.tangent));
-        shot.on_sheet = end.normal.dot(target_.normal) >= 0.0 &&
-                        std::abs(miss.dot(end.normal)) < kHeightEdges * surface_.mean_edge_mm;
-    }
-
-    [[nodiscard]] Shot shoot(double angle_rad, double expected_mm) const {
-        const double window =
-            std::max(kWindowShare * expected_mm, kWindowEdges * surface_.mean_edge_mm);
-        TraceResult traced = trace_to(angle_rad, expected_mm + window);
-        const double reach = traced.path.back().s_mm;
-        Shot shot;
-        shot.angle_rad = angle_rad;
-        shot.stop = traced.stop;
-        shot.rim = traced.rim;
-        double s = std::max(nearest_s_mm(traced.path, target_, expected_mm - window, reach),
-                            options_.tolerance_mm);
-        shot.path = std::move(traced.path);
-        measure(shot);
-        for (int cut = 0; cut < kMaxCuts && s < reach; ++cut) {
-            shot.path = trace_to(angle_rad, s).path;
-            measure(shot);
-            if (std::abs(shot.along_mm) <= kCutShare * options_.tolerance_mm) {
-                break;
-            }
-            s = std::clamp(s + shot.along_mm, options_.tolerance_mm, reach);
+Shot shoot(const Aim& aim, double angle_rad, double expected_mm) {
+    const double tolerance_mm = aim.options.tolerance_mm;
+    const double window =
+        std::max(kWindowShare * expected_mm, kWindowEdges * aim.surface.mean_edge_mm);
+    TraceResult traced = trace_to(aim, angle_rad, expected_mm + window);
+    const double reach = traced.path.back().s_mm;
+    Shot shot;
+    shot.angle_rad = angle_rad;
+    shot.stop = traced.stop;
+    shot.rim = traced.rim;
+    double s =
+        std::max(nearest_s_mm(traced.path, aim.target, expected_mm - window, reach), tolerance_mm);
+    shot.path = std::move(traced.path);
+    measure_miss(aim, shot);
+    for (int cut = 0; cut < kMaxCuts && s < reach; ++cut) {
+        shot.path = trace_to(aim, angle_rad, s).path;
+        measure_miss(aim, shot);
+        if (std::abs(shot.along_mm) <= kCutShare * tolerance_mm) {
+            break;
         }
-        follow_neighbours(shot);
-        return shot;
+        s = std::clamp(s + shot.along_mm, tolerance_mm, reach);
     }
+    follow_neighbours(aim, shot);
+    return shot;
+}
 
-    void follow_neighbours(Shot& shot) const {
-        const std::vector<double> field = jacobi_field_mm(surface_, shot.path, slip_ratio_);
-        shot.jacobi_mm = field.back();
-        for (std::size_t i = 2; i < field.size(); ++i) {
-            shot.conjugate_points += (field[i] > 0.0) != (field[i - 1] > 0.0) ? 1 : 0;
-        }
-    }
+bool hits(const Shot& shot, double tolerance_mm) {
+    return shot.on_sheet && shot.miss_mm() <= tolerance_mm;
+}
 
-    [[nodiscard]] bool hits(const Shot& shot) const {
-        return shot.on_sheet && shot.miss_mm() <= options_.tolerance_mm;
-    }
-
-    // What ended a path before it was abreast of the target, if anything did.
-    [[nodiscard]] std::optional<ConnectStop> cut_off(const Shot& shot) const {
-        if (shot.along_mm <= options_.tolerance_mm) {
-            return std::nullopt;
-        }
-        if (shot.stop == TraceStop::Rim) {
-            return ConnectStop::Rim;
-        }
-        if (shot.stop == TraceStop::FaceLimit || shot.length_mm() >= options_.trace.max_length_mm) {
-            return ConnectStop::TraceLimit;
-        }
+// What ended a path before it was abreast of the target, if anything did.
+std::optional<ConnectStop> cut_off(const Shot& shot, const ConnectOptions& options) {
+    if (shot.along_mm <= options.tolerance_mm) {
         return std::nullopt;
     }
-
-    [[nodiscard]] static bool conjugate(const Shot& shot, ConnectStop end) {
-        const double share = end == ConnectStop::Stalled ? kFoldShare : kConjugateShare;
-        return std::abs(shot.jacobi_mm) <= share * shot.length_mm();
+    if (shot.stop == TraceStop::Rim) {
+        return ConnectStop::Rim;
     }
-
-    // Newton's step from the best shot, shortened while shots get worse; the middle of the bracket
-    // where that leads out of it or did not help.
-    [[nodiscard]] double next_angle(const Shot& best, const Bracket& bracket,
-                                    double damping) const {
-        const double slope = std::copysign(
-            std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm()), best.jacobi_mm);
-        const double step = std::clamp(best.across_mm / slope, -kMaxStep_rad, kMaxStep_rad);
-        const double angle = best.angle_rad + damping * step;
-        if (bracket.closed() && (bisect_ || !bracket.holds(angle))) {
-            return bracket.middle();
-        }
-        return angle;
+    if (shot.stop == TraceStop::FaceLimit || shot.length_mm() >= options.trace.max_length_mm) {
+        return ConnectStop::TraceLimit;
     }
+    return std::nullopt;
+}
 
-    // Nothing is left between both sides that could come nearer than the tolerance.
-    [[nodiscard]] bool shut(const Bracket& bracket, const Shot& best) const {
-        const double reach = std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm());
-        return bracket.closed() && bracket.width() * reach <= kCutShare * options_.tolerance_mm;
-    }
+bool is_conjugate(const Shot& shot, ConnectStop end) {
+    const double share = end == ConnectStop::Stalled ? kFoldShare : kConjugateShare;
+    return std::abs(shot.jacobi_mm) <= share * shot.length_mm();
+}
 
-    void search(Shot best) {
-        Bracket bracket;
-        bracket.take(best);
-        double damping = 1.0;
-        ConnectStop end = ConnectStop::Stalled;
-        for (result_.iterations = 1; result_.iterations < options_.max_iterations;
-             ++result_.iterations) {
-            if (hits(best)) {
-                end = ConnectStop::Reached;
-                break;
-            }
-            if (shut(bracket, best)) {
-                end = ConnectStop::Gap;
-                break;
-            }
-            if (std::abs(best.across_mm) <= options_.tolerance_mm && cut_off(best)) {
-                break;
-            }
-            Shot shot = shoot(next_angle(best, bracket, damping), best.length_mm());
-            bracket.take(shot);
-            const double share = shot.miss_mm() / best.miss_mm();
-            bisect_ = share >= kGoodStep;
-            damping = share < 1.0 ? std::min(1.0, 2.0 * damping) : 0.5 * damping;
-            if (share < 1.0) {
-                best = std::move(shot);
-            } else if (damping < kLeastDamping) {
-                break;
-            }
-        }
-        conclude(end, std::move(best));
-    }
-
-    void conclude(ConnectStop end, Shot best) {
-        if (const std::optional<ConnectStop> cut = cut_off(best)) {
-            end = *cut;
-            result_.rim = best.rim;
-        } else if (conjugate(best, end)) {
-            end = ConnectStop::Conjugate;
-        }
-        result_.stop = end;
-        result_.length_mm = best.length_mm();
-        result_.miss_mm = best.miss_mm();
-        result_.across_mm = best.across_mm;
-        result_.along_mm = best.along_mm;
-        result_.jacobi_mm = best.jacobi_mm;
-        result_.conjugate_points = best.conjugate_points;
-        result_.path = std::move(best.path);
-    }
-
-    // Share of the tolerance to which the place abreast of the target is found.
-    static constexpr double kCutShare = 0.1;
-
-    const Surface& surface_;
-    const SurfacePoint& from_;
-    Place start_;
-    Place target_;
-    double slip_ratio_;
-    const ConnectOptions& options_;
-    Vector3d ahead_ = Vector3d::Zero();
-    bool bisect_ = false;  // the last step gained little
-    ConnectResult result_;
+// How the next step is taken.
+struct Stepping {
+    double damping = 1.0;  // of Newton's step
+    bool bisect = false;   // the last step gained little
 };
+
+// Newton's step from the best shot, shortened while shots get worse; the middle of the bracket
+// where that leads out of it or did not help.
+double next_angle(const Shot& best, const Bracket& bracket, const Stepping& stepping) {
+    const double slope = std::copysign(
+        std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm()), best.jacobi_mm);
+    const double step = std::clamp(best.across_mm / slope, -kMaxStep_rad, kMaxStep_rad);
+    const double angle = best.angle_rad + stepping.damping * step;
+    if (bracket.closed() && (stepping.bisect || !bracket.holds(angle))) {
+        return bracket.middle();
+    }
+    return angle;
+}
+
+// Nothing is left between both sides that could come nearer than the tolerance.
+bool is_shut(const Bracket& bracket, const Shot& best, double tolerance_mm) {
+    const double reach = std::max(std::abs(best.jacobi_mm), kConjugateShare * best.length_mm());
+    return bracket.closed() && bracket.width() * reach <= kCutShare * tolerance_mm;
+}
+
+ConnectResult concluded(Shot best, ConnectStop end, int iterations, const ConnectOptions& options) {
+    ConnectResult result;
+    result.iterations = iterations;
+    if (const std::optional<ConnectStop> cut = cut_off(best, options)) {
+        end = *cut;
+        result.rim = best.rim;
+    } else if (is_conjugate(best, end)) {
+        end = ConnectStop::Conjugate;
+    }
+    result.stop = end;
+    result.length_mm = best.length_mm();
+    result.miss_mm = best.miss_mm();
+    result.across_mm = best.across_mm;
+    result.along_mm = best.along_mm;
+    result.jacobi_mm = best.jacobi_mm;
+    result.conjugate_points = best.conjugate_points;
+    result.path = std::move(best.path);
+    return result;
+}
+
+// From a first shot to the nearest that can be had.
+ConnectResult shoot_nearer(const Aim& aim, Shot best) {
+    const double tolerance_mm = aim.options.tolerance_mm;
+    Bracket bracket;
+    bracket.take(best);
+    Stepping stepping;
+    ConnectStop end = ConnectStop::Stalled;
+    int iterations = 1;
+    for (; iterations < aim.options.max_iterations; ++iterations) {
+        if (hits(best, tolerance_mm)) {
+            end = ConnectStop::Reached;
+            break;
+        }
+        if (is_shut(bracket, best, tolerance_mm)) {
+            end = ConnectStop::Gap;
+            break;
+        }
+        if (std::abs(best.across_mm) <= tolerance_mm && cut_off(best, aim.options)) {
+            break;
+        }
+        Shot shot = shoot(aim, next_angle(best, bracket, stepping), best.length_mm());
+        bracket.take(shot);
+        const double share = shot.miss_mm() / best.miss_mm();
+        stepping.bisect = share >= kGoodStep;
+        stepping.damping =
+            share < 1.0 ? std::min(1.0, 2.0 * stepping.damping) : 0.5 * stepping.damping;
+        if (share < 1.0) {
+            best = std::move(shot);
+        } else if (stepping.damping < kLeastDamping) {
+            break;
+        }
+    }
+    return concluded(std::move(best), end, iterations, aim.options);
+}
+
+// From `from` to where the tracer sees the target.
+ConnectResult connect_to(const Surface& surface, const SurfacePoint& from, const Place& target,
+                         const ConnectGuess& guess, double slip_ratio,
+                         const ConnectOptions& options) {
+    const Place start = place_of(surface, from, options.trace);
+    if ((start.position_mm - target.position_mm).norm() <= options.tolerance_mm &&
+        start.normal.dot(target.normal) > 0.0) {
+        ConnectResult result;
+        result.stop = ConnectStop::SamePoint;
+        return result;
+    }
+    const Vector3d& n = start.normal;
+    const Vector3d ahead = (guess.direction - n * n.dot(guess.direction)).normalized();
+    const Aim aim{surface, from, start, target, ahead, slip_ratio, options};
+    return shoot_nearer(aim, shoot(aim, 0.0, guess.length_mm));
+}
 
 // Along the first chord that is long enough to have a direction.
 ConnectGuess guess_of(const PolyhedralPath& way) {
@@ -357,9 +364,8 @@ ConnectResult by_stages(const Surface& surface, const SurfacePoint& from, const 
         const double next = std::min(1.0, done + stage);
         const bool whole = next == 1.0;
         guess.length_mm = length_mm + (next - done) * way.length_mm;
-        Shooter shooter(surface, from, whole ? target : waypoint(way, next), slip_ratio,
-                        whole ? options : coarse);
-        ConnectResult result = shooter.run(guess);
+        ConnectResult result = connect_to(surface, from, whole ? target : waypoint(way, next),
+                                          guess, slip_ratio, whole ? options : coarse);
         iterations += result.iterations;
         if (!whole && result.stop == ConnectStop::Reached) {
             done = next;
@@ -408,7 +414,7 @@ const char* name_of(ConnectStop stop) {
 ConnectResult connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
                       const ConnectGuess& guess, double slip_ratio, const ConnectOptions& options) {
     const Place target = place_of(surface, to, options.trace);
-    return Shooter(surface, from, target, slip_ratio, options).run(guess);
+    return connect_to(surface, from, target, guess, slip_ratio, options);
 }
 
 ConnectResult connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
