@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/index.h"
 #include "winding/cover/joints.h"
@@ -16,249 +18,259 @@ bool can_wind(const Member& member, bool backward) {
     return backward ? member.windable_backward : member.windable_forward;
 }
 
-class Balancer {
-public:
-    Balancer(std::span<const Member> members, std::span<const char> allowed, std::size_t rims,
-             const SelectOptions& options, int fibres, Selection& selection)
-        : members_(members),
-          allowed_(allowed),
-          rims_(rims),
-          nodes_(2 * rims),
-          options_(options),
-          fibres_(fibres),
-          selection_(selection) {
-        for (const std::int32_t i : selection.chosen) {
-            laid_.push_back({i, !members[at(i)].windable_forward});
-        }
-    }
+// What is balanced, and how far.
+struct BalanceTask {
+    std::span<const Member> members;  // the library
+    std::span<const char> allowed;    // per member
+    std::size_t rims;
+    const SelectOptions& options;
+    int fibres;  // so many may be left
 
-    std::vector<LaidCourse> run() {
-        direct();
-        // Each chain mends two nodes; the guard is only against a library that could not.
-        for (std::size_t guard = 0; guard <= 2 * laid_.size() + nodes_; ++guard) {
-            if (!add_chain()) {
-                break;
-            }
-        }
-        while (drop_loose()) {
-        }
-        return std::move(laid_);
-    }
-
-private:
+    [[nodiscard]] std::size_t nodes() const { return 2 * rims; }
+    [[nodiscard]] const Member& member(const LaidCourse& c) const { return members[at(c.member)]; }
     [[nodiscard]] const RimCrossing& start(const LaidCourse& c) const {
-        return start_of(members_[at(c.member)], c.backward);
+        return start_of(member(c), c.backward);
     }
     [[nodiscard]] const RimCrossing& end(const LaidCourse& c) const {
-        return end_of(members_[at(c.member)], c.backward);
+        return end_of(member(c), c.backward);
     }
+};
 
-    // Reverses courses until departures and arrivals agree at every rim, as far as they can: each
-    // pass reverses a shortest chain of reversible courses from a rim with too many departures.
-    void direct() {
-        std::vector<int> excess(rims_, 0);
-        for (const LaidCourse& c : laid_) {
-            ++excess[at(start(c).rim)];
-            --excess[at(end(c).rim)];
+// From `from` along reversible courses to the nearest rim whose excess is <= `limit`.
+bool reverse_chain(const BalanceTask& task, std::int32_t from, int limit, std::vector<int>& excess,
+                   std::vector<LaidCourse>& laid) {
+    std::vector<std::size_t> came_by(task.rims, kNone);
+    std::deque<std::int32_t> queue{from};
+    while (!queue.empty()) {
+        const std::int32_t rim = queue.front();
+        queue.pop_front();
+        if (excess[at(rim)] <= limit) {
+            for (std::int32_t r = rim; r != from;) {
+                LaidCourse& c = laid[came_by[at(r)]];
+                r = task.start(c).rim;
+                c.backward = !c.backward;
+            }
+            excess[at(from)] -= 2;
+            excess[at(rim)] += 2;
+            return true;
         }
-        for (bool changed = true; changed;) {
-            changed = false;
-            for (std::size_t r = 0; r < rims_ && !changed; ++r) {
-                if (excess[r] > 0) {
-                    changed = reverse_chain(static_cast<std::int32_t>(r), excess,
-                                            excess[r] >= 2 ? -1 : -2);
+        for (std::size_t c = 0; c < laid.size(); ++c) {
+            const std::int32_t next = task.end(laid[c]).rim;
+            if (task.start(laid[c]).rim == rim && next != from && came_by[at(next)] == kNone &&
+                can_wind(task.member(laid[c]), !laid[c].backward)) {
+                came_by[at(next)] = c;
+                queue.push_back(next);
+            }
+        }
+    }
+    return false;
+}
+
+// Reverses courses until departures and arrivals agree at every rim, as far as they can: each
+// pass reverses a shortest chain of reversible courses from a rim with too many departures.
+std::vector<LaidCourse> directed(const BalanceTask& task, std::vector<LaidCourse> laid) {
+    std::vector<int> excess(task.rims, 0);
+    for (const LaidCourse& c : laid) {
+        ++excess[at(task.start(c).rim)];
+        --excess[at(task.end(c).rim)];
+    }
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t r = 0; r < task.rims && !changed; ++r) {
+            if (excess[r] > 0) {
+                changed = reverse_chain(task, static_cast<std::int32_t>(r),
+                                        excess[r] >= 2 ? -1 : -2, excess, laid);
+            }
+        }
+    }
+    return laid;
+}
+
+Joints joints_of(const BalanceTask& task, const std::vector<LaidCourse>& laid) {
+    Joints joints(task.nodes());
+    for (const LaidCourse& c : laid) {
+        joints.add(task.member(c), c.backward, 1);
+    }
+    return joints;
+}
+
+// Fibre of one more member, overlap included.
+double cost_of(const BalanceTask& task, const Selection& selection, const Member& member) {
+    double waste = 0.0;
+    for (const std::int32_t sample : member.footprint) {
+        waste += std::max(0, selection.layers[at(sample)] - task.options.target(sample) + 1);
+    }
+    // Overlap counts as a share of the member's own fibre.
+    const auto own = static_cast<double>(std::max<std::size_t>(1, member.footprint.size()));
+    return member.turn_mm + member.length_mm * (1.0 + task.options.overlap_weight * waste / own);
+}
+
+// The cheapest way from a node to another.
+struct ChainWay {
+    double cost = std::numeric_limits<double>::infinity();
+    LaidCourse course;        // direct course between the nodes
+    std::size_t via = kNone;  // or the first node of a chain
+};
+
+struct ChainWays {
+    std::size_t nodes;
+    std::vector<ChainWay> way = std::vector<ChainWay>(nodes * nodes);
+
+    [[nodiscard]] ChainWay& between(std::size_t from, std::size_t to) {
+        return way[from * nodes + to];
+    }
+    [[nodiscard]] const ChainWay& between(std::size_t from, std::size_t to) const {
+        return way[from * nodes + to];
+    }
+};
+
+// Cheapest course from node to node, then chains (Floyd and Warshall's all shortest paths).
+ChainWays cheapest_ways(const BalanceTask& task, const Selection& selection) {
+    ChainWays ways{task.nodes()};
+    for (std::int32_t i = 0; at(i) < task.members.size(); ++i) {
+        if (task.allowed[at(i)] == 0) {
+            continue;
+        }
+        const Member& member = task.members[at(i)];
+        const double value = cost_of(task, selection, member);
+        for (const bool backward : {false, true}) {
+            const LaidCourse c{i, backward};
+            ChainWay& way = ways.between(departure_node(task.start(c)), arrival_node(task.end(c)));
+            if (can_wind(member, backward) && value < way.cost) {
+                way = {value, c, kNone};
+            }
+        }
+    }
+    for (std::size_t k = 0; k < ways.nodes; ++k) {
+        for (std::size_t i = 0; i < ways.nodes; ++i) {
+            for (std::size_t j = 0; j < ways.nodes; ++j) {
+                const double sum = ways.between(i, k).cost + ways.between(k, j).cost;
+                if (sum < ways.between(i, j).cost) {
+                    ways.between(i, j) = {sum, {}, k};
                 }
             }
         }
     }
+    return ways;
+}
 
-    // From `from` along reversible courses to the nearest rim whose excess is <= `limit`.
-    bool reverse_chain(std::int32_t from, std::vector<int>& excess, int limit) {
-        std::vector<std::size_t> came_by(rims_, kNone);
-        std::deque<std::int32_t> queue{from};
-        while (!queue.empty()) {
-            const std::int32_t rim = queue.front();
-            queue.pop_front();
-            if (excess[at(rim)] <= limit) {
-                for (std::int32_t r = rim; r != from;) {
-                    LaidCourse& c = laid_[came_by[at(r)]];
-                    r = start(c).rim;
-                    c.backward = !c.backward;
-                }
-                excess[at(from)] -= 2;
-                excess[at(rim)] += 2;
-                return true;
+// Courses that are laid, and which members and layers of the library they make.
+struct Balanced {
+    std::vector<LaidCourse>& laid;
+    Selection& selection;
+};
+
+void lay_way(const BalanceTask& task, const ChainWays& ways, std::size_t from, std::size_t to,
+             const Balanced& balanced) {
+    const ChainWay& way = ways.between(from, to);
+    if (way.via != kNone) {
+        lay_way(task, ways, from, way.via, balanced);
+        lay_way(task, ways, way.via, to, balanced);
+        return;
+    }
+    balanced.laid.push_back(way.course);
+    balanced.selection.chosen.push_back(way.course.member);
+    for (const std::int32_t sample : task.member(way.course).footprint) {
+        ++balanced.selection.layers[at(sample)];
+    }
+}
+
+// A chain that may be added.
+struct Chain {
+    double cost = std::numeric_limits<double>::infinity();
+    std::size_t from = 0;
+    std::size_t to = 0;
+    bool and_back = false;
+};
+
+// The cheapest chain from a node where fibres arrive in vain to one where they are missing,
+// unless it would only close a fibre that nothing else joins; or the cheapest way there and back
+// between courses that nothing joins. Its cost is infinite where there is none.
+Chain cheapest_chain(const ChainWays& ways, const Joints& joints) {
+    const std::vector<std::size_t> part = joints.part_of();
+    const std::vector<int> starts = joints.starts(part);
+    Chain best;
+    const auto weigh = [&](const Chain& chain) {
+        if (chain.cost < best.cost) {
+            best = chain;
+        }
+    };
+    for (std::size_t i = 0; i < ways.nodes; ++i) {
+        for (std::size_t j = 0; j < ways.nodes; ++j) {
+            const bool apart = part[i] != part[j];
+            const double there = ways.between(i, j).cost;
+            if (joints.excess(i) > 0 && joints.excess(j) < 0 && (apart || starts[part[i]] > 1)) {
+                weigh({there, i, j, false});
             }
-            for (std::size_t c = 0; c < laid_.size(); ++c) {
-                const std::int32_t next = end(laid_[c]).rim;
-                if (start(laid_[c]).rim == rim && next != from && came_by[at(next)] == kNone &&
-                    can_wind(members_[at(laid_[c].member)], !laid_[c].backward)) {
-                    came_by[at(next)] = c;
-                    queue.push_back(next);
-                }
+            if (apart && joints.has_courses(i) && joints.has_courses(j)) {
+                weigh({there + ways.between(j, i).cost, i, j, true});
             }
         }
+    }
+    return best;
+}
+
+// Adds the cheapest chain. False when there is none or no need.
+bool add_chain(const BalanceTask& task, const Balanced& balanced) {
+    const Joints joints = joints_of(task, balanced.laid);
+    if (joints.fibres() <= task.fibres) {
         return false;
     }
-
-    [[nodiscard]] Joints joints() const {
-        Joints joints(nodes_);
-        for (const LaidCourse& c : laid_) {
-            joints.add(members_[at(c.member)], c.backward, 1);
-        }
-        return joints;
+    const ChainWays ways = cheapest_ways(task, balanced.selection);
+    const Chain chain = cheapest_chain(ways, joints);
+    if (chain.cost == std::numeric_limits<double>::infinity()) {
+        return false;
     }
-
-    [[nodiscard]] double cost(std::int32_t i) const {
-        const Member& member = members_[at(i)];
-        double waste = 0.0;
-        for (const std::int32_t sample : member.footprint) {
-            waste += std::max(0, selection_.layers[at(sample)] - options_.target(sample) + 1);
-        }
-        // Overlap counts as a share of the member's own fibre.
-        const auto own = static_cast<double>(std::max<std::size_t>(1, member.footprint.size()));
-        return member.turn_mm + member.length_mm * (1.0 + options_.overlap_weight * waste / own);
+    lay_way(task, ways, chain.from, chain.to, balanced);
+    if (chain.and_back) {
+        lay_way(task, ways, chain.to, chain.from, balanced);
     }
+    return true;
+}
 
-    struct Way {
-        double cost = std::numeric_limits<double>::infinity();
-        LaidCourse course;        // direct course between the nodes
-        std::size_t via = kNone;  // or the first node of a chain
-    };
-
-    // Cheapest course from node to node, then chains (Floyd and Warshall's all shortest paths).
-    [[nodiscard]] std::vector<Way> cheapest_ways() const {
-        std::vector<Way> ways(nodes_ * nodes_);
-        for (std::int32_t i = 0; at(i) < members_.size(); ++i) {
-            if (allowed_[at(i)] == 0) {
-                continue;
-            }
-            const double value = cost(i);
-            for (const bool backward : {false, true}) {
-                const LaidCourse c{i, backward};
-                Way& way = ways[departure_node(start(c)) * nodes_ + arrival_node(end(c))];
-                if (can_wind(members_[at(i)], backward) && value < way.cost) {
-                    way = {value, c, kNone};
-                }
-            }
+// The course without which there are fewer fibres and that bares least wall; kNone where there is
+// none or no need.
+std::size_t loose_course(const BalanceTask& task, const std::vector<LaidCourse>& laid,
+                         const Selection& selection) {
+    Joints joints = joints_of(task, laid);
+    const int fibres = joints.fibres();
+    std::size_t best = kNone;
+    std::int64_t least = 0;
+    for (std::size_t c = 0; fibres > task.fibres && c < laid.size(); ++c) {
+        const Member& member = task.member(laid[c]);
+        joints.add(member, laid[c].backward, -1);
+        const bool helps = joints.fibres() < fibres;
+        joints.add(member, laid[c].backward, 1);
+        if (!helps) {
+            continue;
         }
-        for (std::size_t k = 0; k < nodes_; ++k) {
-            for (std::size_t i = 0; i < nodes_; ++i) {
-                for (std::size_t j = 0; j < nodes_; ++j) {
-                    const double sum = ways[i * nodes_ + k].cost + ways[k * nodes_ + j].cost;
-                    if (sum < ways[i * nodes_ + j].cost) {
-                        ways[i * nodes_ + j] = {sum, {}, k};
-                    }
-                }
-            }
-        }
-        return ways;
-    }
-
-    void lay_way(const std::vector<Way>& ways, std::size_t from, std::size_t to) {
-        const Way& way = ways[from * nodes_ + to];
-        if (way.via != kNone) {
-            lay_way(ways, from, way.via);
-            lay_way(ways, way.via, to);
-            return;
-        }
-        laid_.push_back(way.course);
-        selection_.chosen.push_back(way.course.member);
-        for (const std::int32_t sample : members_[at(way.course.member)].footprint) {
-            ++selection_.layers[at(sample)];
+        const std::int64_t bared = std::count_if(
+            member.footprint.begin(), member.footprint.end(), [&](std::int32_t sample) {
+                return selection.layers[at(sample)] <= task.options.target(sample);
+            });
+        if (best == kNone || bared < least) {
+            best = c;
+            least = bared;
         }
     }
+    return best;
+}
 
-    // Adds the cheapest chain from a node where fibres arrive in vain to one where they are
-    // missing, unless it would only close a fibre that nothing else joins; or the cheapest way
-    // there and back between courses that nothing joins.
-    bool add_chain() {
-        const Joints joints = this->joints();
-        if (joints.fibres() <= fibres_) {
-            return false;
-        }
-        const std::vector<std::size_t> part = joints.part_of();
-        const std::vector<int> starts = joints.starts(part);
-        const std::vector<Way> ways = cheapest_ways();
-        double least = std::numeric_limits<double>::infinity();
-        std::pair<std::size_t, std::size_t> best;
-        bool and_back = false;
-        const auto weigh = [&](double cost, std::size_t i, std::size_t j, bool back) {
-            if (cost < least) {
-                least = cost;
-                best = {i, j};
-                and_back = back;
-            }
-        };
-        for (std::size_t i = 0; i < nodes_; ++i) {
-            for (std::size_t j = 0; j < nodes_; ++j) {
-                const bool apart = part[i] != part[j];
-                const double there = ways[i * nodes_ + j].cost;
-                if (joints.excess(i) > 0 && joints.excess(j) < 0 &&
-                    (apart || starts[part[i]] > 1)) {
-                    weigh(there, i, j, false);
-                }
-                if (apart && joints.has_courses(i) && joints.has_courses(j)) {
-                    weigh(there + ways[j * nodes_ + i].cost, i, j, true);
-                }
-            }
-        }
-        if (least == std::numeric_limits<double>::infinity()) {
-            return false;
-        }
-        lay_way(ways, best.first, best.second);
-        if (and_back) {
-            lay_way(ways, best.second, best.first);
-        }
-        return true;
+// Where nothing can be added: drops a loose course. False when there is none.
+bool drop_loose(const BalanceTask& task, const Balanced& balanced) {
+    auto& [laid, selection] = balanced;
+    const std::size_t loose = loose_course(task, laid, selection);
+    if (loose == kNone) {
+        return false;
     }
-
-    // Where nothing can be added: drops the course without which there are fewer fibres and that
-    // bares least wall. False when there is none or no need.
-    bool drop_loose() {
-        Joints joints = this->joints();
-        const int fibres = joints.fibres();
-        std::size_t best = kNone;
-        std::int64_t least = 0;
-        for (std::size_t c = 0; fibres > fibres_ && c < laid_.size(); ++c) {
-            const Member& member = members_[at(laid_[c].member)];
-            joints.add(member, laid_[c].backward, -1);
-            const bool helps = joints.fibres() < fibres;
-            joints.add(member, laid_[c].backward, 1);
-            if (!helps) {
-                continue;
-            }
-            const std::int64_t bared = std::count_if(
-                member.footprint.begin(), member.footprint.end(), [&](std::int32_t sample) {
-                    return selection_.layers[at(sample)] <= options_.target(sample);
-                });
-            if (best == kNone || bared < least) {
-                best = c;
-                least = bared;
-            }
-        }
-        if (best == kNone) {
-            return false;
-        }
-        const std::int32_t member = laid_[best].member;
-        for (const std::int32_t sample : members_[at(member)].footprint) {
-            --selection_.layers[at(sample)];
-        }
-        selection_.chosen.erase(
-            std::find(selection_.chosen.begin(), selection_.chosen.end(), member));
-        laid_.erase(laid_.begin() + static_cast<std::ptrdiff_t>(best));
-        return true;
+    const std::int32_t member = laid[loose].member;
+    for (const std::int32_t sample : task.members[at(member)].footprint) {
+        --selection.layers[at(sample)];
     }
-
-    std::span<const Member> members_;
-    std::span<const char> allowed_;
-    std::size_t rims_;
-    std::size_t nodes_;
-    const SelectOptions& options_;
-    int fibres_;
-    Selection& selection_;
-    std::vector<LaidCourse> laid_;
-};
+    selection.chosen.erase(std::find(selection.chosen.begin(), selection.chosen.end(), member));
+    laid.erase(laid.begin() + static_cast<std::ptrdiff_t>(loose));
+    return true;
+}
 
 }  // namespace
 
@@ -266,7 +278,22 @@ std::vector<LaidCourse> balance_courses(std::span<const Member> members,
                                         std::span<const char> allowed, std::size_t rims,
                                         const SelectOptions& options, int fibres,
                                         Selection& selection) {
-    return Balancer(members, allowed, rims, options, fibres, selection).run();
+    const BalanceTask task{members, allowed, rims, options, fibres};
+    std::vector<LaidCourse> laid;
+    for (const std::int32_t i : selection.chosen) {
+        laid.push_back({i, !members[at(i)].windable_forward});
+    }
+    laid = directed(task, std::move(laid));
+    const Balanced balanced{laid, selection};
+    // Each chain mends two nodes; the guard is only against a library that could not.
+    for (std::size_t guard = 0; guard <= 2 * laid.size() + task.nodes(); ++guard) {
+        if (!add_chain(task, balanced)) {
+            break;
+        }
+    }
+    while (drop_loose(task, balanced)) {
+    }
+    return laid;
 }
 
 }  // namespace meshwind
