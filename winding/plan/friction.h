@@ -12,8 +12,8 @@ namespace meshwind {
 /// what is steered with a constant slip ratio one for a pass. A law that varies along the path
 /// therefore answers planners with the least that holds anywhere on the layer, and `holds()` is
 /// asked with the station only where single stations are judged: SlipOptions and the check `slip`
-/// of postproc/verify/verify.cpp, courses of a cover in winding/cover/library.cpp, and what the
-/// blocks may add in pipeline/piece_program.cpp.
+/// of postproc/verify/laid_checks.cpp, courses of a cover in winding/cover/library.cpp, and what
+/// the blocks may add in pipeline/piece_program.cpp.
 class Friction {
 public:
     /// \param ratio >= 0, |kg / kn|
