@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/units.h"
+
 namespace meshwind {
 namespace {
 
@@ -97,6 +99,19 @@ double feed_length(FeedRule rule, const MoveLengths& lengths) {
         return std::hypot(lengths.main, lengths.second, lengths.rotary);
     }
     return lengths.linear() > 0.0 ? lengths.linear() : lengths.rotary;
+}
+
+double rapid_time_s(const Machine& machine, std::span<const std::int64_t> from,
+                    std::span<const std::int64_t> to) {
+    double longest_s = 0.0;
+    for (std::size_t a = 0; a < from.size(); ++a) {
+        const double way =
+            std::abs(static_cast<double>(to[a] - from[a])) / static_cast<double>(kNanoPerUnit);
+        const Axis& axis = machine.axis(a);
+        const bool rotary = axis.type == AxisType::Rotary;
+        longest_s = std::max(longest_s, (rotary ? rad_from_deg(way) : way) / axis.velocity);
+    }
+    return longest_s;
 }
 
 bool has_slow_linear(const BlockList& list, const SlowLinear& rule) {

@@ -31,6 +31,10 @@ struct MoveLengths {
 /// The length whose quotient by the time is F.
 [[nodiscard]] double feed_length(FeedRule rule, const MoveLengths& lengths);
 
+/// Time of a rapid move with the fibre on: as fast as the slowest of the axes can, without ramps.
+[[nodiscard]] double rapid_time_s(const Machine& machine, std::span<const std::int64_t> from,
+                                  std::span<const std::int64_t> to);
+
 /// When a block whose linear part is tiny beside its turn would be run too fast under the rule
 /// Nist.
 struct SlowLinear {

@@ -1,6 +1,7 @@
 #include "postproc/nc/foreign_notes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/counted.h"
@@ -13,6 +14,13 @@ namespace {
 constexpr std::size_t kLinesOfMaker = 3;
 
 constexpr std::string_view kMadeBy = "meshwind ";
+
+constexpr std::string_view kIdleLetters = "DHKLOPQRST";
+
+// A pause, look-ahead, planes, mm, offsets and cycles off, the workpiece's zero, which is the
+// operator's, words on corners.
+constexpr std::array kIdleG = {kPauseCode, 80,  90,  170, 180, 190, 210, 400, 490, 540,
+                               550,        560, 570, 580, 590, 610, 640, 710, 800};
 
 // Whether code in lower case without blanks has the word "g1", as g01 too.
 bool has_word(std::string_view code, char letter, char digit) {
@@ -79,6 +87,19 @@ ProgramOrigin origin_of(NcComments comments, std::span<const std::string_view> l
         origin.stops = origin.stops || has_word(code, 'm', '0');
     }
     return origin;
+}
+
+bool is_idle_g(int tenths) {
+    return std::find(kIdleG.begin(), kIdleG.end(), tenths) != kIdleG.end();
+}
+
+// All but calls of subprograms and their ends, and M47, which starts again.
+bool is_idle_m(int tenths) {
+    return tenths != 470 && (tenths < 960 || tenths > 999);
+}
+
+bool is_idle_letter(char letter) {
+    return kIdleLetters.find(letter) != std::string_view::npos;
 }
 
 void ForeignNotes::see(Seen& seen, std::int32_t line) {

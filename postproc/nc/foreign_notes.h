@@ -27,6 +27,17 @@ struct ProgramOrigin {
 
 [[nodiscard]] ProgramOrigin origin_of(NcComments comments, std::span<const std::string_view> lines);
 
+/// Whether a code of a program of others moves no axis and is left out. \param tenths NcLine::code
+[[nodiscard]] bool is_idle_g(int tenths);
+[[nodiscard]] bool is_idle_m(int tenths);
+
+/// G4, which makes the axes rest, in tenths.
+inline constexpr int kPauseCode = 40;
+
+/// Whether words of a letter say nothing of axes in a program of others, where no axis has it:
+/// tools, spindles, parameters of M words.
+[[nodiscard]] bool is_idle_letter(char letter);
+
 /// Counts what a program leaves open or says beside its motion.
 class ForeignNotes {
 public:

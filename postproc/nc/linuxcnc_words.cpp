@@ -1,6 +1,8 @@
 #include "postproc/nc/linuxcnc_words.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "core/error.h"
@@ -175,6 +177,17 @@ int NcLine::code(const NcWord& word) const {
         not_understood(word);
     }
     return static_cast<int>(value / kTenth);
+}
+
+double NcLine::feed(const NcWord& word) const {
+    double value = 0.0;
+    const char* last = word.number.data() + word.number.size();
+    const auto [end, error] =
+        std::from_chars(word.number.data(), last, value, std::chars_format::fixed);
+    if (error != std::errc{} || end != last || !(value > 0.0) || !std::isfinite(value)) {
+        fail("nc.feed", "F" + std::string(word.number) + " is not above 0");
+    }
+    return value;
 }
 
 }  // namespace meshwind

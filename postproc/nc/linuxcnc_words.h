@@ -50,6 +50,9 @@ struct NcLine {
     /// nc.not_understood
     [[nodiscard]] int code(const NcWord& word) const;
 
+    /// The number of an F word. \throws InputError nc.feed unless it is above 0
+    [[nodiscard]] double feed(const NcWord& word) const;
+
 private:
     [[noreturn]] void no_expressions() const;
     void rest_of_line(std::string_view text);

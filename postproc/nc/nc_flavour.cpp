@@ -1,7 +1,10 @@
 #include "postproc/nc/nc_flavour.h"
 
+#include <algorithm>
 #include <array>
+#include <string>
 
+#include "core/text/text_number.h"
 #include "postproc/motion/junction_time.h"
 #include "postproc/nc/linuxcnc.h"
 #include "postproc/nc/linuxcnc_flow.h"
@@ -196,6 +199,30 @@ const NcFlavour& marlin_flavour() {
         .harmless_m = kMarlinM,
     };
     return kFlavour;
+}
+
+const NcHarmless* find_harmless(std::span<const NcHarmless> codes, int tenths) {
+    const auto found = std::find_if(codes.begin(), codes.end(),
+                                    [&](const NcHarmless& code) { return code.tenths == tenths; });
+    return found == codes.end() ? nullptr : &*found;
+}
+
+PathMode asked_path_mode(const NcHarmless& code, const NcLine& line) {
+    PathMode mode;
+    mode.words = "G" + std::to_string(code.tenths / 10);
+    mode.words += code.tenths % 10 == 0 ? "" : "." + std::to_string(code.tenths % 10);
+    for (const char letter : code.parameters) {
+        for (const NcWord& word : line.words) {
+            if (word.letter == letter) {
+                const double value =
+                    static_cast<double>(line.nano(word)) / static_cast<double>(kNanoPerUnit);
+                mode.words += std::string(" ") + letter;
+                append_shortest(mode.words, value);
+                mode.corner_mm = letter == 'P' && value > 0.0 ? value : mode.corner_mm;
+            }
+        }
+    }
+    return mode;
 }
 
 std::span<const NcFlavour* const> nc_flavours() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "postproc/motion/program_head.h"
 #include "postproc/nc/feed_rule.h"
 #include "postproc/nc/linuxcnc_words.h"
 #include "postproc/nc/program_flow.h"
@@ -18,6 +19,13 @@ struct NcHarmless {
     std::string_view parameters{};
     bool path = false;  ///< it says how corners are passed (PathMode)
 };
+
+/// The row of a code; null where it is none of these.
+[[nodiscard]] const NcHarmless* find_harmless(std::span<const NcHarmless> codes, int tenths);
+
+/// The mode that a code asks for with its parameters in the line, numbers as short as they can be.
+/// \pre code.path
+[[nodiscard]] PathMode asked_path_mode(const NcHarmless& code, const NcLine& line);
 
 /// What a controller counts of a line that may be too long for it.
 enum class NcCounted {

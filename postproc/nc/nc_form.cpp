@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "postproc/nc/float32_steps.h"
+
 namespace meshwind {
 namespace {
 
@@ -87,6 +89,15 @@ void check_form(const NcFlavour& flavour, bool foreign, std::string_view text, c
             line.fail("nc.number",
                       shown() + " has no point and may mean thousandths; write it with one");
         }
+    }
+}
+
+void check_step(const NcFlavour& flavour, bool foreign, const NcLine& line, const NcWord& word,
+                const BlockAxis& axis, std::int64_t value) {
+    const bool binary = flavour.float32 != Float32Text::None && value % kFinestBinary_nano == 0;
+    if (value % axis.resolution_nano != 0 && !binary && !foreign) {
+        line.fail("nc.resolution", std::string("\"") + word.letter + std::string(word.number) +
+                                       "\" is not a multiple of the axis' resolution");
     }
 }
 

@@ -1,9 +1,11 @@
 /// What a controller asks of the text of a line, whatever it says.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "postproc/motion/block.h"
 #include "postproc/nc/linuxcnc_words.h"
 #include "postproc/nc/nc_flavour.h"
 
@@ -22,5 +24,10 @@ void check_length(const NcFlavour& flavour, bool foreign, std::string_view text,
 /// nc.number, nc.not_understood
 void check_form(const NcFlavour& flavour, bool foreign, std::string_view text, const NcLine& line,
                 std::string_view axes);
+
+/// A position is a multiple of the axis' step, or one that sums in 32-bit floats keep; a program by
+/// others may have any. \param value NcLine::nano of the word \throws InputError nc.resolution
+void check_step(const NcFlavour& flavour, bool foreign, const NcLine& line, const NcWord& word,
+                const BlockAxis& axis, std::int64_t value);
 
 }  // namespace meshwind
