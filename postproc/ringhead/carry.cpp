@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <utility>
 
@@ -11,7 +10,7 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "core/version.h"
-#include "postproc/verify/check_kinds.h"
+#include "postproc/ringhead/carry_checks.h"
 
 namespace meshwind {
 namespace {
@@ -26,11 +25,6 @@ constexpr double kFreeTurn_deg_s = 400.0;
 // A move with less way than this takes its time from its turn: with half of it 1e-6 m/s, the last
 // digit of $VEL.CP, would already be a tenth of the speed of a slow passage.
 constexpr double kLeastWay_mm = 0.01;
-// Rounding to a program's digits moves no axis by more.
-constexpr double kRounded_mm = 1e-3;
-constexpr double kRounded_deg = 1e-4;
-// Loads are compared with 1; speeds are rounded up by at most a millionth m/s in a slow move.
-constexpr double kLoadSlack = 1e-3;
 
 [[noreturn]] void fail(const char* code, const std::string& place, const std::string& words) {
     throw InputError(code, place, words);
@@ -82,396 +76,261 @@ std::array<std::int64_t, 6> start_nano(const CarriedJoints& joints, std::size_t 
     return start;
 }
 
-class Carrier {
-public:
-    Carrier(CarryAxis&& axis, const Machine& machine, const CarryRequest& request)
-        : result_(std::move(axis)) {
-        result_.machine = machine;
-        result_.request = request;
+void check_speed(const CarryRequest& request, const Machine& machine) {
+    const double most_mm_s = machine.fibre.max_speed_mm_s;
+    if (request.speed_mm_s > most_mm_s) {
+        fail("carry.speed", "--speed",
+             "is above the " + fixed(most_mm_s, 1) +
+                 " mm/s that the machine's fibre allows; pass more slowly");
     }
+}
 
-    CarryOutcome run(const std::string& machine_file) {
-        prepare(machine_file);
-        plan();
-        make_program();
-        wind();
-        check();
-        lay_fibres();
-        put_texts();
-        return std::move(result_);
+RingHead ring_head(const EyeHead& eye, const CarryRequest& request) {
+    return {eye.position_mm, eye.exit, eye.roller, request.ring_distance_mm,
+            request.ring_radius_mm};
+}
+
+// Pose of the axis' table on the flange, as the controller will have it: rounded to its digits.
+Isometry3d tool_pose(const std::array<double, 6>& tool) {
+    Isometry3d pose = Isometry3d::Identity();
+    pose.translation() = Eigen::Vector3d(tool[0], tool[1], tool[2]);
+    pose.linear() =
+        EulerZyx{rad_from_deg(tool[3]), rad_from_deg(tool[4]), rad_from_deg(tool[5])}.matrix();
+    return pose_of(krl_frame(pose));
+}
+
+std::vector<KrlFrame> frames_at(const RingHead& head, const FrameAxis& axis,
+                                const std::vector<double>& s_mm) {
+    std::vector<KrlFrame> frames;
+    for (const double s : s_mm) {
+        frames.push_back(krl_frame(carried_pose(head, axis.at(s))));
     }
+    return frames;
+}
 
-private:
-    void prepare(const std::string& machine_file) {
-        const CarryRequest& request = result_.request;
-        check_numbers(request);
-        result_.tube_radius_mm =
-            request.tube_radius_mm.value_or(result_.axis.radius_mm.value_or(kTubeRadius_mm));
-        result_.stations = axis_.stations().size();
-        result_.length_mm = axis_.length_mm();
-        check_machine(result_.machine, machine_file);
-        const double most_mm_s = result_.machine.fibre.max_speed_mm_s;
-        if (request.speed_mm_s > most_mm_s) {
-            fail("carry.speed", "--speed",
-                 "is above the " + fixed(most_mm_s, 1) +
-                     " mm/s that the machine's fibre allows; pass more slowly");
-        }
-        const EyeHead& eye = result_.machine.eye;
-        result_.head = {eye.position_mm, eye.exit, eye.roller, request.ring_distance_mm,
-                        request.ring_radius_mm};
-        const auto& t = request.tool;
-        tool_.translation() = Eigen::Vector3d(t[0], t[1], t[2]);
-        tool_.linear() =
-            EulerZyx{rad_from_deg(t[3]), rad_from_deg(t[4]), rad_from_deg(t[5])}.matrix();
-        tool_ = pose_of(krl_frame(tool_));  // what the controller will use
+std::vector<Isometry3d> poses_of(const std::vector<KrlFrame>& frames) {
+    std::vector<Isometry3d> poses;
+    for (const KrlFrame& frame : frames) {
+        poses.push_back(pose_of(frame));
     }
+    return poses;
+}
 
-    void plan() {
-        const CarryRequest& request = result_.request;
-        const CarryTolerance tolerance{request.tolerance_mm, rad_from_deg(request.tolerance_deg)};
-        result_.fit = worst_ring_fit(result_.head, axis_, result_.tube_radius_mm);
-        result_.points = choose_carry_points(result_.head, axis_, tolerance);
-        std::vector<Isometry3d> poses;
-        for (const double s : result_.points.s_mm) {
-            frames_.push_back(krl_frame(carried_pose(result_.head, axis_.at(s))));
-            poses.push_back(pose_of(frames_.back()));
-        }
-        result_.samples = sample_moves(result_.points.s_mm, poses);
-        result_.joints = follow_samples(result_.machine, result_.samples, tool_);
-        result_.planned =
-            time_moves(result_.machine, result_.samples, result_.joints, request.speed_mm_s);
+// A move that takes its time. Way sets it, or where there is next to none the turn.
+KrlMove timed_move(const KrlFrame& from, const KrlFrame& to, double time_s, double speed_mm_s) {
+    const Isometry3d begin = pose_of(from);
+    const Isometry3d end = pose_of(to);
+    double path_mm_s = speed_mm_s;
+    double turn_deg_s = kFreeTurn_deg_s;
+    const double way_mm = (end.translation() - begin.translation()).norm();
+    if (way_mm < kLeastWay_mm) {
+        const SwivelSpin turns = swivel_and_spin(begin, end);
+        turn_deg_s = deg_from_rad(std::max(turns.swivel_rad, std::abs(turns.spin_rad))) / time_s;
+    } else {
+        path_mm_s = way_mm / time_s;
     }
+    return {to, krl_path_speed(path_mm_s / kMmPerM), krl_turn_speed(turn_deg_s)};
+}
 
-    void make_program() {
-        planned_.name = result_.request.name;
-        planned_.base = krl_frame(Isometry3d::Identity());
-        planned_.tool = krl_frame(tool_);
-        planned_.start_nano = start_nano(result_.joints, 0);
-        for (std::size_t i = 0; i < frames_.size(); ++i) {
-            // The start is taken at the passage's own speed.
-            double path_mm_s = result_.request.speed_mm_s;
-            double turn_deg_s = kFreeTurn_deg_s;
-            if (i > 0) {
-                const Isometry3d from = pose_of(frames_[i - 1]);
-                const Isometry3d to = pose_of(frames_[i]);
-                const double way_mm = (to.translation() - from.translation()).norm();
-                const double time_s = result_.planned.step_s[i];
-                if (way_mm < kLeastWay_mm) {
-                    const SwivelSpin turns = swivel_and_spin(from, to);
-                    turn_deg_s =
-                        deg_from_rad(std::max(turns.swivel_rad, std::abs(turns.spin_rad))) / time_s;
-                } else {
-                    path_mm_s = way_mm / time_s;
-                }
-            }
-            planned_.moves.push_back(
-                {frames_[i], krl_path_speed(path_mm_s / kMmPerM), krl_turn_speed(turn_deg_s)});
-        }
-        result_.duration_s = durations_s(planned_);
-        text_ = write_krl(planned_, {}, result_.machine.controller.header);
-        result_.program = read_krl(text_, planned_.name + kKrlExtension);
-        back_ = back_program(planned_, carried_back(planned_.name),
-                             start_nano(result_.joints, result_.samples.size() - 1));
+// The moves through all frames. The start is taken at the passage's own speed.
+std::vector<KrlMove> timed_moves(const std::vector<KrlFrame>& frames,
+                                 const std::vector<double>& step_s, double speed_mm_s) {
+    std::vector<KrlMove> moves;
+    moves.push_back(
+        {frames[0], krl_path_speed(speed_mm_s / kMmPerM), krl_turn_speed(kFreeTurn_deg_s)});
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        moves.push_back(timed_move(frames[i - 1], frames[i], step_s[i], speed_mm_s));
     }
+    return moves;
+}
 
-    void lay_fibres() {
-        const CarryRequest& request = result_.request;
-        if (!(request.angle_deg > 0.0)) {
-            return;
-        }
-        const CarryWindingTask task{result_.head,
-                                    axis_,
-                                    result_.points.s_mm,
-                                    text_,
-                                    result_.winds_back() ? write_krl(back_, {}) : "",
-                                    result_.tube_radius_mm,
-                                    rad_from_deg(request.angle_deg),
-                                    request.tows,
-                                    request.tow_width_mm.value_or(0.0)};
-        result_.winding = wind_carried(task, request.winding);
-        result_.checks.insert(result_.checks.end(), result_.winding->checks.begin(),
-                              result_.winding->checks.end());
-    }
-
-    // Speed of the frame's axis in a move, and of the frame's own turn in the head.
-    [[nodiscard]] double passage_mm_s(std::size_t move) const {
-        const std::vector<double>& s = result_.points.s_mm;
-        return (s[move] - s[move - 1]) / result_.duration_s[move];
-    }
-
-    [[nodiscard]] double frame_rad_s(std::size_t move) const {
-        return frame_turn_rad(result_.head, pose_of(frames_[move - 1]), pose_of(frames_[move])) /
-               result_.duration_s[move];
-    }
-
-    // Speed of a ring (0: right-handed, 1: left-handed) that lays the wanted angle in a move.
-    [[nodiscard]] double ring_rad_s(std::size_t ring, std::size_t move) const {
-        const double sign = ring == 0 ? 1.0 : -1.0;
-        return sign * 2.0 * kPi * result_.turns_per_mm * passage_mm_s(move) + frame_rad_s(move);
-    }
-
-    // Angle that a ring lays in a move where it turns evenly, as for the wanted passage.
-    [[nodiscard]] double laid_deg(std::size_t ring, std::size_t move) const {
-        const CarryRequest& request = result_.request;
-        const double even =
-            (ring == 0 ? 2.0 : -2.0) * kPi * result_.turns_per_mm * request.speed_mm_s;
-        return deg_from_rad(
-            laid_angle_rad(result_.tube_radius_mm, even, frame_rad_s(move), passage_mm_s(move)));
-    }
-
-    void wind() {
-        const CarryRequest& request = result_.request;
-        result_.turns_per_mm =
-            ring_turns_per_mm(rad_from_deg(request.angle_deg), result_.tube_radius_mm);
-        for (std::size_t ring = 0; ring < result_.ring.size(); ++ring) {
-            RingResult& found = result_.ring[ring];
-            found.lowest_deg = found.slowest_rev_min = std::numeric_limits<double>::infinity();
-            found.highest_deg = found.fastest_rev_min = -found.lowest_deg;
-            for (std::size_t i = 1; i < frames_.size(); ++i) {
-                const double rev_min = ring_rad_s(ring, i) / (2.0 * kPi) * kSecondsPerMinute;
-                found.lowest_deg = std::min(found.lowest_deg, laid_deg(ring, i));
-                found.highest_deg = std::max(found.highest_deg, laid_deg(ring, i));
-                found.slowest_rev_min = std::min(found.slowest_rev_min, rev_min);
-                found.fastest_rev_min = std::max(found.fastest_rev_min, rev_min);
-            }
-        }
-        for (std::size_t i = 1; i < frames_.size(); ++i) {
-            const double lean =
-                laid_angle_rad(result_.tube_radius_mm, 0.0, frame_rad_s(i), passage_mm_s(i));
-            result_.longitudinal_deg =
-                std::max(result_.longitudinal_deg, deg_from_rad(std::abs(lean)));
-        }
-    }
-
-    void check() {
-        check_ring();
-        check_reach();
-        check_limits();
-        check_wrist();
-        check_clearance();
-        check_interpolation();
-        check_rounding();
-    }
-
-    [[nodiscard]] std::string at(double s_mm) const { return " at " + fixed(s_mm, 1) + " mm"; }
-    [[nodiscard]] std::string at_sample(std::size_t i) const { return at(result_.samples[i].s_mm); }
-
-    void add(const CheckKind& kind, bool ok, const std::string& words,
-             std::map<std::string, double> numbers) {
-        result_.checks.emplace_back(kind, ok, ok ? "" : words, std::move(numbers));
-    }
-
-    void check_ring() {
-        const RingFit& fit = result_.fit;
-        const double limit_mm = result_.request.ring_radius_mm;
-        const std::string words =
-            fit.through ? "the frame reaches " + fixed(fit.reach_mm, 2) +
-                              " mm from the centre of a ring of " + fixed(limit_mm, 2) +
-                              " mm while its axis" + at(fit.s_mm) + " is in the head"
-                        : "the frame turns back inside the head while its axis" + at(fit.s_mm) +
-                              " is in the middle; the bend is too tight for this head";
-        add(check_kind::kRing, fit.through && fit.reach_mm < limit_mm, words,
-            {{"reach_mm", fit.reach_mm},
-             {"limit_mm", limit_mm},
-             {"offset_mm", fit.offset_mm},
-             {"tilt_deg", deg_from_rad(fit.tilt_rad)}});
-    }
-
-    void check_reach() {
-        const CarriedJoints& joints = result_.joints;
-        add(check_kind::kReach, joints.reached(),
-            "the robot stays " + fixed(joints.residual_mm, 3) + " mm and " +
-                fixed(deg_from_rad(joints.residual_rad), 3) + " deg short" +
-                at_sample(joints.residual_at) + " of the axis; mount the frame in another way",
-            {{"short_mm", joints.residual_mm}, {"short_deg", deg_from_rad(joints.residual_rad)}});
-    }
-
-    // The axis that is furthest beyond its travel, in words.
-    [[nodiscard]] std::string travel_words() const {
-        double most = 0.0;
-        std::string words;
-        for (const LimitViolation& run : result_.joints.path.violations) {
-            const double beyond = std::abs(run.value - run.limit);
-            if (beyond > most) {
-                most = beyond;
-                words = "A" + std::to_string(result_.machine.joint_of(run.axis).value() + 1) +
-                        " goes to " + fixed(deg_from_rad(run.value), 2) + " deg" +
-                        at_sample(run.point) + " of the axis, " + fixed(deg_from_rad(beyond), 2) +
-                        " deg beyond its end; mount the frame in another way";
-            }
-        }
-        return words;
-    }
-
-    void check_limits() {
-        result_.loads =
-            move_loads(result_.machine, result_.samples, result_.joints, result_.duration_s);
-        const AxisLoads& loads = result_.loads;
-        std::string words = travel_words();
-        for (const auto& [name, load] : {std::pair("velocity", loads.velocity),
-                                         std::pair("acceleration", loads.acceleration)}) {
-            if (words.empty() && load.ratio > 1.0 + kLoadSlack) {
-                words = "A" + std::to_string(load.joint + 1) + " needs " + fixed(load.ratio, 3) +
-                        " times its " + name + at(result_.points.s_mm[load.step]) +
-                        " of the axis; pass more slowly";
-            }
-        }
-        add(check_kind::kLimits, words.empty(), words,
-            {{"travel_violations", static_cast<double>(result_.joints.path.violations.size())},
-             {"velocity_ratio", loads.velocity.ratio},
-             {"acceleration_ratio", loads.acceleration.ratio}});
-    }
-
-    void check_wrist() {
-        const CarriedJoints& joints = result_.joints;
-        add(check_kind::kWrist, joints.flips == 0,
-            "an axis jumps by more than a quarter turn" + at_sample(joints.first_flip) +
-                " of the axis; mount the frame in another way",
-            {{"flips", static_cast<double>(joints.flips)}, {"least_singular", joints.singular}});
-    }
-
-    void check_clearance() {
-        const CarryRequest& request = result_.request;
-        const auto found =
-            frame_clearance(result_.machine, axis_, result_.samples, result_.tube_radius_mm);
-        if (!found) {
-            return;
-        }
-        add(check_kind::kClearance, found->least_mm >= request.clearance_mm,
-            "the frame comes within " + fixed(found->least_mm, 2) + " mm of body " +
-                std::to_string(found->body + 1) + " of the machine file" +
-                at_sample(found->sample) + " of the axis; mount the frame in another way",
-            {{"least_mm", found->least_mm}, {"limit_mm", request.clearance_mm}});
-    }
-
-    // Of the frames that were read back, not of those that were planned.
-    void check_interpolation() {
-        const CarryRequest& request = result_.request;
-        const std::vector<double>& s = result_.points.s_mm;
-        CarryError& worst = result_.program_error;
-        double worst_share = 0.0;
-        double worst_s_mm = 0.0;
-        for (std::size_t i = 1; i < s.size(); ++i) {
-            const CarryError error = lin_error(result_.head, axis_, s[i - 1], s[i],
-                                               pose_of(result_.program.moves[i - 1].to),
-                                               pose_of(result_.program.moves[i].to));
-            const double share = std::max(error.distance_mm / request.tolerance_mm,
-                                          deg_from_rad(error.turn_rad) / request.tolerance_deg);
-            if (share > worst_share) {
-                worst_share = share;
-                worst_s_mm = s[i - 1];
-            }
-            worst.distance_mm = std::max(worst.distance_mm, error.distance_mm);
-            worst.tilt_rad = std::max(worst.tilt_rad, error.tilt_rad);
-            worst.turn_rad = std::max(worst.turn_rad, error.turn_rad);
-        }
-        add(check_kind::kInterpolation, worst_share <= 1.0,
-            "between two points the axis leaves the centre by up to " +
-                fixed(worst.distance_mm, 4) + " mm and turns by up to " +
-                fixed(deg_from_rad(worst.turn_rad), 4) + " deg, worst" + at(worst_s_mm) +
-                ", and shorter moves do not help; smooth the axis there",
-            {{"distance_mm", worst.distance_mm},
-             {"limit_mm", request.tolerance_mm},
-             {"tilt_deg", deg_from_rad(worst.tilt_rad)},
-             {"turn_deg", deg_from_rad(worst.turn_rad)},
-             {"limit_deg", request.tolerance_deg}});
-    }
-
-    void check_rounding() {
-        CarryError worst;
-        for (std::size_t i = 0; i < frames_.size(); ++i) {
-            const CarryError error = carry_error(result_.head, pose_of(result_.program.moves[i].to),
-                                                 axis_.at(result_.points.s_mm[i]));
-            worst.distance_mm = std::max(worst.distance_mm, error.distance_mm);
-            worst.turn_rad = std::max(worst.turn_rad, error.turn_rad);
-        }
-        const bool ok = result_.program == planned_ && worst.distance_mm <= kRounded_mm &&
-                        deg_from_rad(worst.turn_rad) <= kRounded_deg;
-        add(check_kind::kRounding, ok,
-            "the program that is read back is up to " + fixed(worst.distance_mm, 6) + " mm and " +
-                fixed(deg_from_rad(worst.turn_rad), 6) + " deg off at its points",
-            {{"worst_mm", worst.distance_mm}, {"worst_deg", deg_from_rad(worst.turn_rad)}});
-    }
-
-    [[nodiscard]] std::vector<std::string> comments() const {
-        const CarryRequest& request = result_.request;
-        std::vector<std::string> lines = {
-            std::string("meshwind ") + kVersion,
-            "axis: " + result_.axis.file,
-            "axis sha256 " + result_.axis.digest,
-            "machine: " + result_.machine.name,
-            "length: " + fixed(result_.length_mm, 3) + " mm",
-            "time: " + fixed(result_.total_s(), 1) + " s",
-            "moves: " + std::to_string(frames_.size()),
-            "passage: " + fixed(request.speed_mm_s, 3) + " mm/s",
-            "rings: " + fixed(result_.turns_per_mm * request.speed_mm_s * kSecondsPerMinute, 4) +
-                " rev/min each way for " + fixed(request.angle_deg, 2) + " deg on radius " +
-                fixed(result_.tube_radius_mm, 3) + " mm"};
-        for (const Check& failed : result_.checks) {
-            if (!failed.ok) {
-                lines.push_back("FAILED check " + failed.name + ": " + failed.words);
-            }
-        }
-        return lines;
-    }
-
-    [[nodiscard]] std::string motion_csv() const {
-        std::string text =
-            "sample,move,time_s,s_mm,A1,A2,A3,A4,A5,A6,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,"
-            "passage_mm_s,ring1_rev_min,ring2_rev_min\n";
-        const auto append = [&](double value, int decimals) {
-            text += ',';
-            append_fixed(text, value, decimals);
-        };
-        std::optional<EulerZyx> angles;
-        double before_s = 0.0;
-        std::size_t move = 0;
-        for (std::size_t i = 0; i < result_.samples.size(); ++i) {
-            const CarriedSample& sample = result_.samples[i];
-            before_s += sample.move == move ? 0.0 : result_.duration_s[move];
-            move = sample.move;
-            text += std::to_string(i) + ',' + std::to_string(move);
-            append(before_s + sample.share * result_.duration_s[move], 6);
-            append(sample.s_mm, 4);
-            for (const double joint : result_.joints.path.row(i)) {
-                append(deg_from_rad(joint), 5);
-            }
-            for (const double length : sample.pose.translation()) {
-                append(length, 4);
-            }
-            angles = euler_zyx(sample.pose.linear(), angles);
-            for (const double angle : {angles->a_rad, angles->b_rad, angles->c_rad}) {
-                append(deg_from_rad(angle), 5);
-            }
-            const std::size_t into = std::max<std::size_t>(move, 1);
-            append(passage_mm_s(into), 4);
-            for (const std::size_t ring : {0U, 1U}) {
-                append(ring_rad_s(ring, into) / (2.0 * kPi) * kSecondsPerMinute, 5);
-            }
-            text += '\n';
-        }
-        return text;
-    }
-
-    // With what failed in their heads.
-    void put_texts() {
-        result_.usable = result_.passed() || result_.request.force;
-        const std::vector<std::string>& header = result_.machine.controller.header;
-        result_.text = write_krl(planned_, comments(), header);
-        if (result_.winds_back()) {
-            result_.back_text = write_krl(back_, comments(), header);
-        }
-        result_.motion = motion_csv();
-    }
-
-    CarryOutcome result_;
-    const FrameAxis& axis_ = result_.axis.axis;
-    Isometry3d tool_ = Isometry3d::Identity();
-    std::vector<KrlFrame> frames_;  ///< of the points
-    KrlProgram planned_;
-    KrlProgram back_;  ///< the same moves the other way
-    std::string text_;
+// The frame while it passes: its moves, from point to point, and their durations.
+struct FramePassage {
+    const RingHead& head;
+    const std::vector<double>& s_mm;  // of the points
+    const std::vector<KrlFrame>& frames;
+    const std::vector<double>& duration_s;
 };
+
+// Speed of the frame's axis in a move, and of the frame's own turn in the head.
+double passage_mm_s(const FramePassage& passage, std::size_t move) {
+    return (passage.s_mm[move] - passage.s_mm[move - 1]) / passage.duration_s[move];
+}
+
+double frame_rad_s(const FramePassage& passage, std::size_t move) {
+    return frame_turn_rad(passage.head, pose_of(passage.frames[move - 1]),
+                          pose_of(passage.frames[move])) /
+           passage.duration_s[move];
+}
+
+// Speed of a ring (0: right-handed, 1: left-handed) that lays the wanted angle in a move.
+double ring_rad_s(const FramePassage& passage, double turns_per_mm, std::size_t ring,
+                  std::size_t move) {
+    const double sign = ring == 0 ? 1.0 : -1.0;
+    return sign * 2.0 * kPi * turns_per_mm * passage_mm_s(passage, move) +
+           frame_rad_s(passage, move);
+}
+
+// What both rings do at one wanted angle.
+struct RingTurn {
+    double tube_radius_mm = 0.0;
+    double turns_per_mm = 0.0;  // for the wanted angle
+    double speed_mm_s = 0.0;    // wanted passage
+};
+
+// Angle that a ring lays in a move where it turns evenly, as for the wanted passage.
+double laid_deg(const FramePassage& passage, const RingTurn& turn, std::size_t ring,
+                std::size_t move) {
+    const double even = (ring == 0 ? 2.0 : -2.0) * kPi * turn.turns_per_mm * turn.speed_mm_s;
+    return deg_from_rad(laid_angle_rad(turn.tube_radius_mm, even, frame_rad_s(passage, move),
+                                       passage_mm_s(passage, move)));
+}
+
+RingResult ring_result(const FramePassage& passage, const RingTurn& turn, std::size_t ring) {
+    RingResult found;
+    found.lowest_deg = found.slowest_rev_min = std::numeric_limits<double>::infinity();
+    found.highest_deg = found.fastest_rev_min = -found.lowest_deg;
+    for (std::size_t i = 1; i < passage.frames.size(); ++i) {
+        const double rev_min =
+            ring_rad_s(passage, turn.turns_per_mm, ring, i) / (2.0 * kPi) * kSecondsPerMinute;
+        const double angle_deg = laid_deg(passage, turn, ring, i);
+        found.lowest_deg = std::min(found.lowest_deg, angle_deg);
+        found.highest_deg = std::max(found.highest_deg, angle_deg);
+        found.slowest_rev_min = std::min(found.slowest_rev_min, rev_min);
+        found.fastest_rev_min = std::max(found.fastest_rev_min, rev_min);
+    }
+    return found;
+}
+
+// Largest lean of fibres along the axis, of the frame's own turn.
+double longitudinal_deg(const FramePassage& passage, double tube_radius_mm) {
+    double most_deg = 0.0;
+    for (std::size_t i = 1; i < passage.frames.size(); ++i) {
+        const double lean =
+            laid_angle_rad(tube_radius_mm, 0.0, frame_rad_s(passage, i), passage_mm_s(passage, i));
+        most_deg = std::max(most_deg, deg_from_rad(std::abs(lean)));
+    }
+    return most_deg;
+}
+
+// \param planned the program before it was written
+std::vector<Check> motion_checks(const CarryOutcome& result, const KrlProgram& planned,
+                                 const CarriedMovesError& error) {
+    const CarryRequest& request = result.request;
+    const FrameAxis& axis = result.axis.axis;
+    const std::vector<double>& s_mm = result.points.s_mm;
+    std::vector<Check> checks;
+    checks.push_back(ring_fit_check(result.fit, request.ring_radius_mm));
+    checks.push_back(pose_reach_check(result.joints, result.samples));
+    checks.push_back(
+        carried_limits_check(result.machine, result.joints, result.samples, result.loads, s_mm));
+    checks.push_back(wrist_flip_check(result.joints, result.samples));
+    const auto clearance =
+        frame_clearance(result.machine, axis, result.samples, result.tube_radius_mm);
+    if (clearance) {
+        checks.push_back(frame_clearance_check(*clearance, result.samples, request.clearance_mm));
+    }
+    checks.push_back(interpolation_error_check(error, request));
+    checks.push_back(krl_rounding_check(
+        result.program == planned, carried_points_error(result.head, axis, s_mm, result.program)));
+    return checks;
+}
+
+// The fibres that the written programs lay; none at an angle of 0.
+std::optional<CarryWinding> laid_fibres(const CarryOutcome& result, const std::string& text,
+                                        const KrlProgram& back) {
+    const CarryRequest& request = result.request;
+    if (!(request.angle_deg > 0.0)) {
+        return {};
+    }
+    const CarryWindingTask task{result.head,
+                                result.axis.axis,
+                                result.points.s_mm,
+                                text,
+                                result.winds_back() ? write_krl(back, {}) : "",
+                                result.tube_radius_mm,
+                                rad_from_deg(request.angle_deg),
+                                request.tows,
+                                request.tow_width_mm.value_or(0.0)};
+    return wind_carried(task, request.winding);
+}
+
+// Comments at the head of a program, with the checks that failed.
+std::vector<std::string> head_lines(const CarryOutcome& result) {
+    const CarryRequest& request = result.request;
+    std::vector<std::string> lines = {
+        std::string("meshwind ") + kVersion,
+        "axis: " + result.axis.file,
+        "axis sha256 " + result.axis.digest,
+        "machine: " + result.machine.name,
+        "length: " + fixed(result.length_mm, 3) + " mm",
+        "time: " + fixed(result.total_s(), 1) + " s",
+        "moves: " + std::to_string(result.points.s_mm.size()),
+        "passage: " + fixed(request.speed_mm_s, 3) + " mm/s",
+        "rings: " + fixed(result.turns_per_mm * request.speed_mm_s * kSecondsPerMinute, 4) +
+            " rev/min each way for " + fixed(request.angle_deg, 2) + " deg on radius " +
+            fixed(result.tube_radius_mm, 3) + " mm"};
+    for (const Check& failed : result.checks) {
+        if (!failed.ok) {
+            lines.push_back("FAILED check " + failed.name + ": " + failed.words);
+        }
+    }
+    return lines;
+}
+
+std::string motion_table(const CarryOutcome& result, const FramePassage& passage) {
+    std::string text =
+        "sample,move,time_s,s_mm,A1,A2,A3,A4,A5,A6,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,"
+        "passage_mm_s,ring1_rev_min,ring2_rev_min\n";
+    const auto append = [&](double value, int decimals) {
+        text += ',';
+        append_fixed(text, value, decimals);
+    };
+    std::optional<EulerZyx> angles;
+    double before_s = 0.0;
+    std::size_t move = 0;
+    for (std::size_t i = 0; i < result.samples.size(); ++i) {
+        const CarriedSample& sample = result.samples[i];
+        before_s += sample.move == move ? 0.0 : passage.duration_s[move];
+        move = sample.move;
+        text += std::to_string(i) + ',' + std::to_string(move);
+        append(before_s + sample.share * passage.duration_s[move], 6);
+        append(sample.s_mm, 4);
+        for (const double joint : result.joints.path.row(i)) {
+            append(deg_from_rad(joint), 5);
+        }
+        for (const double length : sample.pose.translation()) {
+            append(length, 4);
+        }
+        angles = euler_zyx(sample.pose.linear(), angles);
+        for (const double angle : {angles->a_rad, angles->b_rad, angles->c_rad}) {
+            append(deg_from_rad(angle), 5);
+        }
+        const std::size_t into = std::max<std::size_t>(move, 1);
+        append(passage_mm_s(passage, into), 4);
+        for (const std::size_t ring : {0U, 1U}) {
+            append(ring_rad_s(passage, result.turns_per_mm, ring, into) / (2.0 * kPi) *
+                       kSecondsPerMinute,
+                   5);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+// What was asked for, and the sizes that follow from it alone.
+CarryOutcome begun(CarryAxis&& axis, const Machine& machine, const CarryRequest& request) {
+    CarryOutcome result(std::move(axis));
+    result.machine = machine;
+    result.request = request;
+    result.tube_radius_mm =
+        request.tube_radius_mm.value_or(result.axis.radius_mm.value_or(kTubeRadius_mm));
+    result.stations = result.axis.axis.stations().size();
+    result.length_mm = result.axis.axis.length_mm();
+    result.head = ring_head(machine.eye, request);
+    result.turns_per_mm = ring_turns_per_mm(rad_from_deg(request.angle_deg), result.tube_radius_mm);
+    return result;
+}
 
 }  // namespace
 
@@ -493,7 +352,55 @@ double CarryOutcome::total_s() const {
 
 CarryOutcome carry(CarryAxis axis, const Machine& machine, const CarryRequest& request,
                    const std::string& machine_file) {
-    return Carrier(std::move(axis), machine, request).run(machine_file);
+    check_numbers(request);
+    check_machine(machine, machine_file);
+    check_speed(request, machine);
+    CarryOutcome result = begun(std::move(axis), machine, request);
+    const FrameAxis& along = result.axis.axis;
+
+    const Isometry3d tool = tool_pose(request.tool);
+    result.fit = worst_ring_fit(result.head, along, result.tube_radius_mm);
+    result.points = choose_carry_points(
+        result.head, along, {request.tolerance_mm, rad_from_deg(request.tolerance_deg)});
+    const std::vector<double>& s_mm = result.points.s_mm;
+    const std::vector<KrlFrame> frames = frames_at(result.head, along, s_mm);
+    result.samples = sample_moves(s_mm, poses_of(frames));
+    result.joints = follow_samples(machine, result.samples, tool);
+    result.planned = time_moves(machine, result.samples, result.joints, request.speed_mm_s);
+
+    const KrlProgram forth{request.name, krl_frame(Isometry3d::Identity()), krl_frame(tool),
+                           start_nano(result.joints, 0),
+                           timed_moves(frames, result.planned.step_s, request.speed_mm_s)};
+    result.duration_s = durations_s(forth);
+    const std::vector<std::string>& header = machine.controller.header;
+    const std::string plain_text = write_krl(forth, {}, header);
+    result.program = read_krl(plain_text, forth.name + kKrlExtension);
+    const KrlProgram back = back_program(forth, carried_back(forth.name),
+                                         start_nano(result.joints, result.samples.size() - 1));
+
+    const FramePassage passage{result.head, s_mm, frames, result.duration_s};
+    const RingTurn turn{result.tube_radius_mm, result.turns_per_mm, request.speed_mm_s};
+    for (std::size_t ring = 0; ring < result.ring.size(); ++ring) {
+        result.ring[ring] = ring_result(passage, turn, ring);
+    }
+    result.longitudinal_deg = longitudinal_deg(passage, result.tube_radius_mm);
+
+    result.loads = move_loads(machine, result.samples, result.joints, result.duration_s);
+    const CarriedMovesError error =
+        carried_moves_error(result.head, along, s_mm, result.program, request);
+    result.program_error = error.largest;
+    result.checks = motion_checks(result, forth, error);
+    result.winding = laid_fibres(result, plain_text, back);
+    if (result.winding) {
+        result.checks.insert(result.checks.end(), result.winding->checks.begin(),
+                             result.winding->checks.end());
+    }
+
+    result.usable = result.passed() || request.force;
+    result.text = write_krl(forth, head_lines(result), header);
+    result.back_text = result.winds_back() ? write_krl(back, head_lines(result), header) : "";
+    result.motion = motion_table(result, passage);
+    return result;
 }
 
 std::array<double, 6> tool_of(const std::string& text) {
