@@ -13,7 +13,7 @@ namespace meshwind {
 /// therefore answers planners with the least that holds anywhere on the layer, and `holds()` is
 /// asked with the station only where single stations are judged: SlipOptions and the check `slip`
 /// of postproc/verify/laid_checks.cpp, courses of a cover in winding/cover/library.cpp, and what
-/// the blocks may add in pipeline/piece_program.cpp.
+/// the blocks may add in pipeline/block_time.cpp.
 class Friction {
 public:
     /// \param ratio >= 0, |kg / kn|
