@@ -1,13 +1,21 @@
-/// The room that head and part take, known before anything is planned.
+/// The room that head, part and turns take, and how far the eye comes around a part: known before
+/// anything is planned.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "machines/eye_range.h"
 #include "machines/machine.h"
+#include "mesh/mandrel.h"
+#include "mesh/revolution/revolution.h"
 #include "mesh/triangle_soup.h"
 #include "postproc/collision/collision.h"
+#include "winding/plan/friction.h"
 
 namespace meshwind {
 
@@ -23,5 +31,70 @@ namespace meshwind {
 /// The outline of a part that turns about Z: radius and z of the widest vertex of each of a
 /// thousand slices. Each goes round a circle.
 [[nodiscard]] std::vector<Eigen::Vector2d> outline(const TriangleSoup& part);
+
+/// What blocks may be off their stations, meshes off their circles and samples between points: no
+/// part is refused for less than this.
+inline constexpr double kRoomSlack_mm = 1.0;
+
+/// How a job's fibre turns round at a rim.
+struct TurnRoom {
+    bool takes_run = false;     ///< by friction, along the extension
+    Friction friction = 0.0;    ///< what no layer has more of
+    double extension_mm = 0.0;  ///< > 0
+    double tow_width_mm = 0.0;  ///< > 0
+};
+
+/// Extension that the least turn by friction takes at a rim.
+[[nodiscard]] double needed_extension_mm(const TurnRoom& turns, const Rim& rim);
+
+/// Whether a rim leaves room for a turn by friction at all.
+[[nodiscard]] bool has_room(const TurnRoom& turns, const Rim& rim);
+
+/// Whether a turn at a rim takes the eye to one height and one distance from the spindle.
+[[nodiscard]] bool about_spindle(const Rim& rim);
+
+/// Height of the hoop of the least turn at a rim about the spindle.
+[[nodiscard]] double hoop_height_mm(const TurnRoom& turns, const Rim& rim);
+
+/// Whether an end is one at which patterns turn before they come to it. \param end 0 or 1
+[[nodiscard]] bool has_cap(const BodyOfRevolution& body, std::size_t end);
+
+/// How far the eye comes, and how far off a part it has to be.
+struct EyeReach {
+    EyeRange range;
+    double shortest_fibre_mm = 0.0;  ///< free fibre
+    double longest_fibre_mm = 0.0;
+    double off_wall_mm = 0.0;  ///< that the eye keeps at least, for the head's clearance
+};
+
+/// Whether the eye comes to a height, but for kRoomSlack_mm.
+[[nodiscard]] bool in_height(const EyeReach& eye, double z_mm);
+
+/// Distance from the spindle that the eye needs for a hoop of a radius.
+[[nodiscard]] double hoop_eye_mm(const EyeReach& eye, double radius_mm);
+
+/// A part that is to be wound, and how far the eye comes around it.
+struct PartReach {
+    const Mandrel& mandrel;
+    const std::optional<BodyOfRevolution>& body;  ///< that the part is, if it is one
+    const TurnRoom& turns;
+    const EyeReach& eye;
+};
+
+/// Whether fibre can be turned at a rim; true as well where the turn itself has no room.
+[[nodiscard]] bool reaches(const PartReach& part, const Rim& rim);
+
+/// Whether patterns can be wound: the eye gets around both ends of a body of revolution and its
+/// widest place.
+[[nodiscard]] bool patterns_fit(const PartReach& part);
+
+/// Whether courses can: over some rim, on enough of the wall. True where there is no rim.
+[[nodiscard]] bool courses_fit(const PartReach& part);
+
+/// Whether hoops can, on the widest cylinder of a body of revolution; true for other parts.
+[[nodiscard]] bool hoops_fit(const PartReach& part);
+
+/// The least and the greatest height that the eye has to come to: hoops at rims, the caps of domes.
+[[nodiscard]] std::array<double, 2> needed_heights_mm(const PartReach& part);
 
 }  // namespace meshwind
