@@ -13,6 +13,7 @@
 #include "core/index.h"
 #include "core/units.h"
 #include "mesh/rim.h"
+#include "mesh/segment/face_outline.h"
 #include "mesh/segment/feature_edges.h"
 #include "mesh/segment/rims.h"
 
@@ -61,433 +62,321 @@ struct Patch {
     double height_mm = 0.0;  // of the plane, along the normal
 };
 
-// A face and one of its edges.
-using HalfEdge = std::pair<std::int32_t, std::size_t>;
+// A triangle so narrow tells nothing by its normal.
+bool is_narrow(const MeasuredFaces& part, std::int32_t f) {
+    double longest = 0.0;
+    for (std::size_t e = 0; e < 3; ++e) {
+        longest = std::max(longest, (part.corner(f, e + 1) - part.corner(f, e)).norm());
+    }
+    return 2.0 * part.area_mm2[at(f)] <= part.tolerance_mm * longest;
+}
 
-class FlatEnds {
-public:
-    FlatEnds(const TriangleSoup& soup, const std::vector<std::array<std::int32_t, 3>>& neighbours,
-             const std::vector<Vector3d>& normals, const std::vector<double>& face_area)
-        : soup_(soup),
-          neighbours_(neighbours),
-          normals_(normals),
-          face_area_(face_area),
-          tolerance_mm_(kPlaneShare * diagonal_mm(soup)),
-          end_(soup.faces.size(), -1),
-          mark_(soup.faces.size(), 0) {}
-
-    std::vector<std::int32_t> find() {
-        const double least =
-            kLeastAreaShare * std::accumulate(face_area_.begin(), face_area_.end(), 0.0);
-        std::vector<std::int32_t> order(soup_.faces.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            return face_area_[at(a)] > face_area_[at(b)];
-        });
-        std::vector<char> taken(soup_.faces.size(), 0);
-        std::int32_t count = 0;
-        for (const std::int32_t seed : order) {
-            if (taken[at(seed)] != 0) {
+// Faces in the plane of the seed that hang together with it.
+Patch grow(const MeasuredFaces& part, std::int32_t seed, std::vector<char>& taken) {
+    const Vector3d& normal = part.normals[at(seed)];
+    const double height = normal.dot(part.centre(seed));
+    Patch patch;
+    patch.faces.push_back(seed);
+    taken[at(seed)] = 1;
+    double area = 0.0;
+    double moment = 0.0;
+    for (std::size_t i = 0; i < patch.faces.size(); ++i) {
+        const std::int32_t f = patch.faces[i];
+        patch.normal += part.area_mm2[at(f)] * part.normals[at(f)];
+        area += part.area_mm2[at(f)];
+        for (const std::int32_t g : part.neighbours[at(f)]) {
+            if (g < 0 || taken[at(g)] != 0 ||
+                (part.normals[at(g)].dot(normal) < kPlaneCosine && !is_narrow(part, g))) {
                 continue;
             }
-            const Patch patch = grow(seed, taken);
-            double area = 0.0;
-            for (const std::int32_t f : patch.faces) {
-                area += face_area_[at(f)];
+            bool inside = true;
+            for (std::size_t c = 0; c < 3; ++c) {
+                inside =
+                    inside && std::abs(normal.dot(part.corner(g, c)) - height) <= part.tolerance_mm;
             }
-            if (area < least) {
-                continue;
-            }
-            if (const auto faces = end_of(patch)) {
-                for (const std::int32_t f : *faces) {
-                    end_[at(f)] = count;
-                }
-                ++count;
+            if (inside) {
+                taken[at(g)] = 1;
+                patch.faces.push_back(g);
             }
         }
-        return end_;
     }
+    patch.normal.normalize();
+    for (const std::int32_t f : patch.faces) {
+        moment += part.area_mm2[at(f)] * patch.normal.dot(part.centre(f));
+    }
+    patch.height_mm = area > 0.0 ? moment / area : height;
+    return patch;
+}
 
-private:
-    [[nodiscard]] const Vector3d& corner(std::int32_t f, std::size_t i) const {
-        return soup_.points_mm[at(soup_.faces[at(f)][i % 3])];
-    }
-    [[nodiscard]] Vector3d centre(std::int32_t f) const {
-        return (corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3.0;
-    }
+// A disc that no tab of a patch reaches far out of.
+struct Disc {
+    Vector3d centre_mm;
+    double radius_mm = 0.0;
+};
 
-    // A triangle so narrow tells nothing by its normal.
-    [[nodiscard]] bool is_narrow(std::int32_t f) const {
-        double longest = 0.0;
-        for (std::size_t e = 0; e < 3; ++e) {
-            longest = std::max(longest, (corner(f, e + 1) - corner(f, e)).norm());
-        }
-        return 2.0 * face_area_[at(f)] <= tolerance_mm_ * longest;
-    }
+using Tab = std::vector<std::int32_t>;
 
-    // Faces in the plane of the seed that hang together with it.
-    Patch grow(std::int32_t seed, std::vector<char>& taken) const {
-        const Vector3d& normal = normals_[at(seed)];
-        const double height = normal.dot(centre(seed));
-        Patch patch;
-        patch.faces.push_back(seed);
-        taken[at(seed)] = 1;
-        double area = 0.0;
-        double moment = 0.0;
-        for (std::size_t i = 0; i < patch.faces.size(); ++i) {
-            const std::int32_t f = patch.faces[i];
-            patch.normal += face_area_[at(f)] * normals_[at(f)];
-            area += face_area_[at(f)];
-            for (const std::int32_t g : neighbours_[at(f)]) {
-                if (g < 0 || taken[at(g)] != 0 ||
-                    (normals_[at(g)].dot(normal) < kPlaneCosine && !is_narrow(g))) {
-                    continue;
-                }
-                bool inside = true;
-                for (std::size_t c = 0; c < 3; ++c) {
-                    inside = inside && std::abs(normal.dot(corner(g, c)) - height) <= tolerance_mm_;
-                }
-                if (inside) {
-                    taken[at(g)] = 1;
-                    patch.faces.push_back(g);
-                }
-            }
-        }
-        patch.normal.normalize();
-        for (const std::int32_t f : patch.faces) {
-            moment += face_area_[at(f)] * patch.normal.dot(centre(f));
-        }
-        patch.height_mm = area > 0.0 ? moment / area : height;
-        return patch;
+// Least and largest height of a face's corners over the patch.
+std::pair<double, double> heights(const MeasuredFaces& part, const Patch& patch, std::int32_t f) {
+    std::pair<double, double> range{std::numeric_limits<double>::infinity(),
+                                    -std::numeric_limits<double>::infinity()};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double height = patch.normal.dot(part.corner(f, i)) - patch.height_mm;
+        range.first = std::min(range.first, height);
+        range.second = std::max(range.second, height);
     }
+    return range;
+}
 
-    // Least and largest height of a face's corners over the patch.
-    [[nodiscard]] std::pair<double, double> heights(const Patch& patch, std::int32_t f) const {
-        std::pair<double, double> range{std::numeric_limits<double>::infinity(),
-                                        -std::numeric_limits<double>::infinity()};
+bool stands_before(const MeasuredFaces& part, const Patch& patch, std::int32_t f) {
+    const auto [low, high] = heights(part, patch, f);
+    return high > 2.0 * part.tolerance_mm && low >= -2.0 * part.tolerance_mm;
+}
+
+bool lies_in(const MeasuredFaces& part, const Patch& patch, std::int32_t f) {
+    const auto [low, high] = heights(part, patch, f);
+    return low >= -2.0 * part.tolerance_mm && high <= 2.0 * part.tolerance_mm &&
+           (part.normals[at(f)].dot(patch.normal) >= kPlaneCosine || is_narrow(part, f));
+}
+
+// Half the diagonal of the patch's box: no less than the radius of a disc, of most of a ring.
+double reach_mm(const MeasuredFaces& part, const Patch& patch) {
+    Eigen::AlignedBox3d box;
+    for (const std::int32_t f : patch.faces) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const double height = patch.normal.dot(corner(f, i)) - patch.height_mm;
-            range.first = std::min(range.first, height);
-            range.second = std::max(range.second, height);
+            box.extend(part.corner(f, i));
         }
-        return range;
     }
-    [[nodiscard]] bool stands_before(const Patch& patch, std::int32_t f) const {
-        const auto [low, high] = heights(patch, f);
-        return high > 2.0 * tolerance_mm_ && low >= -2.0 * tolerance_mm_;
-    }
+    return 0.5 * box.diagonal().norm();
+}
 
-    // Boundary loops of the marked faces, each turning left about them. Empty where the part is
-    // open there.
-    [[nodiscard]] std::vector<std::vector<HalfEdge>> loops_of(
-        const std::vector<std::int32_t>& faces, int mark) const {
-        const auto inside = [&](std::int32_t f) { return mark_[at(f)] == mark; };
-        std::vector<HalfEdge> border;
-        for (const std::int32_t f : faces) {
-            for (std::size_t e = 0; e < 3; ++e) {
-                const std::int32_t g = neighbours_[at(f)][e];
-                if (g < 0) {
-                    return {};
-                }
-                if (!inside(g)) {
-                    border.emplace_back(f, e);
-                }
-            }
+// False where the tab is too large to be one.
+bool spread(const MeasuredFaces& part, const Disc& disc, Tab& tab, Patch& patch, FaceMarks& marks,
+            int seen) {
+    for (std::size_t i = 0; i < tab.size(); ++i) {
+        if (heights(part, patch, tab[i]).second > kTabHeight * disc.radius_mm ||
+            (part.centre(tab[i]) - disc.centre_mm).norm() > 3.0 * disc.radius_mm) {
+            return false;
         }
-        std::sort(border.begin(), border.end());
-        std::vector<char> used(border.size(), 0);
-        std::vector<std::vector<HalfEdge>> loops;
-        for (std::size_t i = 0; i < border.size(); ++i) {
-            if (used[i] != 0) {
+        for (const std::int32_t g : part.neighbours[at(tab[i])]) {
+            if (g < 0 || marks.of_face[at(g)] == seen) {
                 continue;
             }
-            std::vector<HalfEdge> loop;
-            HalfEdge edge = border[i];
-            for (std::size_t place = i; used[place] == 0;) {
-                used[place] = 1;
-                loop.push_back(edge);
-                edge = next_on_border(edge, inside);
-                place = static_cast<std::size_t>(
-                    std::lower_bound(border.begin(), border.end(), edge) - border.begin());
-            }
-            loops.push_back(std::move(loop));
-        }
-        return loops;
-    }
-
-    // Turns about the edge's end through the faces inside.
-    template <typename Inside>
-    [[nodiscard]] HalfEdge next_on_border(HalfEdge edge, const Inside& inside) const {
-        auto [f, e] = edge;
-        e = (e + 1) % 3;
-        for (std::int32_t g = neighbours_[at(f)][e]; inside(g); g = neighbours_[at(f)][e]) {
-            const std::int32_t turned = soup_.faces[at(f)][e];
-            const auto& corners = soup_.faces[at(g)];
-            e = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), turned) -
-                                         corners.begin());
-            f = g;
-        }
-        return {f, e};
-    }
-
-    // The loop that encloses the largest area, and that area. Loops turn left about the normal.
-    [[nodiscard]] std::pair<std::vector<HalfEdge>, double> outline_of(
-        const std::vector<std::vector<HalfEdge>>& loops, const Vector3d& normal) const {
-        std::pair<std::vector<HalfEdge>, double> outline;
-        for (const auto& loop : loops) {
-            const Vector3d origin = corner(loop.front().first, loop.front().second);
-            double area = 0.0;
-            for (const auto& [f, e] : loop) {
-                area += 0.5 * normal.dot((corner(f, e) - origin).cross(corner(f, e + 1) - origin));
-            }
-            if (area > outline.second) {
-                outline = {loop, area};
+            if (lies_in(part, patch, g)) {
+                marks.of_face[at(g)] = seen;
+                patch.faces.push_back(g);
+            } else if (stands_before(part, patch, g)) {
+                marks.of_face[at(g)] = seen;
+                tab.push_back(g);
             }
         }
-        return outline;
     }
+    return true;
+}
 
-    [[nodiscard]] double angle_about(const Rim& circle, const Vector3d& p) const {
-        const Vector3d u = circle.axis.unitOrthogonal();
-        const Vector3d v = circle.axis.cross(u);
-        const Vector3d arm = p - circle.centre_mm;
-        return std::atan2(v.dot(arm), u.dot(arm));
+// What stands before the patch beside its border, in pieces that hang together; the patch grows
+// by what lies in its plane behind them. None where a piece is higher or farther off than tabs
+// are: it may be the rest of the part.
+std::optional<std::vector<Tab>> tabs_on(const MeasuredFaces& part, Patch& patch, FaceMarks& marks) {
+    std::vector<Tab> tabs;
+    const int seen = marks.fresh();
+    const Disc disc{part.centre(patch.faces.front()), reach_mm(part, patch)};
+    for (const std::int32_t f : patch.faces) {
+        marks.of_face[at(f)] = seen;
     }
-
-    [[nodiscard]] bool lies_in(const Patch& patch, std::int32_t f) const {
-        const auto [low, high] = heights(patch, f);
-        return low >= -2.0 * tolerance_mm_ && high <= 2.0 * tolerance_mm_ &&
-               (normals_[at(f)].dot(patch.normal) >= kPlaneCosine || is_narrow(f));
-    }
-
-    // Half the diagonal of the patch's box: no less than the radius of a disc, of most of a ring.
-    [[nodiscard]] double reach_mm(const Patch& patch) const {
-        Eigen::AlignedBox3d box;
-        for (const std::int32_t f : patch.faces) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                box.extend(corner(f, i));
+    for (std::size_t i = 0; i < patch.faces.size(); ++i) {
+        const std::array<std::int32_t, 3> around = part.neighbours[at(patch.faces[i])];
+        for (const std::int32_t seed : around) {
+            if (seed < 0 || marks.of_face[at(seed)] == seen) {
+                continue;
             }
-        }
-        return 0.5 * box.diagonal().norm();
-    }
-
-    using Tab = std::vector<std::int32_t>;
-
-    // What stands before the patch beside its border, in pieces that hang together; the patch grows
-    // by what lies in its plane behind them. None where a piece is higher or farther off than tabs
-    // are: it may be the rest of the part.
-    [[nodiscard]] std::optional<std::vector<Tab>> tabs_on(Patch& patch) {
-        std::vector<Tab> tabs;
-        const int seen = next_mark_++;
-        const Vector3d middle = centre(patch.faces.front());
-        const double reach = reach_mm(patch);
-        for (const std::int32_t f : patch.faces) {
-            mark_[at(f)] = seen;
-        }
-        for (std::size_t i = 0; i < patch.faces.size(); ++i) {
-            const std::array<std::int32_t, 3> around = neighbours_[at(patch.faces[i])];
-            for (const std::int32_t seed : around) {
-                if (seed < 0 || mark_[at(seed)] == seen) {
-                    continue;
+            if (lies_in(part, patch, seed)) {
+                marks.of_face[at(seed)] = seen;
+                patch.faces.push_back(seed);
+            } else if (stands_before(part, patch, seed)) {
+                marks.of_face[at(seed)] = seen;
+                Tab tab{seed};
+                if (!spread(part, disc, tab, patch, marks, seen)) {
+                    return std::nullopt;
                 }
-                if (lies_in(patch, seed)) {
-                    mark_[at(seed)] = seen;
-                    patch.faces.push_back(seed);
-                } else if (stands_before(patch, seed)) {
-                    mark_[at(seed)] = seen;
-                    Tab tab{seed};
-                    if (!spread(tab, patch, seen, middle, reach)) {
-                        return std::nullopt;
-                    }
-                    tabs.push_back(std::move(tab));
-                }
+                tabs.push_back(std::move(tab));
             }
         }
-        return tabs;
     }
+    return tabs;
+}
 
-    // False where the tab is too large to be one.
-    bool spread(Tab& tab, Patch& patch, int seen, const Vector3d& middle, double reach) {
-        for (std::size_t i = 0; i < tab.size(); ++i) {
-            if (heights(patch, tab[i]).second > kTabHeight * reach ||
-                (centre(tab[i]) - middle).norm() > 3.0 * reach) {
-                return false;
-            }
-            for (const std::int32_t g : neighbours_[at(tab[i])]) {
-                if (g < 0 || mark_[at(g)] == seen) {
-                    continue;
-                }
-                if (lies_in(patch, g)) {
-                    mark_[at(g)] = seen;
-                    patch.faces.push_back(g);
-                } else if (stands_before(patch, g)) {
-                    mark_[at(g)] = seen;
-                    tab.push_back(g);
-                }
-            }
+double angle_about(const Rim& circle, const Vector3d& p) {
+    const Vector3d u = circle.axis.unitOrthogonal();
+    const Vector3d v = circle.axis.cross(u);
+    const Vector3d arm = p - circle.centre_mm;
+    return std::atan2(v.dot(arm), u.dot(arm));
+}
+
+bool is_tab(const MeasuredFaces& part, const Tab& tab, const Patch& patch, const Rim& circle) {
+    std::vector<double> angles;
+    double highest = 0.0;
+    for (const std::int32_t f : tab) {
+        highest = std::max(highest, heights(part, patch, f).second);
+        for (std::size_t i = 0; i < 3; ++i) {
+            angles.push_back(angle_about(circle, part.corner(f, i)));
         }
-        return true;
     }
+    return highest <= kTabHeight * circle.radius_mm &&
+           widest_gap_rad(std::move(angles)) > kWidestGap_rad;
+}
 
-    // The faces of an end, if the patch is one.
-    [[nodiscard]] std::optional<std::vector<std::int32_t>> end_of(Patch patch) {
-        const auto tabs = tabs_on(patch);
-        if (!tabs) {
-            return std::nullopt;
-        }
-        std::vector<std::int32_t> faces = patch.faces;
-        for (const Tab& tab : *tabs) {
-            faces.insert(faces.end(), tab.begin(), tab.end());
-        }
-        const auto [outline, enclosed_mm2] = marked_outline(faces, patch.normal);
-        if (outline.empty()) {
-            return std::nullopt;
-        }
-        const Rim circle = circle_of(outline, patch);
-        const bool are_tabs = std::all_of(
-            tabs->begin(), tabs->end(), [&](const Tab& tab) { return is_tab(tab, patch, circle); });
-        const bool is_end =
-            are_tabs && is_round(outline, circle) &&
-            enclosed_mm2 >= kRoundArea * kPi * circle.radius_mm * circle.radius_mm &&
-            has_wall(outline, circle,
-                     is_sharp(outline) ? std::numeric_limits<double>::infinity() : width_mm(faces));
-        return is_end ? std::optional(std::move(faces)) : std::nullopt;
+Rim circle_of(const MeasuredFaces& part, const FaceOutline& outline, const Patch& patch) {
+    std::vector<std::int32_t> vertices;
+    vertices.reserve(outline.edges.size());
+    for (const auto& [f, e] : outline.edges) {
+        vertices.push_back(part.soup.faces[at(f)][e]);
     }
+    Rim circle = rim_through(part.soup, std::move(vertices));
+    circle.axis *= circle.axis.dot(patch.normal) < 0.0 ? -1.0 : 1.0;
+    return circle;
+}
 
-    [[nodiscard]] bool is_tab(const Tab& tab, const Patch& patch, const Rim& circle) const {
-        std::vector<double> angles;
-        double highest = 0.0;
-        for (const std::int32_t f : tab) {
-            highest = std::max(highest, heights(patch, f).second);
-            for (std::size_t i = 0; i < 3; ++i) {
-                angles.push_back(angle_about(circle, corner(f, i)));
-            }
-        }
-        return highest <= kTabHeight * circle.radius_mm &&
-               widest_gap_rad(std::move(angles)) > kWidestGap_rad;
+bool is_round(const MeasuredFaces& part, const FaceOutline& outline, const Rim& circle) {
+    const double limit = kRoundShare * circle.radius_mm;
+    double all = 0.0;
+    double round = 0.0;
+    for (const auto& [f, e] : outline.edges) {
+        const Vector3d& from = part.corner(f, e);
+        const Vector3d& to = part.corner(f, e + 1);
+        const double length = (to - from).norm();
+        const bool on_circle = std::max({off_circle_mm(circle, from), off_circle_mm(circle, to),
+                                         off_circle_mm(circle, 0.5 * (from + to))}) <= limit;
+        all += length;
+        round += on_circle ? length : 0.0;
     }
+    return round >= kRoundLength * all;
+}
 
-    std::pair<std::vector<HalfEdge>, double> marked_outline(const std::vector<std::int32_t>& faces,
-                                                            const Vector3d& normal) {
-        const int mark = next_mark_++;
-        for (const std::int32_t f : faces) {
-            mark_[at(f)] = mark;
-        }
-        return outline_of(loops_of(faces, mark), normal);
+bool is_sharp(const MeasuredFaces& part, const FaceOutline& outline) {
+    double all = 0.0;
+    double sharp = 0.0;
+    for (const auto& [f, e] : outline.edges) {
+        const double length = (part.corner(f, e + 1) - part.corner(f, e)).norm();
+        const double turn = part.normals[at(f)].dot(part.normals[at(part.neighbours[at(f)][e])]);
+        all += length;
+        sharp += turn <= std::cos(kFeatureAngleRad) ? length : 0.0;
     }
+    return sharp >= kSharpLength * all;
+}
 
-    [[nodiscard]] Rim circle_of(const std::vector<HalfEdge>& outline, const Patch& patch) const {
-        std::vector<std::int32_t> vertices;
-        vertices.reserve(outline.size());
-        for (const auto& [f, e] : outline) {
-            vertices.push_back(soup_.faces[at(f)][e]);
+// Of a disc its radius, of a ring what is between its two circles. \pre faces are marked
+double width_mm(const MeasuredFaces& part, const std::vector<std::int32_t>& faces,
+                const FaceMarks& marks) {
+    double area = 0.0;
+    double border = 0.0;
+    for (const std::int32_t f : faces) {
+        area += part.area_mm2[at(f)];
+        for (std::size_t e = 0; e < 3; ++e) {
+            const bool beside =
+                marks.of_face[at(part.neighbours[at(f)][e])] != marks.of_face[at(f)];
+            border += beside ? (part.corner(f, e + 1) - part.corner(f, e)).norm() : 0.0;
         }
-        Rim circle = rim_through(soup_, std::move(vertices));
-        circle.axis *= circle.axis.dot(patch.normal) < 0.0 ? -1.0 : 1.0;
-        return circle;
     }
+    return border > 0.0 ? 2.0 * area / border : 0.0;
+}
 
-    [[nodiscard]] bool is_round(const std::vector<HalfEdge>& outline, const Rim& circle) const {
-        const double limit = kRoundShare * circle.radius_mm;
-        double all = 0.0;
-        double round = 0.0;
-        for (const auto& [f, e] : outline) {
-            const Vector3d& from = corner(f, e);
-            const Vector3d& to = corner(f, e + 1);
-            const double length = (to - from).norm();
-            const bool on_circle = std::max({off_circle_mm(circle, from), off_circle_mm(circle, to),
-                                             off_circle_mm(circle, 0.5 * (from + to))}) <= limit;
-            all += length;
-            round += on_circle ? length : 0.0;
+// Whether the surface goes back from the outline and is a leg's wall soon, all around.
+bool has_wall(const MeasuredFaces& part, const FaceOutline& outline, const Rim& circle,
+              double face_width_mm, FaceMarks& marks) {
+    const int inside = marks.last;  // the end's faces have the last mark
+    const int seen = marks.fresh();
+    const double radius = circle.radius_mm;
+    std::vector<std::int32_t> stack;
+    const auto reach = [&](std::int32_t f) {
+        if (f < 0 || marks.of_face[at(f)] == inside || marks.of_face[at(f)] == seen) {
+            return;
         }
-        return round >= kRoundLength * all;
-    }
-
-    [[nodiscard]] bool is_sharp(const std::vector<HalfEdge>& outline) const {
-        double all = 0.0;
-        double sharp = 0.0;
-        for (const auto& [f, e] : outline) {
-            const double length = (corner(f, e + 1) - corner(f, e)).norm();
-            const double turn = normals_[at(f)].dot(normals_[at(neighbours_[at(f)][e])]);
-            all += length;
-            sharp += turn <= std::cos(kFeatureAngleRad) ? length : 0.0;
-        }
-        return sharp >= kSharpLength * all;
-    }
-
-    // Whether the surface goes back from the outline and is a leg's wall soon, all around.
-    [[nodiscard]] bool has_wall(const std::vector<HalfEdge>& outline, const Rim& circle,
-                                double width_mm) {
-        const int inside = next_mark_ - 1;  // the end's faces have the last mark
-        const int seen = next_mark_++;
-        const double radius = circle.radius_mm;
-        std::vector<std::int32_t> stack;
-        const auto reach = [&](std::int32_t f) {
-            if (f < 0 || mark_[at(f)] == inside || mark_[at(f)] == seen) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vector3d arm = part.corner(f, i) - circle.centre_mm;
+            const double along = circle.axis.dot(arm);
+            const double out = (arm - along * circle.axis).norm();
+            // One corner near the end is enough: a wall may be one row of long facets.
+            if (along >= -kWallBehind * radius && out <= kWallOutside * radius &&
+                along <= kTabHeight * radius) {
+                marks.of_face[at(f)] = seen;
+                stack.push_back(f);
                 return;
             }
+        }
+    };
+    for (const auto& [f, e] : outline.edges) {
+        reach(part.neighbours[at(f)][e]);
+    }
+    std::vector<double> angles;
+    double begins_mm = radius;  // behind the end
+    while (!stack.empty()) {
+        const std::int32_t f = stack.back();
+        stack.pop_back();
+        const Vector3d& normal = part.normals[at(f)];
+        const Vector3d outward = part.centre(f) - circle.centre_mm;
+        const double lean = normal.dot(circle.axis);
+        if (std::abs(lean) < kWallLean && (normal - lean * circle.axis).dot(outward) > 0.0) {
+            angles.push_back(angle_about(circle, circle.centre_mm + normal));
             for (std::size_t i = 0; i < 3; ++i) {
-                const Vector3d arm = corner(f, i) - circle.centre_mm;
-                const double along = circle.axis.dot(arm);
-                const double out = (arm - along * circle.axis).norm();
-                // One corner near the end is enough: a wall may be one row of long facets.
-                if (along >= -kWallBehind * radius && out <= kWallOutside * radius &&
-                    along <= kTabHeight * radius) {
-                    mark_[at(f)] = seen;
-                    stack.push_back(f);
-                    return;
-                }
-            }
-        };
-        for (const auto& [f, e] : outline) {
-            reach(neighbours_[at(f)][e]);
-        }
-        std::vector<double> angles;
-        double begins_mm = radius;  // behind the end
-        while (!stack.empty()) {
-            const std::int32_t f = stack.back();
-            stack.pop_back();
-            const Vector3d& normal = normals_[at(f)];
-            const Vector3d outward = centre(f) - circle.centre_mm;
-            const double lean = normal.dot(circle.axis);
-            if (std::abs(lean) < kWallLean && (normal - lean * circle.axis).dot(outward) > 0.0) {
-                angles.push_back(angle_about(circle, circle.centre_mm + normal));
-                for (std::size_t i = 0; i < 3; ++i) {
-                    begins_mm =
-                        std::min(begins_mm, circle.axis.dot(circle.centre_mm - corner(f, i)));
-                }
-            }
-            for (const std::int32_t g : neighbours_[at(f)]) {
-                reach(g);
+                begins_mm =
+                    std::min(begins_mm, circle.axis.dot(circle.centre_mm - part.corner(f, i)));
             }
         }
-        return !angles.empty() && widest_gap_rad(std::move(angles)) < kWidestGap_rad &&
-               width_mm >= kWidthOfLip * begins_mm;
+        for (const std::int32_t g : part.neighbours[at(f)]) {
+            reach(g);
+        }
     }
+    return !angles.empty() && widest_gap_rad(std::move(angles)) < kWidestGap_rad &&
+           face_width_mm >= kWidthOfLip * begins_mm;
+}
 
-    // Of a disc its radius, of a ring what is between its two circles. \pre faces are marked
-    [[nodiscard]] double width_mm(const std::vector<std::int32_t>& faces) const {
-        double area = 0.0;
-        double border = 0.0;
-        for (const std::int32_t f : faces) {
-            area += face_area_[at(f)];
-            for (std::size_t e = 0; e < 3; ++e) {
-                const bool beside = mark_[at(neighbours_[at(f)][e])] != mark_[at(f)];
-                border += beside ? (corner(f, e + 1) - corner(f, e)).norm() : 0.0;
-            }
-        }
-        return border > 0.0 ? 2.0 * area / border : 0.0;
+// The faces of an end, if the patch is one.
+std::optional<std::vector<std::int32_t>> end_of(const MeasuredFaces& part, Patch patch,
+                                                FaceMarks& marks) {
+    const auto tabs = tabs_on(part, patch, marks);
+    if (!tabs) {
+        return std::nullopt;
     }
+    std::vector<std::int32_t> faces = patch.faces;
+    for (const Tab& tab : *tabs) {
+        faces.insert(faces.end(), tab.begin(), tab.end());
+    }
+    const FaceOutline outline = marked_outline(part, faces, patch.normal, marks);
+    if (outline.edges.empty()) {
+        return std::nullopt;
+    }
+    const Rim circle = circle_of(part, outline, patch);
+    const bool are_tabs = std::all_of(tabs->begin(), tabs->end(), [&](const Tab& tab) {
+        return is_tab(part, tab, patch, circle);
+    });
+    const bool is_end =
+        are_tabs && is_round(part, outline, circle) &&
+        outline.enclosed_mm2 >= kRoundArea * kPi * circle.radius_mm * circle.radius_mm &&
+        has_wall(part, outline, circle,
+                 is_sharp(part, outline) ? std::numeric_limits<double>::infinity()
+                                         : width_mm(part, faces, marks),
+                 marks);
+    return is_end ? std::optional(std::move(faces)) : std::nullopt;
+}
 
-    const TriangleSoup& soup_;
-    const std::vector<std::array<std::int32_t, 3>>& neighbours_;
-    const std::vector<Vector3d>& normals_;
-    const std::vector<double>& face_area_;
-    double tolerance_mm_;
-    std::vector<std::int32_t> end_;
-    std::vector<int> mark_;
-    int next_mark_ = 1;
-};
+// Faces from the largest down.
+std::vector<std::int32_t> by_area(const std::vector<double>& area_mm2) {
+    std::vector<std::int32_t> order(area_mm2.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+        return area_mm2[at(a)] > area_mm2[at(b)];
+    });
+    return order;
+}
+
+double patch_area_mm2(const MeasuredFaces& part, const Patch& patch) {
+    double area = 0.0;
+    for (const std::int32_t f : patch.faces) {
+        area += part.area_mm2[at(f)];
+    }
+    return area;
+}
 
 }  // namespace
 
@@ -495,7 +384,28 @@ std::vector<std::int32_t> flat_ends(const TriangleSoup& soup,
                                     const std::vector<std::array<std::int32_t, 3>>& neighbours,
                                     const std::vector<Eigen::Vector3d>& normals,
                                     const std::vector<double>& face_area) {
-    return FlatEnds(soup, neighbours, normals, face_area).find();
+    const MeasuredFaces part{soup, neighbours, normals, face_area, kPlaneShare * diagonal_mm(soup)};
+    const double least = kLeastAreaShare * std::accumulate(face_area.begin(), face_area.end(), 0.0);
+    FaceMarks marks{std::vector<int>(soup.faces.size(), 0)};
+    std::vector<std::int32_t> end(soup.faces.size(), -1);
+    std::vector<char> taken(soup.faces.size(), 0);
+    std::int32_t count = 0;
+    for (const std::int32_t seed : by_area(face_area)) {
+        if (taken[at(seed)] != 0) {
+            continue;
+        }
+        Patch patch = grow(part, seed, taken);
+        if (patch_area_mm2(part, patch) < least) {
+            continue;
+        }
+        if (const auto faces = end_of(part, std::move(patch), marks)) {
+            for (const std::int32_t f : *faces) {
+                end[at(f)] = count;
+            }
+            ++count;
+        }
+    }
+    return end;
 }
 
 }  // namespace meshwind
