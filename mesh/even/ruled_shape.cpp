@@ -67,10 +67,7 @@ std::optional<RuledShape> first_guess(std::span<const Vector3d> points,
         sum += facet.area_mm2 * aside;
         right += facet.area_mm2 * aside * facet.centre_mm;
     }
-    Vector3d centre = Vector3d::Zero();
-    for (const Vector3d& p : points) {
-        centre += p / static_cast<double>(points.size());
-    }
+    const Vector3d centre = mean_mm(points);
     sum += area * shape.axis * shape.axis.transpose();
     right += area * shape.axis * shape.axis.dot(centre);
     shape.origin_mm = sum.ldlt().solve(right);
@@ -108,6 +105,18 @@ Vector3d RuledShape::nearest(const Vector3d& p) const {
 
 double RuledShape::distance_mm(const Vector3d& p) const {
     return std::abs(seen_from(*this, p).distance_mm) / std::sqrt(1.0 + growth * growth);
+}
+
+Vector3d RuledShape::normal_at(const Vector3d& p) const {
+    const Vector3d d = p - origin_mm;
+    const Vector3d out = (d - d.dot(axis) * axis).normalized();
+    return (out - growth * axis).normalized();
+}
+
+Vector3d RuledShape::ruling_at(const Vector3d& p) const {
+    const Vector3d d = p - origin_mm;
+    const Vector3d out = (d - d.dot(axis) * axis).normalized();
+    return (axis + growth * out).normalized();
 }
 
 std::optional<RuledShape> fit_ruled_shape(std::span<const Vector3d> points_mm,
@@ -150,6 +159,32 @@ std::optional<RuledShape> fit_ruled_shape(std::span<const Vector3d> points_mm,
         shape->residual_mm = std::max(shape->residual_mm, shape->distance_mm(p));
     }
     return shape;
+}
+
+Vector3d mean_mm(std::span<const Vector3d> points_mm) {
+    Vector3d mean = Vector3d::Zero();
+    for (const Vector3d& p : points_mm) {
+        mean += p / static_cast<double>(points_mm.size());
+    }
+    return mean;
+}
+
+std::optional<BallShape> fit_ball(std::span<const Vector3d> points_mm) {
+    const Vector3d mean = mean_mm(points_mm);
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    for (const Vector3d& p : points_mm) {
+        const Vector3d d = p - mean;
+        const Eigen::Vector4d row(2.0 * d.x(), 2.0 * d.y(), 2.0 * d.z(), 1.0);
+        sum += row * row.transpose();
+        right += d.squaredNorm() * row;
+    }
+    const Eigen::Vector4d x = sum.ldlt().solve(right);
+    const double squared = x[3] + x.head<3>().squaredNorm();
+    if (!x.allFinite() || !(squared > 0.0)) {
+        return std::nullopt;
+    }
+    return BallShape{mean + x.head<3>(), std::sqrt(squared)};
 }
 
 }  // namespace meshwind

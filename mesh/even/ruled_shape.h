@@ -1,4 +1,4 @@
-/// Cylinders and cones of revolution through given points.
+/// Cylinders and cones of revolution, and balls, through given points.
 #pragma once
 
 #include <optional>
@@ -19,6 +19,11 @@ struct RuledShape {
     [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
     /// Distance of a point near the surface from it, >= 0.
     [[nodiscard]] double distance_mm(const Eigen::Vector3d& p) const;
+    /// Unit normal away from the axis, on the line along the surface past `p`.
+    /// \pre p is not on the axis
+    [[nodiscard]] Eigen::Vector3d normal_at(const Eigen::Vector3d& p) const;
+    /// Unit vector along that line. \pre p is not on the axis
+    [[nodiscard]] Eigen::Vector3d ruling_at(const Eigen::Vector3d& p) const;
 };
 
 /// A facet between the points.
@@ -32,5 +37,16 @@ struct RuledFacet {
 /// cone about the axis and meet it. None where the facets turn too little to tell an axis.
 [[nodiscard]] std::optional<RuledShape> fit_ruled_shape(std::span<const Eigen::Vector3d> points_mm,
                                                         std::span<const RuledFacet> facets);
+
+/// \pre not empty
+[[nodiscard]] Eigen::Vector3d mean_mm(std::span<const Eigen::Vector3d> points_mm);
+
+struct BallShape {
+    Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();
+    double radius_mm = 0.0;
+};
+
+/// Least squares of |p - c|^2 = r^2. None where the points tell no ball.
+[[nodiscard]] std::optional<BallShape> fit_ball(std::span<const Eigen::Vector3d> points_mm);
 
 }  // namespace meshwind

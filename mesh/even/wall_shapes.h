@@ -1,6 +1,7 @@
 /// Planes, balls, cylinders and cones that a file's facets lie on exactly.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,10 +20,31 @@ struct WallShape {
     double radius_mm = 0.0;                               ///< of a ball
 
     /// The point of the surface nearest to `p`. \pre p is not on the axis, nor a ball's centre
-    [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
-    [[nodiscard]] double distance_mm(const Eigen::Vector3d& p) const;
+    [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const {
+        if (kind == Kind::Ruled) {
+            return ruled.nearest(p);
+        }
+        if (kind == Kind::Ball) {
+            return centre_mm + radius_mm * (p - centre_mm).normalized();
+        }
+        return p - normal.dot(p - centre_mm) * normal;
+    }
+    [[nodiscard]] double distance_mm(const Eigen::Vector3d& p) const {
+        if (kind == Kind::Ruled) {
+            return ruled.distance_mm(p);
+        }
+        if (kind == Kind::Ball) {
+            return std::abs((p - centre_mm).norm() - radius_mm);
+        }
+        return std::abs(normal.dot(p - centre_mm));
+    }
     /// Unit normal there, on either side.
-    [[nodiscard]] Eigen::Vector3d normal_at(const Eigen::Vector3d& p) const;
+    [[nodiscard]] Eigen::Vector3d normal_at(const Eigen::Vector3d& p) const {
+        if (kind == Kind::Ruled) {
+            return ruled.normal_at(p);
+        }
+        return kind == Kind::Ball ? (p - centre_mm).normalized() : normal;
+    }
 };
 
 struct WallShapes {
