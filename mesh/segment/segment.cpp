@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
-#include <queue>
 #include <string_view>
-#include <tuple>
 
 #include <Eigen/Geometry>
 
 #include "core/index.h"
 #include "core/parallel.h"
 #include "mesh/edge_table.h"
+#include "mesh/segment/bore_sides.h"
 #include "mesh/segment/end_caps.h"
 #include "mesh/segment/feature_edges.h"
 #include "mesh/segment/flat_ends.h"
@@ -24,21 +22,6 @@ namespace {
 
 constexpr double kSamples = 4000.0;      // over the whole part, shared out by area
 constexpr double kSamplesPerRegion = 4;  // at least: small regions decide nothing alone
-
-// A point sees the outside when most directions escape. The wall of a long bore never does: even at
-// its very mouth half of the directions meet the opposite wall.
-constexpr double kMostDirections = 0.5;
-
-constexpr double kBlindShare = 0.05;  // of its area, from which a blind region may see
-
-// A region of which at least this share sees the outside and this share sees nothing is wall and
-// bore in one. So many of its faces are asked, evenly among them.
-constexpr double kBothSidesShare = 0.1;
-constexpr std::size_t kSidesAsked = 4000;
-
-// Wall and bore meet along a few circles: a longer border than so many times the root of the part's
-// area parts what only seems to see, for the coordinates have too few digits.
-constexpr double kLongestBorder = 6.0;
 
 // A blind region smaller than this share of the part may be a nook of the wall.
 constexpr double kBoreAreaShare = 0.01;
@@ -130,34 +113,6 @@ void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& n
     }
 }
 
-// Regions that hang together without crossing an end cap or a bore.
-std::vector<std::vector<std::int32_t>> pieces_of(const std::vector<Region>& regions,
-                                                 const std::vector<RegionFacts>& facts) {
-    const auto blocks = [&](std::int32_t id) {
-        return regions[at(id)].kind == RegionKind::EndCap ||
-               regions[at(id)].kind == RegionKind::Bore;
-    };
-    std::vector<char> reached(regions.size(), 0);
-    std::vector<std::vector<std::int32_t>> pieces;
-    for (std::int32_t seed = 0; seed < static_cast<std::int32_t>(regions.size()); ++seed) {
-        if (blocks(seed) || reached[at(seed)] != 0) {
-            continue;
-        }
-        std::vector<std::int32_t> piece{seed};
-        reached[at(seed)] = 1;
-        for (std::size_t i = 0; i < piece.size(); ++i) {
-            for (const std::int32_t other : facts[at(piece[i])].beside) {
-                if (!blocks(other) && reached[at(other)] == 0) {
-                    reached[at(other)] = 1;
-                    piece.push_back(other);
-                }
-            }
-        }
-        pieces.push_back(std::move(piece));
-    }
-    return pieces;
-}
-
 // Share of the piece's area that sees the outside.
 double view_of(const std::vector<std::int32_t>& piece, const std::vector<Region>& regions) {
     double seen = 0.0;
@@ -167,191 +122,6 @@ double view_of(const std::vector<std::int32_t>& piece, const std::vector<Region>
         area += regions[at(id)].area_mm2;
     }
     return area > 0.0 ? seen / area : 0.0;
-}
-
-// Faces across the edges of the end caps, by whether they face away from the cap's middle, as a
-// wall does, or toward it, as a bore.
-struct Mouth {
-    std::vector<std::int32_t> outer;
-    std::vector<std::int32_t> inner;
-};
-
-Mouth mouth_of(const TriangleSoup& soup, const Segmentation& s, const RegionFacts& cap,
-               const std::vector<Eigen::Vector3d>& normals) {
-    Mouth mouth;
-    for (const std::int32_t f : cap.faces) {
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t g = s.neighbours[at(f)][e];
-            if (g < 0 || s.regions[at(s.region[at(g)])].kind != RegionKind::Other) {
-                continue;
-            }
-            const Eigen::Vector3d middle =
-                0.5 * (soup.points_mm[at(soup.faces[at(f)][e])] +
-                       soup.points_mm[at(soup.faces[at(f)][(e + 1) % 3])]);
-            // Seen along the cap's normal: a lip leans only a little, and tabs lift the middle.
-            const Eigen::Vector3d along = cap.area_normal.normalized();
-            const Eigen::Vector3d arm = middle - cap.box.center();
-            const bool outward = normals[at(g)].dot(arm - along.dot(arm) * along) > 0.0;
-            (outward ? mouth.outer : mouth.inner).push_back(g);
-        }
-    }
-    return mouth;
-}
-
-// Spreads the sides of the mouths over their pieces, nearest first: 1 = outer, 2 = inner, 0 =
-// neither.
-std::vector<char> spread(const TriangleSoup& soup, const Segmentation& s,
-                         const std::vector<std::int32_t>& piece_of_region, const Mouth& seeds) {
-    const auto centre = [&](std::int32_t f) {
-        const auto& [a, b, c] = soup.faces[at(f)];
-        return Eigen::Vector3d(
-            (soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0);
-    };
-    using Entry = std::tuple<double, std::int32_t, char>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    std::vector<char> side(soup.faces.size(), 0);
-    for (const std::int32_t f : seeds.outer) {
-        queue.emplace(0.0, f, char{1});
-    }
-    for (const std::int32_t f : seeds.inner) {
-        queue.emplace(0.0, f, char{2});
-    }
-    while (!queue.empty()) {
-        const auto [distance, f, label] = queue.top();
-        queue.pop();
-        if (side[at(f)] != 0) {
-            continue;
-        }
-        side[at(f)] = label;
-        for (const std::int32_t g : s.neighbours[at(f)]) {
-            if (g >= 0 && side[at(g)] == 0 &&
-                piece_of_region[at(s.region[at(g)])] == piece_of_region[at(s.region[at(f)])]) {
-                queue.emplace(distance + (centre(g) - centre(f)).norm(), g, label);
-            }
-        }
-    }
-    return side;
-}
-
-// Faces of a region that see the outside, and others that see nothing of it; neither where one of
-// the two has no share in the region to speak of.
-Mouth sides_seen(const TriangleSoup& soup, const RegionFacts& region,
-                 const std::vector<Eigen::Vector3d>& normals, const std::vector<double>& face_area,
-                 const Visibility& visibility) {
-    const std::size_t step = 1 + region.faces.size() / kSidesAsked;
-    std::vector<char> side((region.faces.size() + step - 1) / step, 0);
-    parallel_for(side.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t f = at(region.faces[i * step]);
-            const auto& [a, b, c] = soup.faces[f];
-            const Eigen::Vector3d centre =
-                (soup.points_mm[at(a)] + soup.points_mm[at(b)] + soup.points_mm[at(c)]) / 3.0;
-            if (visibility.escapes(centre, normals[f], kMostDirections)) {
-                side[i] = 1;
-            } else if (!visibility.escapes(centre, normals[f], kBlindShare)) {
-                side[i] = 2;
-            }
-        }
-    });
-    Mouth mouth;
-    double all = 0.0;
-    double outer = 0.0;
-    double inner = 0.0;
-    for (std::size_t i = 0; i < side.size(); ++i) {
-        const std::int32_t f = region.faces[i * step];
-        all += face_area[at(f)];
-        if (side[i] == 1) {
-            outer += face_area[at(f)];
-            mouth.outer.push_back(f);
-        } else if (side[i] == 2) {
-            inner += face_area[at(f)];
-            mouth.inner.push_back(f);
-        }
-    }
-    return std::min(outer, inner) >= kBothSidesShare * all ? mouth : Mouth{};
-}
-
-// Length of the edges between both sides.
-double border_mm(const TriangleSoup& soup, const Segmentation& s, const std::vector<char>& side) {
-    double twice = 0.0;
-    for (std::size_t f = 0; f < side.size(); ++f) {
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t g = s.neighbours[f][e];
-            if (g >= 0 && side[at(g)] != side[f]) {
-                twice += (soup.points_mm[at(soup.faces[f][(e + 1) % 3])] -
-                          soup.points_mm[at(soup.faces[f][e])])
-                             .norm();
-            }
-        }
-    }
-    return 0.5 * twice;
-}
-
-// Where an end face is notched or its lip rounded, wall and bore run into each other: such pieces
-// touch one end cap from both sides, or a region of theirs sees the outside here and nothing there.
-// They are parted halfway between the two. Returns per face 1 where it is on the bore's side; empty
-// when nothing runs together.
-std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
-                             const std::vector<RegionFacts>& facts,
-                             const std::vector<Eigen::Vector3d>& normals,
-                             const std::vector<double>& face_area, const Visibility& visibility) {
-    constexpr std::size_t kFew = 8;  // of the faces around a cap, one in so many may be misjudged
-    std::vector<std::int32_t> piece_of_region(s.regions.size(), -1);
-    const auto pieces = pieces_of(s.regions, facts);
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        for (const std::int32_t id : pieces[p]) {
-            piece_of_region[at(id)] = static_cast<std::int32_t>(p);
-        }
-    }
-    const auto piece_of = [&](std::int32_t f) { return piece_of_region[at(s.region[at(f)])]; };
-    Mouth all;
-    std::vector<char> joined(pieces.size(), 0);
-    for (std::size_t id = 0; id < facts.size(); ++id) {
-        if (s.regions[id].kind != RegionKind::EndCap) {
-            continue;
-        }
-        const Mouth mouth = mouth_of(soup, s, facts[id], normals);
-        std::map<std::int32_t, std::array<std::size_t, 2>> counts;
-        for (const std::int32_t f : mouth.outer) {
-            ++counts[piece_of(f)][0];
-        }
-        for (const std::int32_t f : mouth.inner) {
-            ++counts[piece_of(f)][1];
-        }
-        const std::size_t few = (mouth.outer.size() + mouth.inner.size()) / kFew;
-        for (const auto& [piece, count] : counts) {
-            joined[at(piece)] |= static_cast<char>(std::min(count[0], count[1]) > few);
-        }
-        all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
-        all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
-    }
-    bool by_sight = false;
-    for (const Region& region : s.regions) {
-        if (region.kind == RegionKind::Other && region.visible_fraction > kBothSidesShare &&
-            region.visible_fraction < 1.0 - kBothSidesShare) {
-            const Mouth mouth =
-                sides_seen(soup, facts[at(region.id)], normals, face_area, visibility);
-            if (!mouth.inner.empty()) {
-                by_sight = true;
-                joined[at(piece_of_region[at(region.id)])] = 1;
-                all.outer.insert(all.outer.end(), mouth.outer.begin(), mouth.outer.end());
-                all.inner.insert(all.inner.end(), mouth.inner.begin(), mouth.inner.end());
-            }
-        }
-    }
-    if (std::count(joined.begin(), joined.end(), 1) == 0) {
-        return {};
-    }
-    std::vector<char> side = spread(soup, s, piece_of_region, all);
-    for (std::size_t f = 0; f < side.size(); ++f) {
-        const std::int32_t piece = piece_of(static_cast<std::int32_t>(f));
-        side[f] = static_cast<char>(piece >= 0 && joined[at(piece)] != 0 && side[f] == 2);
-    }
-    const double total_mm2 = std::accumulate(face_area.begin(), face_area.end(), 0.0);
-    if (by_sight && border_mm(soup, s, side) > kLongestBorder * std::sqrt(total_mm2)) {
-        return {};
-    }
-    return side;
 }
 
 // Per region 1 where it lies in the hole of an end cap, plus 2 where it lies on the outline of one.
