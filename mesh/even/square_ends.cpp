@@ -63,369 +63,399 @@ Ends ends_of(const LabelledView& part, const std::vector<char>& kept) {
     return ends;
 }
 
-// A leg with its axis away from the part, and where it is cut along that.
-struct Cut {
-    RuledShape leg;
-    double tolerance_mm = 0.0;  // of its vertices
-    double height_mm = 0.0;     // over the leg's origin
-    double depth_mm = 0.0;
+// The wall of a part, and where it ends.
+struct WallFaces {
+    const LabelledView& part;
+    Ends ends;
+    std::vector<std::vector<std::int32_t>> faces_at;  // of the wall, per vertex
+
+    [[nodiscard]] const Vector3d& point(std::int32_t v) const { return part.soup.points_mm[at(v)]; }
+};
+
+WallFaces wall_faces(const LabelledView& part, const std::vector<char>& kept) {
+    WallFaces wall{part, ends_of(part, kept), {}};
+    wall.faces_at.resize(part.soup.points_mm.size());
+    for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
+        if (kept[at(part.region[f])] != 0) {
+            for (const std::int32_t v : part.soup.faces[f]) {
+                wall.faces_at[at(v)].push_back(static_cast<std::int32_t>(f));
+            }
+        }
+    }
+    return wall;
+}
+
+// What the wall has behind a rim.
+struct Leg {
+    RuledShape shape;                // its axis away from the part
+    double tolerance_mm = 0.0;       // of its vertices
     std::vector<std::int32_t> loop;  // vertices of the rim
 };
 
-class EndFinder {
-public:
-    EndFinder(const LabelledView& part, const std::vector<char>& kept)
-        : part_(part),
-          kept_(kept),
-          ends_(ends_of(part, kept)),
-          faces_at_(part.soup.points_mm.size()) {
-        for (std::size_t f = 0; f < part.soup.faces.size(); ++f) {
-            if (is_wall(static_cast<std::int32_t>(f))) {
-                for (const std::int32_t v : part.soup.faces[f]) {
-                    faces_at_[at(v)].push_back(static_cast<std::int32_t>(f));
-                }
-            }
-        }
-    }
-
-    [[nodiscard]] std::vector<Cut> cuts(const std::optional<double>& depth_mm) const {
-        std::vector<Cut> result;
-        for (const Rim& rim : ends_.rims) {
-            std::optional<Cut> cut = leg_at(rim);
-            if (cut && (depth_mm ? cut_by(*cut, *depth_mm) : cut_where_it_ends(rim, *cut))) {
-                result.push_back(std::move(*cut));
-            }
-        }
-        return result;
-    }
-
-private:
-    [[nodiscard]] const Vector3d& point_of(std::int32_t v) const {
-        return part_.soup.points_mm[at(v)];
-    }
-    [[nodiscard]] bool is_wall(std::int32_t f) const { return kept_[at(part_.region[at(f)])] != 0; }
-
-    [[nodiscard]] std::vector<std::int32_t> loop_of(const Rim& rim) const {
-        std::vector<std::int32_t> loop;
-        for (std::size_t f = 0; f < ends_.rim_of_edge.size(); ++f) {
-            for (std::size_t e = 0; e < 3; ++e) {
-                if (ends_.rim_of_edge[f][e] == rim.id) {
-                    loop.push_back(part_.soup.faces[f][e]);
-                    loop.push_back(part_.soup.faces[f][(e + 1) % 3]);
-                }
-            }
-        }
-        std::sort(loop.begin(), loop.end());
-        loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
-        return loop;
-    }
-
-    [[nodiscard]] RuledFacet facet_of(std::int32_t f) const {
-        const auto& [a, b, c] = part_.soup.faces[at(f)];
-        const Vector3d area = 0.5 * (point_of(b) - point_of(a)).cross(point_of(c) - point_of(a));
-        const double size = area.norm();
-        return {(point_of(a) + point_of(b) + point_of(c)) / 3.0,
-                size > 0.0 ? Vector3d(area / size) : Vector3d::Zero(), size};
-    }
-
-    // Faces that hang together with the rim and have a vertex near it.
-    [[nodiscard]] std::vector<std::int32_t> faces_near(const Rim& rim,
-                                                       const std::vector<std::int32_t>& loop,
-                                                       double reach) const {
-        const auto near = [&](std::int32_t v) {
-            const Vector3d arm = point_of(v) - rim.centre_mm;
-            return rim.axis.dot(arm) > -reach * rim.radius_mm &&
-                   arm.norm() < (1.5 + reach) * rim.radius_mm;
-        };
-        std::vector<char> reached(faces_at_.size(), 0);
-        std::vector<std::int32_t> stack = loop;
-        std::vector<std::int32_t> faces;
-        for (const std::int32_t v : loop) {
-            reached[at(v)] = 1;
-        }
-        while (!stack.empty()) {
-            const std::int32_t v = stack.back();
-            stack.pop_back();
-            for (const std::int32_t f : faces_at_[at(v)]) {
-                faces.push_back(f);
-                for (const std::int32_t w : part_.soup.faces[at(f)]) {
-                    if (reached[at(w)] == 0 && near(w)) {
-                        reached[at(w)] = 1;
-                        stack.push_back(w);
-                    }
-                }
-            }
-        }
-        std::sort(faces.begin(), faces.end());
-        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-        return faces;
-    }
-
-    [[nodiscard]] std::optional<Cut> leg_at(const Rim& rim) const {
-        const std::vector<std::int32_t> loop = loop_of(rim);
-        for (const double reach : kLegReaches) {
-            const std::vector<std::int32_t> near = faces_near(rim, loop, reach);
-            for (const double lean : kLegLeans) {
-                std::optional<RuledShape> leg = fit_leg(steep(near, rim, lean));
-                if (leg) {
-                    if (leg->axis.dot(rim.axis) < 0.0) {
-                        leg->axis = -leg->axis;
-                        leg->growth = -leg->growth;
-                    }
-                    Cut cut;
-                    cut.leg = *leg;
-                    cut.loop = loop;
-                    cut.tolerance_mm =
-                        std::max(kLeaves * leg->residual_mm, kRounding * leg->radius_mm);
-                    return cut;
-                }
-            }
-        }
-        return std::nullopt;
-    }
-
-    // Facets that look away from the rim's axis and lean little to it.
-    [[nodiscard]] std::vector<std::int32_t> steep(const std::vector<std::int32_t>& faces,
-                                                  const Rim& rim, double lean) const {
-        std::vector<std::int32_t> found;
-        for (const std::int32_t f : faces) {
-            const RuledFacet facet = facet_of(f);
-            const Vector3d arm = facet.centre_mm - rim.centre_mm;
-            const Vector3d outward = arm - rim.axis.dot(arm) * rim.axis;
-            if (std::abs(facet.normal.dot(rim.axis)) < lean && facet.normal.dot(outward) > 0.0) {
-                found.push_back(f);
-            }
-        }
-        return found;
-    }
-
-    // What lies around its axis on one cylinder or cone. Facets with vertices off the others' are
-    // left out.
-    [[nodiscard]] std::optional<RuledShape> fit_leg(std::vector<std::int32_t> faces) const {
-        constexpr int kRounds = 6;
-        constexpr std::size_t kFew = 8;
-        for (int round = 0; round < kRounds; ++round) {
-            std::vector<std::int32_t> vertices;
-            std::vector<RuledFacet> facets;
-            for (const std::int32_t f : faces) {
-                facets.push_back(facet_of(f));
-                const auto& corners = part_.soup.faces[at(f)];
-                vertices.insert(vertices.end(), corners.begin(), corners.end());
-            }
-            std::sort(vertices.begin(), vertices.end());
-            vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-            std::vector<Vector3d> points;
-            points.reserve(vertices.size());
-            for (const std::int32_t v : vertices) {
-                points.push_back(point_of(v));
-            }
-            const std::optional<RuledShape> shape =
-                points.size() < kFew ? std::nullopt : fit_ruled_shape(points, facets);
-            if (!shape) {
-                return std::nullopt;
-            }
-            const double median = median_off_mm(*shape, faces);
-            const double limit = std::max(
-                {kFarOff * median, kRounding * shape->radius_mm, 0.1 * shape->residual_mm});
-            if (shape->residual_mm <= limit || round + 1 == kRounds) {
-                const bool is_leg = shape->residual_mm <= kOnLeg * shape->radius_mm &&
-                                    gap_about_rad(*shape, facets) < kWidestGap_rad;
-                return is_leg ? shape : std::nullopt;
-            }
-            const auto is_off = [&](std::int32_t f) {
-                const auto& c = part_.soup.faces[at(f)];
-                return std::any_of(c.begin(), c.end(), [&](std::int32_t v) {
-                    return shape->distance_mm(point_of(v)) > limit;
-                });
-            };
-            faces.erase(std::remove_if(faces.begin(), faces.end(), is_off), faces.end());
-        }
-        return std::nullopt;
-    }
-
-    // By area, so that the many vertices of a letter do not outvote the wall around it.
-    [[nodiscard]] double median_off_mm(const RuledShape& shape,
-                                       const std::vector<std::int32_t>& faces) const {
-        std::vector<std::pair<double, double>> off;  // and area
-        double all = 0.0;
-        for (const std::int32_t f : faces) {
-            double farthest = 0.0;
-            for (const std::int32_t v : part_.soup.faces[at(f)]) {
-                farthest = std::max(farthest, shape.distance_mm(point_of(v)));
-            }
-            off.emplace_back(farthest, facet_of(f).area_mm2);
-            all += off.back().second;
-        }
-        std::sort(off.begin(), off.end());
-        double below = 0.0;
-        for (const auto& [distance, area] : off) {
-            below += area;
-            if (2.0 * below >= all) {
-                return distance;
-            }
-        }
-        return 0.0;
-    }
-
-    [[nodiscard]] static double gap_about_rad(const RuledShape& leg,
-                                              const std::vector<RuledFacet>& facets) {
-        const Vector3d u = leg.axis.unitOrthogonal();
-        const Vector3d v = leg.axis.cross(u);
-        std::vector<double> angles;
-        angles.reserve(facets.size());
-        for (const RuledFacet& facet : facets) {
-            angles.push_back(std::atan2(v.dot(facet.normal), u.dot(facet.normal)));
-        }
-        return widest_gap_rad(std::move(angles));
-    }
-
-    [[nodiscard]] static double height_mm(const RuledShape& leg, const Vector3d& p) {
-        return leg.axis.dot(p - leg.origin_mm);
-    }
-
-    [[nodiscard]] double farthest_mm(const Cut& cut) const {
-        double farthest = -1e300;
-        for (const std::int32_t v : cut.loop) {
-            farthest = std::max(farthest, height_mm(cut.leg, point_of(v)));
-        }
-        return farthest;
-    }
-
-    [[nodiscard]] bool cut_by(Cut& cut, double depth_mm) const {
-        cut.depth_mm = depth_mm;
-        cut.height_mm = farthest_mm(cut) - depth_mm;
-        return depth_mm > 0.0;
-    }
-
-    // How far inside the leg's surface.
-    [[nodiscard]] double inside_mm(const Cut& cut, std::int32_t v) const {
-        const RuledShape& leg = cut.leg;
-        const Vector3d arm = point_of(v) - leg.origin_mm;
-        const double z = leg.axis.dot(arm);
-        return leg.radius_mm + leg.growth * z - (arm - z * leg.axis).norm();
-    }
-
-    [[nodiscard]] bool cut_where_it_ends(const Rim& rim, Cut& cut) const {
-        const double radius = cut.leg.radius_mm;
-        double farthest = farthest_mm(cut);
-        double nearest = farthest;
-        std::vector<char> reached(faces_at_.size(), 0);
-        std::vector<std::int32_t> stack;
-        for (const std::int32_t v : cut.loop) {
-            nearest = std::min(nearest, height_mm(cut.leg, point_of(v)));
-            reached[at(v)] = 1;
-            if (inside_mm(cut, v) > cut.tolerance_mm) {
-                stack.push_back(v);
-            }
-        }
-        if (stack.empty() && rim.circularity_mm <= kLeastDepth * radius) {
-            return false;
-        }
-        // From the rim along what lies inside the leg, to the first vertices that lie on it, but
-        // for so much.
-        double off_mm = cut.leg.residual_mm;
-        while (!stack.empty() && farthest - nearest <= kMostDepth * radius) {
-            const std::int32_t v = stack.back();
-            stack.pop_back();
-            for (const std::int32_t f : faces_at_[at(v)]) {
-                for (const std::int32_t w : part_.soup.faces[at(f)]) {
-                    if (reached[at(w)] != 0) {
-                        continue;
-                    }
-                    reached[at(w)] = 1;
-                    const double height = height_mm(cut.leg, point_of(w));
-                    nearest = std::min(nearest, height);
-                    farthest = std::max(farthest, height);
-                    const double inside = inside_mm(cut, w);
-                    if (inside > cut.tolerance_mm) {
-                        stack.push_back(w);
-                    } else {
-                        off_mm = std::max(off_mm, inside + cut.leg.residual_mm);
-                    }
-                }
-            }
-        }
-        // A round lip goes on that far beyond its last vertex, and there its normals still lean.
-        nearest -= std::sqrt(2.0 * off_mm * (farthest - nearest));
-        cut.depth_mm = farthest - nearest;
-        cut.height_mm = nearest;
-        return cut.depth_mm > kLeastDepth * radius && cut.depth_mm <= kMostDepth * radius;
-    }
-
-    const LabelledView& part_;
-    const std::vector<char>& kept_;
-    Ends ends_;
-    std::vector<std::vector<std::int32_t>> faces_at_;  // of the wall, per vertex
+// Where a leg is cut along its axis.
+struct Cut {
+    Leg leg;
+    double height_mm = 0.0;  // over the leg's origin
+    double depth_mm = 0.0;
 };
 
-// Splits the wall's edges at the plane and gives what lies beyond it the region `end`.
-void cut_off(WorkMesh& work, const Cut& cut, std::int32_t end) {
-    const double tolerance = kInPlane * cut.leg.radius_mm;
-    const auto height = [&](WorkMesh::Vertex v) {
-        return cut.leg.axis.dot(work.at(v) - cut.leg.origin_mm) - cut.height_mm;
-    };
-    // Faces that reach beyond the plane and hang together with the rim.
-    const auto beyond = [&] {
-        std::vector<char> seen(work.mesh.n_faces(), 0);
-        std::vector<WorkMesh::Face> faces;
-        std::vector<WorkMesh::Vertex> stack;
-        std::vector<char> reached(work.mesh.n_vertices(), 0);
-        for (const std::int32_t v : cut.loop) {
-            stack.push_back(WorkMesh::Vertex(v));
-            reached[at(v)] = 1;
+std::vector<std::int32_t> loop_of(const WallFaces& wall, const Rim& rim) {
+    std::vector<std::int32_t> loop;
+    for (std::size_t f = 0; f < wall.ends.rim_of_edge.size(); ++f) {
+        for (std::size_t e = 0; e < 3; ++e) {
+            if (wall.ends.rim_of_edge[f][e] == rim.id) {
+                loop.push_back(wall.part.soup.faces[f][e]);
+                loop.push_back(wall.part.soup.faces[f][(e + 1) % 3]);
+            }
         }
-        while (!stack.empty()) {
-            const WorkMesh::Vertex v = stack.back();
-            stack.pop_back();
-            for (const WorkMesh::Face face : work.mesh.vf_range(v)) {
-                if (!work.is_wall(face) || seen[at(face.idx())] != 0) {
-                    continue;
-                }
-                seen[at(face.idx())] = 1;
-                double highest = -1e300;
-                for (const WorkMesh::Vertex w : work.mesh.fv_range(face)) {
-                    highest = std::max(highest, height(w));
-                }
-                if (highest <= tolerance) {
-                    continue;
-                }
-                faces.push_back(face);
-                for (const WorkMesh::Vertex w : work.mesh.fv_range(face)) {
-                    if (reached[at(w.idx())] == 0 && height(w) > tolerance) {
-                        reached[at(w.idx())] = 1;
-                        stack.push_back(w);
-                    }
+    }
+    std::sort(loop.begin(), loop.end());
+    loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
+    return loop;
+}
+
+// Faces that hang together with the rim and have a vertex near it.
+std::vector<std::int32_t> faces_near(const WallFaces& wall, const Rim& rim,
+                                     const std::vector<std::int32_t>& loop, double reach) {
+    const auto near = [&](std::int32_t v) {
+        const Vector3d arm = wall.point(v) - rim.centre_mm;
+        return rim.axis.dot(arm) > -reach * rim.radius_mm &&
+               arm.norm() < (1.5 + reach) * rim.radius_mm;
+    };
+    std::vector<char> reached(wall.faces_at.size(), 0);
+    std::vector<std::int32_t> stack = loop;
+    std::vector<std::int32_t> faces;
+    for (const std::int32_t v : loop) {
+        reached[at(v)] = 1;
+    }
+    while (!stack.empty()) {
+        const std::int32_t v = stack.back();
+        stack.pop_back();
+        for (const std::int32_t f : wall.faces_at[at(v)]) {
+            faces.push_back(f);
+            for (const std::int32_t w : wall.part.soup.faces[at(f)]) {
+                if (reached[at(w)] == 0 && near(w)) {
+                    reached[at(w)] = 1;
+                    stack.push_back(w);
                 }
             }
         }
-        return faces;
-    };
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+RuledFacet facet_of(const WallFaces& wall, std::int32_t f) {
+    const auto& [a, b, c] = wall.part.soup.faces[at(f)];
+    const Vector3d area =
+        0.5 * (wall.point(b) - wall.point(a)).cross(wall.point(c) - wall.point(a));
+    const double size = area.norm();
+    return {(wall.point(a) + wall.point(b) + wall.point(c)) / 3.0,
+            size > 0.0 ? Vector3d(area / size) : Vector3d::Zero(), size};
+}
+
+// Facets that look away from the rim's axis and lean little to it.
+std::vector<std::int32_t> steep(const WallFaces& wall, const std::vector<std::int32_t>& faces,
+                                const Rim& rim, double lean) {
+    std::vector<std::int32_t> found;
+    for (const std::int32_t f : faces) {
+        const RuledFacet facet = facet_of(wall, f);
+        const Vector3d arm = facet.centre_mm - rim.centre_mm;
+        const Vector3d outward = arm - rim.axis.dot(arm) * rim.axis;
+        if (std::abs(facet.normal.dot(rim.axis)) < lean && facet.normal.dot(outward) > 0.0) {
+            found.push_back(f);
+        }
+    }
+    return found;
+}
+
+// By area, so that the many vertices of a letter do not outvote the wall around it.
+double median_off_mm(const WallFaces& wall, const RuledShape& shape,
+                     const std::vector<std::int32_t>& faces) {
+    std::vector<std::pair<double, double>> off;  // and area
+    double all = 0.0;
+    for (const std::int32_t f : faces) {
+        double farthest = 0.0;
+        for (const std::int32_t v : wall.part.soup.faces[at(f)]) {
+            farthest = std::max(farthest, shape.distance_mm(wall.point(v)));
+        }
+        off.emplace_back(farthest, facet_of(wall, f).area_mm2);
+        all += off.back().second;
+    }
+    std::sort(off.begin(), off.end());
+    double below = 0.0;
+    for (const auto& [distance, area] : off) {
+        below += area;
+        if (2.0 * below >= all) {
+            return distance;
+        }
+    }
+    return 0.0;
+}
+
+double gap_about_rad(const RuledShape& leg, const std::vector<RuledFacet>& facets) {
+    const Vector3d u = leg.axis.unitOrthogonal();
+    const Vector3d v = leg.axis.cross(u);
+    std::vector<double> angles;
+    angles.reserve(facets.size());
+    for (const RuledFacet& facet : facets) {
+        angles.push_back(std::atan2(v.dot(facet.normal), u.dot(facet.normal)));
+    }
+    return widest_gap_rad(std::move(angles));
+}
+
+// What lies around its axis on one cylinder or cone. Facets with vertices off the others' are
+// left out.
+std::optional<RuledShape> fit_leg(const WallFaces& wall, std::vector<std::int32_t> faces) {
+    constexpr int kRounds = 6;
+    constexpr std::size_t kFew = 8;
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<std::int32_t> vertices;
+        std::vector<RuledFacet> facets;
+        for (const std::int32_t f : faces) {
+            facets.push_back(facet_of(wall, f));
+            const auto& corners = wall.part.soup.faces[at(f)];
+            vertices.insert(vertices.end(), corners.begin(), corners.end());
+        }
+        std::sort(vertices.begin(), vertices.end());
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        std::vector<Vector3d> points;
+        points.reserve(vertices.size());
+        for (const std::int32_t v : vertices) {
+            points.push_back(wall.point(v));
+        }
+        const std::optional<RuledShape> shape =
+            points.size() < kFew ? std::nullopt : fit_ruled_shape(points, facets);
+        if (!shape) {
+            return std::nullopt;
+        }
+        const double median = median_off_mm(wall, *shape, faces);
+        const double limit =
+            std::max({kFarOff * median, kRounding * shape->radius_mm, 0.1 * shape->residual_mm});
+        if (shape->residual_mm <= limit || round + 1 == kRounds) {
+            const bool is_leg = shape->residual_mm <= kOnLeg * shape->radius_mm &&
+                                gap_about_rad(*shape, facets) < kWidestGap_rad;
+            return is_leg ? shape : std::nullopt;
+        }
+        const auto is_off = [&](std::int32_t f) {
+            const auto& c = wall.part.soup.faces[at(f)];
+            return std::any_of(c.begin(), c.end(), [&](std::int32_t v) {
+                return shape->distance_mm(wall.point(v)) > limit;
+            });
+        };
+        faces.erase(std::remove_if(faces.begin(), faces.end(), is_off), faces.end());
+    }
+    return std::nullopt;
+}
+
+std::optional<Leg> leg_at(const WallFaces& wall, const Rim& rim) {
+    const std::vector<std::int32_t> loop = loop_of(wall, rim);
+    for (const double reach : kLegReaches) {
+        const std::vector<std::int32_t> near = faces_near(wall, rim, loop, reach);
+        for (const double lean : kLegLeans) {
+            std::optional<RuledShape> shape = fit_leg(wall, steep(wall, near, rim, lean));
+            if (shape) {
+                if (shape->axis.dot(rim.axis) < 0.0) {
+                    shape->axis = -shape->axis;
+                    shape->growth = -shape->growth;
+                }
+                return Leg{*shape,
+                           std::max(kLeaves * shape->residual_mm, kRounding * shape->radius_mm),
+                           loop};
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+double height_mm(const RuledShape& leg, const Vector3d& p) {
+    return leg.axis.dot(p - leg.origin_mm);
+}
+
+// Height of the vertex of the rim farthest along the leg's axis.
+double farthest_mm(const WallFaces& wall, const Leg& leg) {
+    double farthest = -1e300;
+    for (const std::int32_t v : leg.loop) {
+        farthest = std::max(farthest, height_mm(leg.shape, wall.point(v)));
+    }
+    return farthest;
+}
+
+// How far inside the leg's surface.
+double inside_mm(const RuledShape& leg, const Vector3d& p) {
+    const Vector3d arm = p - leg.origin_mm;
+    const double z = leg.axis.dot(arm);
+    return leg.radius_mm + leg.growth * z - (arm - z * leg.axis).norm();
+}
+
+// Where a leg begins whose wall goes inside it before its rim, or whose rim is uneven; none where
+// it does neither, or where the cut would take too little or too much.
+std::optional<Cut> cut_where_it_ends(const WallFaces& wall, const Rim& rim, Leg leg) {
+    const double radius = leg.shape.radius_mm;
+    double farthest = farthest_mm(wall, leg);
+    double nearest = farthest;
+    std::vector<char> reached(wall.faces_at.size(), 0);
+    std::vector<std::int32_t> stack;
+    for (const std::int32_t v : leg.loop) {
+        nearest = std::min(nearest, height_mm(leg.shape, wall.point(v)));
+        reached[at(v)] = 1;
+        if (inside_mm(leg.shape, wall.point(v)) > leg.tolerance_mm) {
+            stack.push_back(v);
+        }
+    }
+    if (stack.empty() && rim.circularity_mm <= kLeastDepth * radius) {
+        return std::nullopt;
+    }
+    // From the rim along what lies inside the leg, to the first vertices that lie on it, but
+    // for so much.
+    double off_mm = leg.shape.residual_mm;
+    while (!stack.empty() && farthest - nearest <= kMostDepth * radius) {
+        const std::int32_t v = stack.back();
+        stack.pop_back();
+        for (const std::int32_t f : wall.faces_at[at(v)]) {
+            for (const std::int32_t w : wall.part.soup.faces[at(f)]) {
+                if (reached[at(w)] != 0) {
+                    continue;
+                }
+                reached[at(w)] = 1;
+                const double height = height_mm(leg.shape, wall.point(w));
+                nearest = std::min(nearest, height);
+                farthest = std::max(farthest, height);
+                const double inside = inside_mm(leg.shape, wall.point(w));
+                if (inside > leg.tolerance_mm) {
+                    stack.push_back(w);
+                } else {
+                    off_mm = std::max(off_mm, inside + leg.shape.residual_mm);
+                }
+            }
+        }
+    }
+    // A round lip goes on that far beyond its last vertex, and there its normals still lean.
+    nearest -= std::sqrt(2.0 * off_mm * (farthest - nearest));
+    const double depth = farthest - nearest;
+    if (!(depth > kLeastDepth * radius && depth <= kMostDepth * radius)) {
+        return std::nullopt;
+    }
+    return Cut{std::move(leg), nearest, depth};
+}
+
+// None where nothing is to be cut.
+std::optional<Cut> cut_by(const WallFaces& wall, Leg leg, double depth_mm) {
+    if (!(depth_mm > 0.0)) {
+        return std::nullopt;
+    }
+    const double height = farthest_mm(wall, leg) - depth_mm;
+    return Cut{std::move(leg), height, depth_mm};
+}
+
+// \param depth_mm of all cuts; none: each leg is cut where it ends
+std::vector<Cut> cuts_of(const WallFaces& wall, const std::optional<double>& depth_mm) {
+    std::vector<Cut> result;
+    for (const Rim& rim : wall.ends.rims) {
+        std::optional<Leg> leg = leg_at(wall, rim);
+        if (!leg) {
+            continue;
+        }
+        std::optional<Cut> cut = depth_mm ? cut_by(wall, std::move(*leg), *depth_mm)
+                                          : cut_where_it_ends(wall, rim, std::move(*leg));
+        if (cut) {
+            result.push_back(std::move(*cut));
+        }
+    }
+    return result;
+}
+
+// Height over the plane of the cut.
+double over_mm(const Cut& cut, const Vector3d& p) {
+    return cut.leg.shape.axis.dot(p - cut.leg.shape.origin_mm) - cut.height_mm;
+}
+
+// A vertex this near to the plane of the cut lies in it.
+double plane_tolerance_mm(const Cut& cut) {
+    return kInPlane * cut.leg.shape.radius_mm;
+}
+
+// Faces that reach beyond the plane and hang together with the rim.
+std::vector<WorkMesh::Face> faces_beyond(const WorkMesh& work, const Cut& cut) {
+    const double tolerance = plane_tolerance_mm(cut);
+    const auto height = [&](WorkMesh::Vertex v) { return over_mm(cut, work.at(v)); };
+    std::vector<char> seen(work.mesh.n_faces(), 0);
+    std::vector<WorkMesh::Face> faces;
+    std::vector<WorkMesh::Vertex> stack;
+    std::vector<char> reached(work.mesh.n_vertices(), 0);
+    for (const std::int32_t v : cut.leg.loop) {
+        stack.push_back(WorkMesh::Vertex(v));
+        reached[at(v)] = 1;
+    }
+    while (!stack.empty()) {
+        const WorkMesh::Vertex v = stack.back();
+        stack.pop_back();
+        for (const WorkMesh::Face face : work.mesh.vf_range(v)) {
+            if (!work.is_wall(face) || seen[at(face.idx())] != 0) {
+                continue;
+            }
+            seen[at(face.idx())] = 1;
+            double highest = -1e300;
+            for (const WorkMesh::Vertex w : work.mesh.fv_range(face)) {
+                highest = std::max(highest, height(w));
+            }
+            if (highest <= tolerance) {
+                continue;
+            }
+            faces.push_back(face);
+            for (const WorkMesh::Vertex w : work.mesh.fv_range(face)) {
+                if (reached[at(w.idx())] == 0 && height(w) > tolerance) {
+                    reached[at(w.idx())] = 1;
+                    stack.push_back(w);
+                }
+            }
+        }
+    }
+    return faces;
+}
+
+// Each once, by number.
+std::vector<WorkMesh::Edge> edges_of(const WorkMesh& work,
+                                     const std::vector<WorkMesh::Face>& faces) {
     std::vector<WorkMesh::Edge> edges;
-    for (const WorkMesh::Face face : beyond()) {
+    for (const WorkMesh::Face face : faces) {
         for (const auto half : work.mesh.fh_range(face)) {
             edges.push_back(work.mesh.edge_handle(half));
         }
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (const WorkMesh::Edge edge : edges) {
+    return edges;
+}
+
+// Where the chord between heights `ha` and `hb` crosses the plane, on the leg where it is near.
+Vector3d crossing_mm(const Cut& cut, const Vector3d& a, double ha, const Vector3d& b, double hb) {
+    const RuledShape& leg = cut.leg.shape;
+    const Vector3d chord = a + ha / (ha - hb) * (b - a);
+    // Chords of a round wall are inside it.
+    const Vector3d on_leg = leg.nearest(chord);
+    const bool near = (on_leg - chord).norm() <= 2.0 * kOnLeg * leg.radius_mm;
+    Vector3d point = near ? on_leg : chord;
+    point -= (leg.axis.dot(point - leg.origin_mm) - cut.height_mm) * leg.axis;
+    return point;
+}
+
+// Splits the wall's edges at the plane and gives what lies beyond it the region `end`.
+void cut_off(WorkMesh& work, const Cut& cut, std::int32_t end) {
+    const double tolerance = plane_tolerance_mm(cut);
+    for (const WorkMesh::Edge edge : edges_of(work, faces_beyond(work, cut))) {
         const auto half = work.mesh.halfedge_handle(edge, 0);
-        const WorkMesh::Vertex a = work.mesh.from_vertex_handle(half);
-        const WorkMesh::Vertex b = work.mesh.to_vertex_handle(half);
-        const double ha = height(a);
-        const double hb = height(b);
+        const Vector3d a = work.at(work.mesh.from_vertex_handle(half));
+        const Vector3d b = work.at(work.mesh.to_vertex_handle(half));
+        const double ha = over_mm(cut, a);
+        const double hb = over_mm(cut, b);
         if (std::min(ha, hb) >= -tolerance || std::max(ha, hb) <= tolerance) {
             continue;
         }
-        const Vector3d chord = work.at(a) + ha / (ha - hb) * (work.at(b) - work.at(a));
-        // Chords of a round wall are inside it.
-        const Vector3d on_leg = cut.leg.nearest(chord);
-        const bool near = (on_leg - chord).norm() <= 2.0 * kOnLeg * cut.leg.radius_mm;
-        Vector3d point = near ? on_leg : chord;
-        point -= (cut.leg.axis.dot(point - cut.leg.origin_mm) - cut.height_mm) * cut.leg.axis;
-        work.split(edge, point);
+        work.split(edge, crossing_mm(cut, a, ha, b, hb));
     }
-    for (const WorkMesh::Face face : beyond()) {
+    for (const WorkMesh::Face face : faces_beyond(work, cut)) {
         work.label(face).region = end;
         work.label(face).wall = false;
     }
@@ -435,7 +465,7 @@ void cut_off(WorkMesh& work, const Cut& cut, std::int32_t end) {
 
 std::optional<SquareEnds> square_ends(const LabelledView& part, const std::vector<char>& kept,
                                       const std::optional<double>& depth_mm) {
-    const std::vector<Cut> cuts = EndFinder(part, kept).cuts(depth_mm);
+    const std::vector<Cut> cuts = cuts_of(wall_faces(part, kept), depth_mm);
     if (cuts.empty()) {
         return std::nullopt;
     }
@@ -447,7 +477,7 @@ std::optional<SquareEnds> square_ends(const LabelledView& part, const std::vecto
     for (const Cut& cut : cuts) {
         cut_off(work, cut, static_cast<std::int32_t>(result.kept.size()));
         result.kept.push_back(0);
-        const Vector3d centre = cut.leg.origin_mm + cut.height_mm * cut.leg.axis;
+        const Vector3d centre = cut.leg.shape.origin_mm + cut.height_mm * cut.leg.shape.axis;
         result.cuts.push_back({centre, cut.depth_mm});
     }
     result.part = work.part();
