@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "core/index.h"
 #include "core/parallel.h"
@@ -35,175 +36,182 @@ constexpr std::size_t kNearChunk = 32;
 // How far a candidate near a member is turned at most.
 constexpr double kNearTurn_rad = 5.0 * kPi / 180.0;
 
-class Grower {
-public:
-    Grower(const CourseRules& rules, const CoverageSamples& samples, const CoverOptions& options)
-        : rules_(rules), samples_(samples), options_(options) {
-        library_.reached.assign(samples.size(), 0);
-        library_.closest_miss.assign(samples.size(), Refusal::None);
-    }
+// What a library is grown by.
+struct GrowthTask {
+    const CourseRules& rules;
+    const CoverageSamples& samples;
+    const CoverOptions& options;
 
-    Library run() {
-        grow();
-        return std::move(library_);
-    }
-
-private:
     [[nodiscard]] std::uint64_t stream(Stream which) const {
-        return seed_of(which, options_.context.seed);
+        return seed_of(which, options.context.seed);
     }
-
-    void tell(double share) const { options_.context.report_progress("library", share); }
-
-    // A candidate through a given sample; `draw` numbers the random draws of the whole run.
-    Candidate candidate_at(std::int32_t sample, std::uint64_t draw) const {
-        const auto pick = random_bits(stream(Stream::Steerings), draw) % kSteering.size();
-        const SurfacePoint& place = samples_.at[at(sample)];
-        return {place,
-                draw_direction_rad(rules_, place, random_unit(stream(Stream::Angles), draw),
-                                   random_unit(stream(Stream::Wishes), draw)),
-                options_.tow.friction.share(kSteering[pick])};
-    }
-
-    void try_candidates(const std::vector<std::int32_t>& seeds) {
-        std::vector<Candidate> candidates;
-        candidates.reserve(seeds.size());
-        for (const std::int32_t sample : seeds) {
-            candidates.push_back(candidate_at(sample, draws_++));
-        }
-        const std::vector<Refusal> outcome = judge_candidates(candidates);
-        for (std::size_t i = 0; i < seeds.size(); ++i) {
-            library_.closest_miss[at(seeds[i])] =
-                std::max(library_.closest_miss[at(seeds[i])], outcome[i]);
-        }
-    }
-
-    // True when most of what sketches admit holds by all rules.
-    [[nodiscard]] bool sketches_hold(std::span<const std::int32_t> seeds) const {
-        std::vector<Candidate> candidates;
-        for (std::size_t i = 0; i < seeds.size(); ++i) {
-            candidates.push_back(candidate_at(seeds[i], i));
-        }
-        std::vector<Candidate> sketched;
-        for (const Member& member : build_library(rules_, candidates).members) {
-            sketched.push_back(member.candidate);
-        }
-        const std::size_t hold = build_library(rules_, sketched, Judging::Courses).members.size();
-        return static_cast<double>(hold) >= kTrustedShare * static_cast<double>(sketched.size());
-    }
-
-    // Adds the admissible ones to the library; says what became of each.
-    std::vector<Refusal> judge_candidates(const std::vector<Candidate>& candidates) {
-        LibraryPart part = build_library(rules_, candidates, library_.judging);
-        library_.candidates += static_cast<std::int64_t>(candidates.size());
-        for (const Refusal refusal : part.outcome) {
-            ++library_.refusals[static_cast<std::size_t>(refusal)];
-        }
-        for (Member& member : part.members) {
-            for (const std::int32_t sample : member.footprint) {
-                library_.reached[at(sample)] = 1;
-            }
-            library_.members.push_back(std::move(member));
-        }
-        return std::move(part.outcome);
-    }
-
-    void grow() {
-        std::vector<std::int32_t> seeds;
-        seeds.reserve(static_cast<std::size_t>(options_.candidates));
-        for (int i = 0; i < options_.candidates; ++i) {
-            seeds.push_back(static_cast<std::int32_t>(
-                random_bits(stream(Stream::Seeds), static_cast<std::uint64_t>(i)) %
-                samples_.size()));
-        }
-        tell(0.0);
-        const std::size_t first = std::min(kFirstCandidates, seeds.size());
-        library_.judging =
-            sketches_hold(std::span(seeds).first(first)) ? Judging::Sketches : Judging::Courses;
-        try_candidates(seeds);
-        for (int round = 0; round < options_.rounds; ++round) {
-            tell((round + 1.0) / (options_.rounds + 1.0));
-            const std::vector<std::int32_t> missed = unreached();
-            if (missed.empty()) {
-                break;
-            }
-            seeds.clear();
-            for (int i = 0; i < options_.aimed_candidates; ++i) {
-                const auto draw = static_cast<std::uint64_t>(i) << 8U;
-                seeds.push_back(missed[random_bits(stream(Stream::Seeds),
-                                                   draw + 1 + static_cast<std::uint64_t>(round)) %
-                                       missed.size()]);
-            }
-            try_candidates(seeds);
-        }
-        for (int round = 0; round < kScarceRounds; ++round) {
-            grow_scarce_ways();
-        }
-    }
-
-    // Ways between nodes that few courses take although many lie there: mostly those that can
-    // hardly be wound in that direction. One continuous fibre needs them, so further candidates are
-    // drawn near them.
-    void grow_scarce_ways() {
-        // Near those that can be wound, once there are any.
-        std::vector<std::int32_t> near;
-        for (const auto& [nodes, way] : ways_between_nodes(library_.members)) {
-            if (way.windable.size() < kScarce && way.lying.size() >= kEstablished) {
-                const auto& source = way.windable.empty() ? way.lying : way.windable;
-                for (std::size_t i = 0; i < kShare; ++i) {
-                    near.push_back(source[i % source.size()]);
-                }
-            }
-        }
-        if (near.empty()) {
-            return;
-        }
-        const auto count = static_cast<std::size_t>(options_.scarce_candidates / kScarceRounds);
-        std::vector<Candidate> candidates(count);
-        parallel_for(count, kNearChunk, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint64_t draw = draws_ + i;
-                const std::uint64_t pick = random_bits(stream(Stream::Seeds), ~draw) % near.size();
-                candidates[i] = candidate_near(library_.members[at(near[pick])], draw);
-            }
-        });
-        draws_ += count;
-        judge_candidates(candidates);
-    }
-
-    // A candidate through a station of a member, turned a little, with the same or another
-    // steering.
-    [[nodiscard]] Candidate candidate_near(const Member& member, std::uint64_t draw) const {
-        const SurfacePath path = trace_both_ways(rules_, member.candidate, TraceMethod::Walk);
-        const auto pick = static_cast<std::size_t>(random_unit(stream(Stream::Sampling), draw) *
-                                                   static_cast<double>(path.size()));
-        const PathPoint& station = path[pick];
-        const double turn = (2.0 * random_unit(stream(Stream::Angles), draw) - 1.0) * kNearTurn_rad;
-        Candidate candidate{station.at, direction_angle(station.normal, station.tangent) + turn,
-                            member.candidate.slip_ratio};
-        const auto steering = random_bits(stream(Stream::Steerings), draw) % (2 * kSteering.size());
-        if (steering < kSteering.size()) {
-            candidate.slip_ratio = options_.tow.friction.share(kSteering[steering]);
-        }
-        return candidate;
-    }
-
-    [[nodiscard]] std::vector<std::int32_t> unreached() const {
-        std::vector<std::int32_t> missed;
-        for (std::size_t i = 0; i < library_.reached.size(); ++i) {
-            if (library_.reached[i] == 0) {
-                missed.push_back(static_cast<std::int32_t>(i));
-            }
-        }
-        return missed;
-    }
-
-    const CourseRules& rules_;
-    const CoverageSamples& samples_;
-    const CoverOptions& options_;
-    Library library_;
-    std::uint64_t draws_ = 0;
+    void tell(double share) const { options.context.report_progress("library", share); }
 };
+
+// A library and the random draws made for it.
+struct Growth {
+    Library library;
+    std::uint64_t draws = 0;
+};
+
+// A candidate through a given sample; `draw` numbers the random draws of the whole run.
+Candidate candidate_at(const GrowthTask& task, std::int32_t sample, std::uint64_t draw) {
+    const auto pick = random_bits(task.stream(Stream::Steerings), draw) % kSteering.size();
+    const SurfacePoint& place = task.samples.at[at(sample)];
+    return {place,
+            draw_direction_rad(task.rules, place, random_unit(task.stream(Stream::Angles), draw),
+                               random_unit(task.stream(Stream::Wishes), draw)),
+            task.options.tow.friction.share(kSteering[pick])};
+}
+
+// True when most of what sketches admit holds by all rules.
+bool sketches_hold(const GrowthTask& task, std::span<const std::int32_t> seeds) {
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        candidates.push_back(candidate_at(task, seeds[i], i));
+    }
+    std::vector<Candidate> sketched;
+    for (const Member& member : build_library(task.rules, candidates).members) {
+        sketched.push_back(member.candidate);
+    }
+    const std::size_t hold = build_library(task.rules, sketched, Judging::Courses).members.size();
+    return static_cast<double>(hold) >= kTrustedShare * static_cast<double>(sketched.size());
+}
+
+// Adds the admissible ones to the library; says what became of each.
+std::vector<Refusal> judge_candidates(const CourseRules& rules,
+                                      const std::vector<Candidate>& candidates, Library& library) {
+    LibraryPart part = build_library(rules, candidates, library.judging);
+    library.candidates += static_cast<std::int64_t>(candidates.size());
+    for (const Refusal refusal : part.outcome) {
+        ++library.refusals[static_cast<std::size_t>(refusal)];
+    }
+    for (Member& member : part.members) {
+        for (const std::int32_t sample : member.footprint) {
+            library.reached[at(sample)] = 1;
+        }
+        library.members.push_back(std::move(member));
+    }
+    return std::move(part.outcome);
+}
+
+// Tries a candidate through each seed.
+void try_candidates(const GrowthTask& task, const std::vector<std::int32_t>& seeds,
+                    Growth& growth) {
+    std::vector<Candidate> candidates;
+    candidates.reserve(seeds.size());
+    for (const std::int32_t sample : seeds) {
+        candidates.push_back(candidate_at(task, sample, growth.draws++));
+    }
+    const std::vector<Refusal> outcome = judge_candidates(task.rules, candidates, growth.library);
+    std::vector<Refusal>& closest_miss = growth.library.closest_miss;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        closest_miss[at(seeds[i])] = std::max(closest_miss[at(seeds[i])], outcome[i]);
+    }
+}
+
+std::vector<std::int32_t> unreached(std::span<const char> reached) {
+    std::vector<std::int32_t> missed;
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        if (reached[i] == 0) {
+            missed.push_back(static_cast<std::int32_t>(i));
+        }
+    }
+    return missed;
+}
+
+// Seeds over the whole wall.
+std::vector<std::int32_t> first_seeds(const GrowthTask& task) {
+    std::vector<std::int32_t> seeds;
+    seeds.reserve(static_cast<std::size_t>(task.options.candidates));
+    for (int i = 0; i < task.options.candidates; ++i) {
+        seeds.push_back(static_cast<std::int32_t>(
+            random_bits(task.stream(Stream::Seeds), static_cast<std::uint64_t>(i)) %
+            task.samples.size()));
+    }
+    return seeds;
+}
+
+// Seeds where no member passes.
+std::vector<std::int32_t> aimed_seeds(const GrowthTask& task,
+                                      const std::vector<std::int32_t>& missed, int round) {
+    std::vector<std::int32_t> seeds;
+    for (int i = 0; i < task.options.aimed_candidates; ++i) {
+        const auto draw = static_cast<std::uint64_t>(i) << 8U;
+        seeds.push_back(missed[random_bits(task.stream(Stream::Seeds),
+                                           draw + 1 + static_cast<std::uint64_t>(round)) %
+                               missed.size()]);
+    }
+    return seeds;
+}
+
+// A candidate through a station of a member, turned a little, with the same or another steering.
+Candidate candidate_near(const GrowthTask& task, const Member& member, std::uint64_t draw) {
+    const SurfacePath path = trace_both_ways(task.rules, member.candidate, TraceMethod::Walk);
+    const auto pick = static_cast<std::size_t>(random_unit(task.stream(Stream::Sampling), draw) *
+                                               static_cast<double>(path.size()));
+    const PathPoint& station = path[pick];
+    const double turn =
+        (2.0 * random_unit(task.stream(Stream::Angles), draw) - 1.0) * kNearTurn_rad;
+    Candidate candidate{station.at, direction_angle(station.normal, station.tangent) + turn,
+                        member.candidate.slip_ratio};
+    const auto steering =
+        random_bits(task.stream(Stream::Steerings), draw) % (2 * kSteering.size());
+    if (steering < kSteering.size()) {
+        candidate.slip_ratio = task.options.tow.friction.share(kSteering[steering]);
+    }
+    return candidate;
+}
+
+// Members of the ways between nodes that few courses take although many lie there: of all such
+// ways equally many, of some members several times.
+std::vector<std::int32_t> members_of_scarce_ways(std::span<const Member> members) {
+    // Those that can be wound, once there are any.
+    std::vector<std::int32_t> near;
+    for (const auto& [nodes, way] : ways_between_nodes(members)) {
+        if (way.windable.size() < kScarce && way.lying.size() >= kEstablished) {
+            const auto& source = way.windable.empty() ? way.lying : way.windable;
+            for (std::size_t i = 0; i < kShare; ++i) {
+                near.push_back(source[i % source.size()]);
+            }
+        }
+    }
+    return near;
+}
+
+// Ways between nodes that few courses take although many lie there: mostly those that can
+// hardly be wound in that direction. One continuous fibre needs them, so further candidates are
+// drawn near them.
+void grow_scarce_ways(const GrowthTask& task, Growth& growth) {
+    const std::vector<std::int32_t> near = members_of_scarce_ways(growth.library.members);
+    if (near.empty()) {
+        return;
+    }
+    const auto count = static_cast<std::size_t>(task.options.scarce_candidates / kScarceRounds);
+    std::vector<Candidate> candidates(count);
+    parallel_for(count, kNearChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint64_t draw = growth.draws + i;
+            const std::uint64_t pick = random_bits(task.stream(Stream::Seeds), ~draw) % near.size();
+            candidates[i] = candidate_near(task, growth.library.members[at(near[pick])], draw);
+        }
+    });
+    growth.draws += count;
+    judge_candidates(task.rules, candidates, growth.library);
+}
+
+// Rounds through samples that no member reaches.
+void grow_to_unreached(const GrowthTask& task, Growth& growth) {
+    const int rounds = task.options.rounds;
+    for (int round = 0; round < rounds; ++round) {
+        task.tell((round + 1.0) / (rounds + 1.0));
+        const std::vector<std::int32_t> missed = unreached(growth.library.reached);
+        if (missed.empty()) {
+            break;
+        }
+        try_candidates(task, aimed_seeds(task, missed, round), growth);
+    }
+}
 
 }  // namespace
 
@@ -224,7 +232,21 @@ Ways ways_between_nodes(std::span<const Member> members) {
 
 Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
                      const CoverOptions& options) {
-    return Grower(rules, samples, options).run();
+    const GrowthTask task{rules, samples, options};
+    Growth growth;
+    growth.library.reached.assign(samples.size(), 0);
+    growth.library.closest_miss.assign(samples.size(), Refusal::None);
+    const std::vector<std::int32_t> seeds = first_seeds(task);
+    task.tell(0.0);
+    const std::size_t first = std::min(kFirstCandidates, seeds.size());
+    growth.library.judging =
+        sketches_hold(task, std::span(seeds).first(first)) ? Judging::Sketches : Judging::Courses;
+    try_candidates(task, seeds, growth);
+    grow_to_unreached(task, growth);
+    for (int round = 0; round < kScarceRounds; ++round) {
+        grow_scarce_ways(task, growth);
+    }
+    return std::move(growth.library);
 }
 
 double reached_share(std::span<const char> reached) {
