@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/text/text_number.h"
 #include "core/units.h"
@@ -29,238 +31,220 @@ const char* word_of(BandOrder order) {
     return order == BandOrder::Leading ? "leading" : "lagging";
 }
 
-class Search {
-public:
-    Search(const CircuitToClose& circuit, const PatternWish& wish)
-        : circuit_(circuit), wish_(wish) {}
+// Between bands that lie side by side.
+double offset_mm_of(const CircuitToClose& circuit, const PatternWish& wish) {
+    return wish.band_offset_mm > 0.0 ? wish.band_offset_mm : circuit.band_mm;
+}
 
-    [[nodiscard]] FoundPattern closed_wall() const {
-        FoundPattern found;
-        if (refuse_dwell(found)) {
-            return found;
-        }
-        const PatternRequest asked = request();
-        if (fulfils_overlap(wish_.circuits)) {
-            std::vector<Pattern> patterns = find_patterns(asked);
-            if (!patterns.empty()) {
-                found.pattern = as_laid(patterns.front());
-                return found;
-            }
-        }
-        found.failure = failure(asked);
-        return found;
-    }
+// A circuit, and what is wished for of its patterns.
+struct WishedCircuit {
+    const CircuitToClose& circuit;
+    const PatternWish& wish;
 
-    [[nodiscard]] FoundPattern lattice(const LatticeWish& lattice) const {
-        FoundPattern found;
-        if (refuse_dwell(found)) {
-            return found;
-        }
-        const double step_mm = kTurn_rad / lattice.circuits * circuit_.mm_per_rad;
-        const double rib_mm = circuit_.band_mm + (std::max(1, lattice.series) - 1) * offset_mm();
-        if (rib_mm > step_mm * (1.0 + kNothing)) {
-            found.failure = "ribs of " + fixed(rib_mm, 2) + " mm, " +
-                            std::to_string(lattice.circuits) + " of either hand, are " +
-                            fixed(step_mm, 2) +
-                            " mm apart at the widest place and close the wall; ask for fewer "
-                            "circuits or series, or for \"helical\"";
-            return found;
-        }
-        PatternRequest asked = request();
-        asked.circuits = lattice.circuits;
-        std::vector<Pattern> patterns = find_patterns(asked);
-        if (patterns.empty()) {
-            found.failure = failure(asked);
-        } else {
-            found.pattern = as_laid(patterns.front());
-        }
-        return found;
-    }
-
-private:
-    [[nodiscard]] double offset_mm() const {
-        return wish_.band_offset_mm > 0.0 ? wish_.band_offset_mm : circuit_.band_mm;
-    }
-
-    bool refuse_dwell(FoundPattern& found) const {
-        if (wish_.least_dwell_rad > 0.0 && circuit_.dwelling_ends == 0) {
-            found.failure = "a dwell of " + degrees(wish_.least_dwell_rad) +
-                            " at each rim is asked for, and the fibre turns by itself at both "
-                            "ends; leave \"dwell_deg\" out";
-            return true;
-        }
-        return false;
-    }
-
-    [[nodiscard]] PatternRequest request() const {
-        PatternRequest asked;
-        asked.circuit_rad = circuit_.turn_rad;
-        asked.band_rad = offset_mm() / circuit_.mm_per_rad;
-        asked.layers = circuit_.layers;
-        asked.most_change_rad = circuit_.most_change_rad;
-        asked.least_dwell_rad = circuit_.dwelling_ends * wish_.least_dwell_rad;
-        if (circuit_.dwelling_ends > 0) {
-            asked.most_dwell_rad = wish_.most_dwell_rad
-                                       ? circuit_.dwelling_ends * *wish_.most_dwell_rad
-                                       : asked.least_dwell_rad + kTurn_rad;
-        }
-        asked.most_overlap = wish_.most_overlap.value_or(kMostOverlap);
-        asked.circuits = wish_.circuits;
-        asked.starts = wish_.starts;
-        asked.order = wish_.order;
-        asked.most_patterns = kLooked;
-        return asked;
-    }
+    [[nodiscard]] double offset_mm() const { return offset_mm_of(circuit, wish); }
 
     // Over the distance that bands are to have.
     [[nodiscard]] double overlap_of(std::int64_t circuits) const {
         return static_cast<double>(circuits) * offset_mm() /
-                   (kTurn_rad * circuit_.mm_per_rad * circuit_.layers) -
+                   (kTurn_rad * circuit.mm_per_rad * circuit.layers) -
                1.0;
     }
+    [[nodiscard]] bool is_lattice(const PatternRequest& asked) const {
+        return asked.circuits > 0 && wish.circuits == 0;
+    }
+};
 
-    // Whether so many circuits, asked for, close the wall, and not with more overlap than allowed.
-    // 0: none are asked for.
-    [[nodiscard]] bool fulfils_overlap(std::int64_t circuits) const {
-        if (circuits == 0) {
-            return true;
+// Empty, or why the fibre cannot dwell as asked for.
+std::string why_no_dwell(const WishedCircuit& wished) {
+    if (wished.wish.least_dwell_rad > 0.0 && wished.circuit.dwelling_ends == 0) {
+        return "a dwell of " + degrees(wished.wish.least_dwell_rad) +
+               " at each rim is asked for, and the fibre turns by itself at both "
+               "ends; leave \"dwell_deg\" out";
+    }
+    return {};
+}
+
+PatternRequest request_of(const WishedCircuit& wished) {
+    const auto& [circuit, wish] = wished;
+    PatternRequest asked;
+    asked.circuit_rad = circuit.turn_rad;
+    asked.band_rad = wished.offset_mm() / circuit.mm_per_rad;
+    asked.layers = circuit.layers;
+    asked.most_change_rad = circuit.most_change_rad;
+    asked.least_dwell_rad = circuit.dwelling_ends * wish.least_dwell_rad;
+    if (circuit.dwelling_ends > 0) {
+        asked.most_dwell_rad = wish.most_dwell_rad ? circuit.dwelling_ends * *wish.most_dwell_rad
+                                                   : asked.least_dwell_rad + kTurn_rad;
+    }
+    asked.most_overlap = wish.most_overlap.value_or(kMostOverlap);
+    asked.circuits = wish.circuits;
+    asked.starts = wish.starts;
+    asked.order = wish.order;
+    asked.most_patterns = kLooked;
+    return asked;
+}
+
+// Whether the circuits asked for close the wall, and not with more overlap than allowed.
+bool fulfils_overlap(const WishedCircuit& wished) {
+    const PatternWish& wish = wished.wish;
+    if (wish.circuits == 0) {  // none are asked for
+        return true;
+    }
+    const double overlap = wished.overlap_of(wish.circuits);
+    return overlap >= -kNothing && (!wish.most_overlap || overlap <= *wish.most_overlap);
+}
+
+// Requests that give up some of the wishes: each set of wishes that may be given up.
+std::vector<PatternRequest> loosened(const PatternRequest& asked, int dwelling_ends, bool lattice) {
+    std::vector<PatternRequest> looser;
+    const auto add = [&](auto loosen) {
+        PatternRequest request = asked;
+        loosen(request);
+        looser.push_back(request);
+    };
+    const auto any_dwell = [&](PatternRequest& r) {
+        r.least_dwell_rad = 0.0;
+        r.most_dwell_rad = dwelling_ends > 0 ? kTurn_rad : 0.0;
+    };
+    const auto any_starts = [](PatternRequest& r) {
+        r.wanted_starts = static_cast<int>(r.starts);
+        r.starts = 0;
+    };
+    add([](PatternRequest& r) { r.order.reset(); });
+    add(any_starts);
+    add(any_dwell);
+    add([&](PatternRequest& r) {
+        any_starts(r);
+        r.order.reset();
+    });
+    add([&](PatternRequest& r) {
+        any_starts(r);
+        any_dwell(r);
+        r.order.reset();
+    });
+    if (lattice) {
+        for (const std::int64_t more : {-2, -1, 1, 2}) {
+            add([&](PatternRequest& r) {
+                r.circuits = std::max<std::int64_t>(1, r.circuits + more);
+            });
         }
-        const double overlap = overlap_of(circuits);
-        return overlap >= -kNothing && (!wish_.most_overlap || overlap <= *wish_.most_overlap);
-    }
-
-    [[nodiscard]] Pattern as_laid(const Pattern& pattern) const {
-        return with_bands_of(circuit_, pattern);
-    }
-
-    // Patterns that lack some of the wishes: of each set of wishes that may be given up.
-    [[nodiscard]] std::vector<Pattern> near(const PatternRequest& asked) const {
-        std::vector<PatternRequest> looser;
-        const auto add = [&](auto loosen) {
-            PatternRequest request = asked;
-            loosen(request);
-            looser.push_back(request);
-        };
-        const auto any_dwell = [&](PatternRequest& r) {
-            r.least_dwell_rad = 0.0;
-            r.most_dwell_rad = circuit_.dwelling_ends > 0 ? kTurn_rad : 0.0;
-        };
-        const auto any_starts = [](PatternRequest& r) {
-            r.wanted_starts = static_cast<int>(r.starts);
-            r.starts = 0;
-        };
-        add([](PatternRequest& r) { r.order.reset(); });
-        add(any_starts);
-        add(any_dwell);
-        add([&](PatternRequest& r) {
-            any_starts(r);
-            r.order.reset();
-        });
+    } else {
+        add([](PatternRequest& r) { r.circuits = 0; });
         add([&](PatternRequest& r) {
             any_starts(r);
             any_dwell(r);
             r.order.reset();
+            r.circuits = 0;
+            r.most_overlap += kMostOverlap;
         });
-        if (is_lattice(asked)) {
-            for (const std::int64_t more : {-2, -1, 1, 2}) {
-                add([&](PatternRequest& r) {
-                    r.circuits = std::max<std::int64_t>(1, r.circuits + more);
-                });
-            }
-        } else {
-            add([](PatternRequest& r) { r.circuits = 0; });
-            add([&](PatternRequest& r) {
-                any_starts(r);
-                any_dwell(r);
-                r.order.reset();
-                r.circuits = 0;
-                r.most_overlap += kMostOverlap;
-            });
-        }
-        std::vector<Pattern> found;
-        std::set<std::pair<std::int64_t, std::int64_t>> known;
-        for (const PatternRequest& request : looser) {
-            for (const Pattern& pattern : find_patterns(request)) {
-                const bool closes = overlap_of(pattern.circuits) >= -kNothing;
-                if (closes != is_lattice(asked) &&
-                    known.insert({pattern.circuits, pattern.turns}).second) {
-                    found.push_back(pattern);
-                }
+    }
+    return looser;
+}
+
+// Patterns that lack some of the wishes.
+std::vector<Pattern> near_patterns(const WishedCircuit& wished, const PatternRequest& asked) {
+    const bool lattice = wished.is_lattice(asked);
+    std::vector<Pattern> found;
+    std::set<std::pair<std::int64_t, std::int64_t>> known;
+    for (const PatternRequest& request : loosened(asked, wished.circuit.dwelling_ends, lattice)) {
+        for (const Pattern& pattern : find_patterns(request)) {
+            const bool closes = wished.overlap_of(pattern.circuits) >= -kNothing;
+            if (closes != lattice && known.insert({pattern.circuits, pattern.turns}).second) {
+                found.push_back(pattern);
             }
         }
-        return found;
     }
+    return found;
+}
 
-    [[nodiscard]] bool is_lattice(const PatternRequest& asked) const {
-        return asked.circuits > 0 && wish_.circuits == 0;
+// Fewest wishes lacked, then the nearest by circuits, starts, dwell.
+auto distance_to(const PatternRequest& asked, const PatternWish& wish, const Pattern& p) {
+    const std::int64_t circuits = asked.circuits > 0 ? std::abs(p.circuits - asked.circuits) : 0;
+    const std::int64_t starts = asked.starts > 0 ? std::abs(p.starts - asked.starts) : 0;
+    const bool order = asked.order && p.circuits > 2 && p.order != *asked.order;
+    const double added_rad = p.dwell_rad + std::abs(p.change_rad);
+    const bool dwell = p.dwell_rad > asked.most_dwell_rad + kSameTurn_rad ||
+                       p.dwell_rad < asked.least_dwell_rad - kSameTurn_rad;
+    const bool overlap =
+        p.overlap > asked.most_overlap && (asked.circuits == 0 || wish.most_overlap.has_value());
+    const int lacking = static_cast<int>(circuits > 0) + static_cast<int>(starts > 0) +
+                        static_cast<int>(order) + static_cast<int>(dwell) +
+                        static_cast<int>(overlap);
+    return std::tuple(lacking, circuits, starts, std::abs(p.overlap), added_rad, p.turns);
+}
+
+std::string words_of_request(const WishedCircuit& wished, const PatternRequest& asked) {
+    const CircuitToClose& circuit = wished.circuit;
+    std::string words = "circuits that turn the mandrel by " + degrees(circuit.turn_rad);
+    if (asked.circuits > 0) {
+        words += ", " + std::to_string(asked.circuits) + " of them";
     }
-
-    // Fewest wishes lacked, then the nearest by circuits, starts, dwell.
-    [[nodiscard]] auto distance(const Pattern& p, const PatternRequest& asked) const {
-        const std::int64_t circuits =
-            asked.circuits > 0 ? std::abs(p.circuits - asked.circuits) : 0;
-        const std::int64_t starts = asked.starts > 0 ? std::abs(p.starts - asked.starts) : 0;
-        const bool order = asked.order && p.circuits > 2 && p.order != *asked.order;
-        const double added_rad = p.dwell_rad + std::abs(p.change_rad);
-        const bool dwell = p.dwell_rad > asked.most_dwell_rad + kSameTurn_rad ||
-                           p.dwell_rad < asked.least_dwell_rad - kSameTurn_rad;
-        const bool overlap = p.overlap > asked.most_overlap &&
-                             (asked.circuits == 0 || wish_.most_overlap.has_value());
-        const int lacking = static_cast<int>(circuits > 0) + static_cast<int>(starts > 0) +
-                            static_cast<int>(order) + static_cast<int>(dwell) +
-                            static_cast<int>(overlap);
-        return std::tuple(lacking, circuits, starts, std::abs(p.overlap), added_rad, p.turns);
+    if (asked.starts > 0) {
+        words += ", " + std::to_string(asked.starts) + " starts";
     }
-
-    [[nodiscard]] std::string failure(const PatternRequest& asked) const {
-        std::vector<Pattern> patterns = near(asked);
-        std::sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
-            return distance(a, asked) < distance(b, asked);
-        });
-        std::string words = "no pattern is as asked for: " + words_of(asked);
-        if (asked.circuits > 0 && overlap_of(asked.circuits) < 0.0 && wish_.circuits > 0) {
-            words += "; so few leave gaps between bands " + fixed(offset_mm(), 2) +
-                     " mm apart, which a larger \"band_offset_mm\" or a \"lattice\" allow";
-        }
-        if (patterns.empty()) {
-            return words + "; none is near, another angle or tow width would have some";
-        }
-        words += "; nearest:";
-        for (std::size_t i = 0; i < std::min(kTold, patterns.size()); ++i) {
-            const Pattern p = as_laid(patterns[i]);
-            words += (i == 0 ? " " : "; ") + std::to_string(p.circuits) + " circuits, " +
-                     std::to_string(p.starts) + " starts " + word_of(p.order) + ", overlap " +
-                     percent(p.overlap, 1) + ", dwell " + degrees(p.dwell_rad) + " a circuit";
-        }
-        return words;
+    if (asked.order) {
+        words += std::string(", ") + word_of(*asked.order);
     }
-
-    [[nodiscard]] std::string words_of(const PatternRequest& asked) const {
-        std::string words = "circuits that turn the mandrel by " + degrees(circuit_.turn_rad);
-        if (asked.circuits > 0) {
-            words += ", " + std::to_string(asked.circuits) + " of them";
-        }
-        if (asked.starts > 0) {
-            words += ", " + std::to_string(asked.starts) + " starts";
-        }
-        if (asked.order) {
-            words += std::string(", ") + word_of(*asked.order);
-        }
-        if (asked.circuits == 0 || wish_.most_overlap) {
-            words += ", overlap up to " + percent(asked.most_overlap, 1);
-        }
-        if (circuit_.dwelling_ends > 0) {
-            words += ", dwell of " + degrees(asked.least_dwell_rad) + " to " +
-                     degrees(asked.most_dwell_rad) + " a circuit";
-        } else {
-            words += ", no rim to dwell at, given way to by " + degrees(asked.most_change_rad);
-        }
-        return words;
+    if (asked.circuits == 0 || wished.wish.most_overlap) {
+        words += ", overlap up to " + percent(asked.most_overlap, 1);
     }
+    if (circuit.dwelling_ends > 0) {
+        words += ", dwell of " + degrees(asked.least_dwell_rad) + " to " +
+                 degrees(asked.most_dwell_rad) + " a circuit";
+    } else {
+        words += ", no rim to dwell at, given way to by " + degrees(asked.most_change_rad);
+    }
+    return words;
+}
 
-    const CircuitToClose& circuit_;
-    const PatternWish& wish_;
-};
+std::string why_no_pattern(const WishedCircuit& wished, const PatternRequest& asked) {
+    std::vector<Pattern> patterns = near_patterns(wished, asked);
+    std::sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
+        return distance_to(asked, wished.wish, a) < distance_to(asked, wished.wish, b);
+    });
+    std::string words = "no pattern is as asked for: " + words_of_request(wished, asked);
+    if (asked.circuits > 0 && wished.overlap_of(asked.circuits) < 0.0 && wished.wish.circuits > 0) {
+        words += "; so few leave gaps between bands " + fixed(wished.offset_mm(), 2) +
+                 " mm apart, which a larger \"band_offset_mm\" or a \"lattice\" allow";
+    }
+    if (patterns.empty()) {
+        return words + "; none is near, another angle or tow width would have some";
+    }
+    words += "; nearest:";
+    for (std::size_t i = 0; i < std::min(kTold, patterns.size()); ++i) {
+        const Pattern p = with_bands_of(wished.circuit, patterns[i]);
+        words += (i == 0 ? " " : "; ") + std::to_string(p.circuits) + " circuits, " +
+                 std::to_string(p.starts) + " starts " + word_of(p.order) + ", overlap " +
+                 percent(p.overlap, 1) + ", dwell " + degrees(p.dwell_rad) + " a circuit";
+    }
+    return words;
+}
+
+// The first of the patterns as it is laid, or why there is none.
+FoundPattern first_found(const WishedCircuit& wished, const PatternRequest& asked,
+                         const std::vector<Pattern>& patterns) {
+    FoundPattern found;
+    if (patterns.empty()) {
+        found.failure = why_no_pattern(wished, asked);
+    } else {
+        found.pattern = with_bands_of(wished.circuit, patterns.front());
+    }
+    return found;
+}
+
+// Empty, or why the ribs of a lattice leave no holes.
+std::string why_no_holes(const WishedCircuit& wished, const LatticeWish& lattice) {
+    const CircuitToClose& circuit = wished.circuit;
+    const double step_mm = kTurn_rad / lattice.circuits * circuit.mm_per_rad;
+    const double rib_mm = circuit.band_mm + (std::max(1, lattice.series) - 1) * wished.offset_mm();
+    if (rib_mm > step_mm * (1.0 + kNothing)) {
+        return "ribs of " + fixed(rib_mm, 2) + " mm, " + std::to_string(lattice.circuits) +
+               " of either hand, are " + fixed(step_mm, 2) +
+               " mm apart at the widest place and close the wall; ask for fewer "
+               "circuits or series, or for \"helical\"";
+    }
+    return {};
+}
 
 // How often the way on top changes along a row, for two.
 std::int64_t diamonds_in_row(const std::vector<std::int64_t>& circuit_at, std::size_t apart) {
@@ -289,7 +273,14 @@ Pattern with_bands_of(const CircuitToClose& circuit, Pattern pattern) {
 }
 
 FoundPattern find_wished_pattern(const CircuitToClose& circuit, const PatternWish& wish) {
-    return Search(circuit, wish).closed_wall();
+    const WishedCircuit wished{circuit, wish};
+    FoundPattern found{{}, why_no_dwell(wished)};
+    if (!found.failure.empty()) {
+        return found;
+    }
+    const PatternRequest asked = request_of(wished);
+    return first_found(wished, asked,
+                       fulfils_overlap(wished) ? find_patterns(asked) : std::vector<Pattern>{});
 }
 
 FoundPattern find_wished_lattice(const CircuitToClose& circuit, const LatticeWish& lattice,
@@ -297,7 +288,17 @@ FoundPattern find_wished_lattice(const CircuitToClose& circuit, const LatticeWis
     PatternWish rest = wish;
     rest.circuits = 0;
     rest.most_overlap.reset();
-    return Search(circuit, rest).lattice(lattice);
+    const WishedCircuit wished{circuit, rest};
+    FoundPattern found{{}, why_no_dwell(wished)};
+    if (found.failure.empty()) {
+        found.failure = why_no_holes(wished, lattice);
+    }
+    if (!found.failure.empty()) {
+        return found;
+    }
+    PatternRequest asked = request_of(wished);
+    asked.circuits = lattice.circuits;
+    return first_found(wished, asked, find_patterns(asked));
 }
 
 LaidLattice laid_lattice(const Pattern& pattern, const CircuitToClose& circuit,
@@ -305,7 +306,7 @@ LaidLattice laid_lattice(const Pattern& pattern, const CircuitToClose& circuit,
     LaidLattice laid;
     laid.series = lattice.series;
     laid.plies = lattice.plies;
-    laid.offset_mm = wish.band_offset_mm > 0.0 ? wish.band_offset_mm : circuit.band_mm;
+    laid.offset_mm = offset_mm_of(circuit, wish);
     laid.rib_spacing_mm = pattern.step_rad * circuit.mm_per_rad;
     if (lattice.series == 0) {
         const Series series = fill_lattice(pattern, laid.offset_mm / circuit.mm_per_rad);
