@@ -146,196 +146,227 @@ PinFit fit_at(PinTurnShape shape, double strand_mm, double height_mm) {
     return fit;
 }
 
-// Lays the stations.
-class PinPath {
-public:
-    PinPath(const Rim& rim, const RimCrossing& from, const PinTurnShape& shape)
-        : rim_(rim),
-          from_(from),
-          shape_(shape),
-          x_(rim_reference(rim)),
-          y_(rim.axis.cross(x_)),
-          in_rad_(0.5 * kPi - shape.angle_rad),
-          out_rad_(swing_end_rad(shape)) {}
+// An extension with pins, and how a fibre comes to them. Places around it count from there.
+struct PinnedExtension {
+    const Rim& rim;
+    const RimCrossing& from;
+    const PinTurnShape& shape;
+    Vector3d x = rim_reference(rim);
+    Vector3d y = rim.axis.cross(x);
 
-    // Of the first pin.
-    [[nodiscard]] double azimuth_rad() const { return azimuth_rad(first_mm()); }
-
-    void lay() {
-        const double straight = straight_mm(shape_, shape_.angle_rad);
-        const double last = first_mm() + shape_.skip * shape_.pitch_mm;
-        for (const double s :
-             even_steps(straight, std::min(kPatternStation_mm, kStationShare * rim_.radius_mm))) {
-            run_in(s);
-        }
-        for (const double angle : even_steps(in_rad_, kArcStation_rad)) {
-            s_mm_ = straight + shape_.held_mm * angle;
-            bend(first_mm(), angle - in_rad_);
-            starts.back().held = true;
-        }
-        const double begun = s_mm_;
-        for (const double behind : hoop_stations()) {
-            s_mm_ = begun + shape_.skip * shape_.pitch_mm - behind;
-            behind_pins(last, behind);
-        }
-        leave(last);
-    }
-
-    SurfacePath path;
-    std::vector<FreeStart> starts;
-
-private:
     struct Frame {
         Vector3d radial, around;
     };
 
-    // From the fibre's start, developed: around.
-    [[nodiscard]] double first_mm() const { return to_pin_mm(shape_, shape_.angle_rad); }
+    // Of the first pin, and of the last.
+    [[nodiscard]] double first_mm() const { return to_pin_mm(shape, shape.angle_rad); }
+    [[nodiscard]] double last_mm() const { return first_mm() + shape.skip * shape.pitch_mm; }
+
     [[nodiscard]] double azimuth_rad(double around_mm) const {
-        return from_.azimuth_rad + from_.sense * around_mm / rim_.radius_mm;
+        return from.azimuth_rad + from.sense * around_mm / rim.radius_mm;
     }
-
-    // Over a length, without its beginning.
-    static std::vector<double> even_steps(double length, double longest) {
-        const int steps = std::max(1, static_cast<int>(std::ceil(length / longest)));
-        std::vector<double> at;
-        for (int i = 1; i <= steps; ++i) {
-            at.push_back(length * i / steps);
-        }
-        return at;
-    }
-
-    // How far behind the last pin, descending.
-    [[nodiscard]] std::vector<double> hoop_stations() const {
-        const Swing swing(shape_);
-        const double run = shape_.skip * shape_.pitch_mm;
-        std::vector<double> at;
-        const auto down = [&](double from, double to, double step) {
-            for (const double s : even_steps(from - to, step)) {
-                at.push_back(from - s);
-            }
-        };
-        const auto swinging = [](double from, double to, double angle) {
-            return (from - to) * std::min(1.0, kArcStation_rad / angle);
-        };
-        down(run, swing.first_mm, kHoopStation_mm);
-        down(swing.first_mm, swing.passed_mm,
-             swinging(swing.first_mm, swing.passed_mm, swing.passed_rad));
-        down(swing.passed_mm, swing.last_mm,
-             swinging(swing.passed_mm, swing.last_mm, swing.end_rad - swing.passed_rad));
-        down(swing.last_mm, 0.0, kLoweredStation_mm);
-        return at;
-    }
-
     [[nodiscard]] Frame frame(double around_mm) const {
         const double azimuth = azimuth_rad(around_mm);
-        const Vector3d radial = std::cos(azimuth) * x_ + std::sin(azimuth) * y_;
-        return {radial, from_.sense * rim_.axis.cross(radial)};
+        const Vector3d radial = std::cos(azimuth) * x + std::sin(azimuth) * y;
+        return {radial, from.sense * rim.axis.cross(radial)};
     }
-
-    // A station with the fibre's direction below the hoop.
-    void add(double around_mm, double z_mm, double below_rad, double bend_per_mm) {
-        const Frame f = frame(around_mm);
-        PathPoint point;
-        point.position_mm = rim_.centre_mm + z_mm * rim_.axis + rim_.radius_mm * f.radial;
-        point.normal = f.radial;
-        point.tangent = std::cos(below_rad) * f.around - std::sin(below_rad) * rim_.axis;
-        point.kn_per_mm = std::cos(below_rad) * std::cos(below_rad) / rim_.radius_mm;
-        point.kg_per_mm = -from_.sense * bend_per_mm;
-        point.s_mm = s_mm_;
-        path.push_back(point);
-        starts.push_back({point.position_mm, point.tangent, false});
-    }
-
-    // On the way to the first pin.
-    void run_in(double s) {
-        if (path.empty()) {
-            add(0.0, 0.0, -in_rad_, 0.0);
-        }
-        s_mm_ = s;
-        add(s * std::sin(shape_.angle_rad), s * std::cos(shape_.angle_rad), -in_rad_, 0.0);
-    }
-
-    // About a pin.
-    void bend(double pin_mm, double below_rad) {
-        add(pin_mm + shape_.held_mm * std::sin(below_rad),
-            shape_.offset_mm + shape_.held_mm * std::cos(below_rad), below_rad,
-            1.0 / shape_.held_mm);
-    }
-
-    // Along the hoop. The free fibre begins ever further ahead, and at last on the pin that has
-    // taken hold of it.
-    void behind_pins(double last_mm, double behind) {
-        const Swing swing(shape_);
-        add(last_mm - behind, shape_.offset_mm + shape_.held_mm, 0.0, 0.0);
-        const double turned = behind / rim_.radius_mm;
-        if (behind >= swing.first_mm) {
-            const double run = shape_.skip * shape_.pitch_mm;
-            const double share = (run - behind) / (run - swing.first_mm);
-            const double most = rim_.radius_mm * std::tan(swing.first_mm / rim_.radius_mm);
-            starts.back().from_mm += share * most * path.back().tangent;
-            return;
-        }
-        hold(last_mm, swing.direction_rad(behind), 0.0, tangent_height_mm(rim_.radius_mm, behind),
-             std::tan(turned));
-    }
-
-    // The free fibre leaves a pin's flank in a direction below the hoop, from a height over the
-    // wall at a direction before that and at a slope.
-    void hold(double pin_mm, double below_rad, double from_rad, double from_height, double slope) {
-        const Frame f = frame(pin_mm);
-        const double height = from_height + slope * shape_.held_mm * (below_rad - from_rad);
-        FreeStart& start = starts.back();
-        start.from_mm = rim_.centre_mm + (rim_.radius_mm + height) * f.radial +
-                        shape_.held_mm * std::sin(below_rad) * f.around +
-                        (shape_.offset_mm + shape_.held_mm * std::cos(below_rad)) * rim_.axis;
-        start.direction =
-            (std::cos(below_rad) * f.around - std::sin(below_rad) * rim_.axis + slope * f.radial)
-                .normalized();
-        start.held = true;
-    }
-
-    // About the last pin and away. To lay the fibre down the eye sinks, but never rises again: the
-    // rest of the bend, and the first of the straight, are laid at once.
-    void leave(double last_mm) {
-        const double begun = s_mm_;
-        double slope = 0.0;
-        FreeStart lowest = starts.back();
-        for (const double angle : even_steps(out_rad_, kArcStation_rad)) {
-            s_mm_ = begun + shape_.held_mm * angle;
-            bend(last_mm, angle);
-            const double turned = shape_.held_mm * std::sin(angle) / rim_.radius_mm;
-            const double sinks = -std::cos(angle) * std::tan(turned);
-            if (sinks < slope) {
-                slope = sinks;
-                hold(last_mm, out_rad_, angle, rim_.radius_mm * (std::cos(turned) - 1.0), slope);
-                lowest = starts.back();
-            }
-            starts.back() = lowest;
-        }
-        const double bent = s_mm_;
-        const double around = last_mm + shape_.held_mm * std::sin(out_rad_);
-        const double z = shape_.offset_mm + shape_.held_mm * std::cos(out_rad_);
-        for (const double s : even_steps(straight_mm(shape_, shape_.out_rad()), kHoopStation_mm)) {
-            s_mm_ = bent + s;
-            add(around + s * std::cos(out_rad_), z - s * std::sin(out_rad_), out_rad_, 0.0);
-            const double turned =
-                (shape_.held_mm * std::sin(out_rad_) + s * std::cos(out_rad_)) / rim_.radius_mm;
-            if (-std::cos(out_rad_) * std::tan(turned) > slope) {
-                starts.back() = {lowest.from_mm + s * lowest.direction, lowest.direction, true};
-            }
-        }
-    }
-
-    const Rim& rim_;
-    RimCrossing from_;
-    PinTurnShape shape_;
-    Vector3d x_;
-    Vector3d y_;
-    double in_rad_;  // what the fibre bends by about the first pin
-    double out_rad_;
-    double s_mm_ = 0.0;
 };
+
+// The stations that are laid so far.
+struct PinFibre {
+    SurfacePath path;
+    std::vector<FreeStart> starts;  // per station
+    double s_mm = 0.0;
+};
+
+// Over a length, without its beginning.
+std::vector<double> even_steps(double length, double longest) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / longest)));
+    std::vector<double> at;
+    for (int i = 1; i <= steps; ++i) {
+        at.push_back(length * i / steps);
+    }
+    return at;
+}
+
+// How far behind the last pin, descending.
+std::vector<double> hoop_stations_mm(const PinTurnShape& shape) {
+    const Swing swing(shape);
+    const double run = shape.skip * shape.pitch_mm;
+    std::vector<double> at;
+    const auto down = [&](double from, double to, double step) {
+        for (const double s : even_steps(from - to, step)) {
+            at.push_back(from - s);
+        }
+    };
+    const auto swinging = [](double from, double to, double angle) {
+        return (from - to) * std::min(1.0, kArcStation_rad / angle);
+    };
+    down(run, swing.first_mm, kHoopStation_mm);
+    down(swing.first_mm, swing.passed_mm,
+         swinging(swing.first_mm, swing.passed_mm, swing.passed_rad));
+    down(swing.passed_mm, swing.last_mm,
+         swinging(swing.passed_mm, swing.last_mm, swing.end_rad - swing.passed_rad));
+    down(swing.last_mm, 0.0, kLoweredStation_mm);
+    return at;
+}
+
+// A place on the developed extension with the fibre's direction there.
+struct DevelopedPlace {
+    double around_mm;
+    double z_mm;
+    double below_rad;  // the fibre's direction below the hoop
+    double bend_per_mm = 0.0;
+};
+
+void add_station(const PinnedExtension& pins, const DevelopedPlace& place, PinFibre& fibre) {
+    const Rim& rim = pins.rim;
+    const PinnedExtension::Frame f = pins.frame(place.around_mm);
+    const double below_rad = place.below_rad;
+    PathPoint point;
+    point.position_mm = rim.centre_mm + place.z_mm * rim.axis + rim.radius_mm * f.radial;
+    point.normal = f.radial;
+    point.tangent = std::cos(below_rad) * f.around - std::sin(below_rad) * rim.axis;
+    point.kn_per_mm = std::cos(below_rad) * std::cos(below_rad) / rim.radius_mm;
+    point.kg_per_mm = -pins.from.sense * place.bend_per_mm;
+    point.s_mm = fibre.s_mm;
+    fibre.path.push_back(point);
+    fibre.starts.push_back({point.position_mm, point.tangent, false});
+}
+
+// About a pin.
+DevelopedPlace about_pin(const PinTurnShape& shape, double pin_mm, double below_rad) {
+    return {pin_mm + shape.held_mm * std::sin(below_rad),
+            shape.offset_mm + shape.held_mm * std::cos(below_rad), below_rad, 1.0 / shape.held_mm};
+}
+
+// How the free fibre leaves a pin's flank: in a direction below the hoop, from a height over the
+// wall at a direction before that and at a slope.
+struct PinHold {
+    double pin_mm;
+    double below_rad;
+    double from_rad;
+    double from_height_mm;
+    double slope;
+};
+
+FreeStart start_at(const PinnedExtension& pins, const PinHold& hold) {
+    const Rim& rim = pins.rim;
+    const PinTurnShape& shape = pins.shape;
+    const PinnedExtension::Frame f = pins.frame(hold.pin_mm);
+    const double below_rad = hold.below_rad;
+    const double height =
+        hold.from_height_mm + hold.slope * shape.held_mm * (below_rad - hold.from_rad);
+    FreeStart start;
+    start.from_mm = rim.centre_mm + (rim.radius_mm + height) * f.radial +
+                    shape.held_mm * std::sin(below_rad) * f.around +
+                    (shape.offset_mm + shape.held_mm * std::cos(below_rad)) * rim.axis;
+    start.direction =
+        (std::cos(below_rad) * f.around - std::sin(below_rad) * rim.axis + hold.slope * f.radial)
+            .normalized();
+    start.held = true;
+    return start;
+}
+
+// On the way to the first pin, and about it.
+void lay_to_first_pin(const PinnedExtension& pins, PinFibre& fibre) {
+    const PinTurnShape& shape = pins.shape;
+    const double in_rad = 0.5 * kPi - shape.angle_rad;  // what it bends by about the pin
+    const double straight = straight_mm(shape, shape.angle_rad);
+    for (const double s :
+         even_steps(straight, std::min(kPatternStation_mm, kStationShare * pins.rim.radius_mm))) {
+        if (fibre.path.empty()) {
+            add_station(pins, {0.0, 0.0, -in_rad}, fibre);
+        }
+        fibre.s_mm = s;
+        add_station(pins, {s * std::sin(shape.angle_rad), s * std::cos(shape.angle_rad), -in_rad},
+                    fibre);
+    }
+    for (const double angle : even_steps(in_rad, kArcStation_rad)) {
+        fibre.s_mm = straight + shape.held_mm * angle;
+        add_station(pins, about_pin(shape, pins.first_mm(), angle - in_rad), fibre);
+        fibre.starts.back().held = true;
+    }
+}
+
+// A station on the hoop. The free fibre begins ever further ahead, and at last on the pin that has
+// taken hold of it.
+void lay_behind_pins(const PinnedExtension& pins, double behind, PinFibre& fibre) {
+    const PinTurnShape& shape = pins.shape;
+    const double radius_mm = pins.rim.radius_mm;
+    const Swing swing(shape);
+    add_station(pins, {pins.last_mm() - behind, shape.offset_mm + shape.held_mm, 0.0}, fibre);
+    const double turned = behind / radius_mm;
+    if (behind >= swing.first_mm) {
+        const double run = shape.skip * shape.pitch_mm;
+        const double share = (run - behind) / (run - swing.first_mm);
+        const double most = radius_mm * std::tan(swing.first_mm / radius_mm);
+        fibre.starts.back().from_mm += share * most * fibre.path.back().tangent;
+        return;
+    }
+    fibre.starts.back() = start_at(pins, {pins.last_mm(), swing.direction_rad(behind), 0.0,
+                                          tangent_height_mm(radius_mm, behind), std::tan(turned)});
+}
+
+// About the last pin. The eye sinks, but never rises again: the rest of the bend is laid at once.
+// Returns the slope at which it is lowest.
+double lay_about_last_pin(const PinnedExtension& pins, PinFibre& fibre) {
+    const PinTurnShape& shape = pins.shape;
+    const double radius_mm = pins.rim.radius_mm;
+    const double out_rad = swing_end_rad(shape);
+    const double begun = fibre.s_mm;
+    double slope = 0.0;
+    FreeStart lowest = fibre.starts.back();
+    for (const double angle : even_steps(out_rad, kArcStation_rad)) {
+        fibre.s_mm = begun + shape.held_mm * angle;
+        add_station(pins, about_pin(shape, pins.last_mm(), angle), fibre);
+        const double turned = shape.held_mm * std::sin(angle) / radius_mm;
+        const double sinks = -std::cos(angle) * std::tan(turned);
+        if (sinks < slope) {
+            slope = sinks;
+            lowest = start_at(pins, {pins.last_mm(), out_rad, angle,
+                                     radius_mm * (std::cos(turned) - 1.0), slope});
+        }
+        fibre.starts.back() = lowest;
+    }
+    return slope;
+}
+
+// From the last pin to the rim. The first of the straight is laid at once, too.
+// \param slope of the fibre as it leaves the pin
+void lay_away(const PinnedExtension& pins, double slope, PinFibre& fibre) {
+    const PinTurnShape& shape = pins.shape;
+    const double out_rad = swing_end_rad(shape);
+    const FreeStart lowest = fibre.starts.back();
+    const double bent = fibre.s_mm;
+    const double around = pins.last_mm() + shape.held_mm * std::sin(out_rad);
+    const double z = shape.offset_mm + shape.held_mm * std::cos(out_rad);
+    for (const double s : even_steps(straight_mm(shape, shape.out_rad()), kHoopStation_mm)) {
+        fibre.s_mm = bent + s;
+        add_station(pins, {around + s * std::cos(out_rad), z - s * std::sin(out_rad), out_rad},
+                    fibre);
+        const double turned =
+            (shape.held_mm * std::sin(out_rad) + s * std::cos(out_rad)) / pins.rim.radius_mm;
+        if (-std::cos(out_rad) * std::tan(turned) > slope) {
+            fibre.starts.back() = {lowest.from_mm + s * lowest.direction, lowest.direction, true};
+        }
+    }
+}
+
+// From the rim about the first pin, along the pins, about the last and back to the rim.
+PinFibre fibre_on_pins(const PinnedExtension& pins) {
+    const PinTurnShape& shape = pins.shape;
+    PinFibre fibre;
+    lay_to_first_pin(pins, fibre);
+    const double begun = fibre.s_mm;
+    for (const double behind : hoop_stations_mm(shape)) {
+        fibre.s_mm = begun + shape.skip * shape.pitch_mm - behind;
+        lay_behind_pins(pins, behind, fibre);
+    }
+    const double slope = lay_about_last_pin(pins, fibre);
+    lay_away(pins, slope, fibre);
+    return fibre;
+}
 
 }  // namespace
 
@@ -384,8 +415,7 @@ PinFit fit_pins(const PinTurnShape& shape, double strand_mm, std::optional<doubl
 
 LaidTurn turn_on_pins(const Rim& rim, const RimCrossing& from, const PinTurnShape& shape,
                       double band_mm) {
-    PinPath laid(rim, from, shape);
-    laid.lay();
+    PinFibre laid = fibre_on_pins({rim, from, shape});
     LaidTurn turn;
     turn.rim = rim.id;
     turn.asks = {1, shape.offset_mm + shape.held_mm + 0.5 * band_mm,
@@ -403,13 +433,14 @@ LaidTurn turn_on_pins(const Rim& rim, const RimCrossing& from, const PinTurnShap
 }
 
 PinRing ring_for(const Rim& rim, const RimCrossing& from, const PinTurnShape& shape) {
+    const PinnedExtension pins{rim, from, shape};
     PinRing ring;
     ring.rim = rim.id;
     ring.count = static_cast<int>(std::lround(2.0 * kPi * rim.radius_mm / shape.pitch_mm));
     ring.diameter_mm = shape.diameter_mm;
     ring.strand_mm = shape.held_mm - 0.5 * shape.diameter_mm;
     ring.offset_mm = shape.offset_mm;
-    ring.azimuth_rad = PinPath(rim, from, shape).azimuth_rad();
+    ring.azimuth_rad = pins.azimuth_rad(pins.first_mm());
     ring.skip = shape.skip;
     return ring;
 }
