@@ -154,6 +154,58 @@ Value cubic(const std::vector<Value>& values, const std::vector<Value>& slopes, 
     return values[at.before] + s * chord + s * r * bulge;
 }
 
+// What curvatures are measured on.
+struct MeasuredPath {
+    UnfoldedPath flat;
+    std::vector<double> turned_rad;  // integral of |kn|, per station
+    Profile fibre;                   // of the string
+};
+
+MeasuredPath measured_path(const SurfacePath& path, const TautString& string) {
+    MeasuredPath measured{unfold(path), total_turn(path), profile_of(path)};
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        measured.fibre.height_mm[i] += string.gap_mm[i];
+        measured.fibre.slope[i] += string.slope[i];
+    }
+    return measured;
+}
+
+// The window at a station: as wide as wanted, but for the path's ends and what it turns by.
+double window_mm_at(const SurfacePath& path, const std::vector<double>& turned_rad, std::size_t i,
+                    double wanted_mm) {
+    const double s = path[i].s_mm;
+    const double widest = std::min({s, path.back().s_mm - s, wanted_mm});
+    const double turn_rad = 0.5 * (linear(turned_rad, place_at(path, s + widest)) -
+                                   linear(turned_rad, place_at(path, s - widest)));
+    return widest * std::min(1.0, kWindowTurn_rad / turn_rad);
+}
+
+// Two places a window behind a station and ahead of it.
+struct Window {
+    double mm;
+    Between behind;
+    Between ahead;
+};
+
+// Geodesic curvature by the turn from chord to chord.
+double chord_kg_per_mm(const UnfoldedPath& flat, std::size_t i, const Window& window) {
+    const Vector3d& here = flat.position_mm[i];
+    const Vector3d in = here - cubic(flat.position_mm, flat.tangent, window.behind);
+    const Vector3d out = cubic(flat.position_mm, flat.tangent, window.ahead) - here;
+    const Vector3d& n = flat.normal[i];
+    const Vector3d flat_in = in - n * n.dot(in);
+    const Vector3d flat_out = out - n * n.dot(out);
+    const double turn = std::atan2(n.dot(flat_in.cross(flat_out)), flat_in.dot(flat_out));
+    return turn / window.mm;
+}
+
+// Over the same chords as kg, with the same weights.
+double chord_kn_per_mm(const Profile& fibre, std::size_t i, const Window& window) {
+    return (2.0 * fibre.height_mm[i] - cubic(fibre.height_mm, fibre.slope, window.behind) -
+            cubic(fibre.height_mm, fibre.slope, window.ahead)) /
+           (window.mm * window.mm);
+}
+
 }  // namespace
 
 TautString taut_string(const SurfacePath& path) {
@@ -195,44 +247,23 @@ SlipMeasure measure_slip(const Surface& surface, const SurfacePath& path, const 
     const double edge = surface.mean_edge_mm;
     const double scatter_mm = scatter_share(options.method) * edge;
     const double friction = std::max(options.friction, 1e-3);
-    const UnfoldedPath flat = unfold(path);
-    const std::vector<double> turned = total_turn(path);
-    Profile fibre = profile_of(path);  // of the string
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        fibre.height_mm[i] += string.gap_mm[i];
-        fibre.slope[i] += string.slope[i];
-    }
-    const double length = path.back().s_mm;
+    const MeasuredPath measured = measured_path(path, string);
     for (std::size_t i = 0; i < path.size(); ++i) {
         const double s = path[i].s_mm;
         const double wanted = options.window_mm > 0.0
                                   ? options.window_mm
                                   : wanted_window_mm(scatter_mm, friction, path[i].kn_per_mm, edge);
-        const double widest = std::min({s, length - s, wanted});
-        const double turn_rad = 0.5 * (linear(turned, place_at(path, s + widest)) -
-                                       linear(turned, place_at(path, s - widest)));
-        const double window = widest * std::min(1.0, kWindowTurn_rad / turn_rad);
+        const double window = window_mm_at(path, measured.turned_rad, i, wanted);
         if (!(window > kMinChordEdges * edge)) {
             continue;
         }
-        const Between behind = place_at(path, s - window);
-        const Between ahead = place_at(path, s + window);
-        const Vector3d& here = flat.position_mm[i];
-        const Vector3d in = here - cubic(flat.position_mm, flat.tangent, behind);
-        const Vector3d out = cubic(flat.position_mm, flat.tangent, ahead) - here;
-        const Vector3d& n = flat.normal[i];
-        const Vector3d flat_in = in - n * n.dot(in);
-        const Vector3d flat_out = out - n * n.dot(out);
-        const double turn = std::atan2(n.dot(flat_in.cross(flat_out)), flat_in.dot(flat_out));
-        const double kg = turn / window;
+        const Window around{window, place_at(path, s - window), place_at(path, s + window)};
+        const double kg = chord_kg_per_mm(measured.flat, i, around);
         measure.kg_per_mm[i] = kg;
         if (string.gap_mm[i] > 0.0) {
             continue;  // lifted: nothing to slip on
         }
-        // Over the same chords as kg, with the same weights.
-        const double kn = (2.0 * fibre.height_mm[i] - cubic(fibre.height_mm, fibre.slope, behind) -
-                           cubic(fibre.height_mm, fibre.slope, ahead)) /
-                          (window * window);
+        const double kn = chord_kn_per_mm(measured.fibre, i, around);
         // Sideways scatter e at three points a window apart reads as a curvature of 4 e / window^2.
         const double noise_per_mm = 4.0 * scatter_mm / (window * window);
         const double straight_kn_per_mm = noise_per_mm / friction;
