@@ -164,6 +164,66 @@ struct Sum {
     }
 };
 
+template <typename Body>
+void for_each_start(const std::vector<Start>& starts, const Body& body) {
+    parallel_for(starts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            body(i);
+        }
+    });
+}
+
+// Paths by patches: others are held against them.
+struct BestPaths {
+    const Surface& surface;
+    std::vector<Start> starts;
+    TraceOptions options;
+    std::vector<TraceResult> traced;  // per start
+};
+
+BestPaths best_paths(const Surface& surface, int count, const TraceOptions& options) {
+    BestPaths best{surface, even_starts(surface, count), options, {}};
+    best.traced.resize(best.starts.size());
+    for_each_start(best.starts, [&](std::size_t i) {
+        best.traced[i] = trace(surface, best.starts[i].at, best.starts[i].direction, {}, options);
+    });
+    return best;
+}
+
+// Of the same paths on another surface or by other options.
+Sum drifts(const BestPaths& best, const Surface& other_surface, const TraceOptions& options) {
+    std::vector<Sum> sums(best.starts.size());
+    for_each_start(best.starts, [&](std::size_t i) {
+        PathPoint a = best.traced[i].path.back();
+        TraceOptions same = options;
+        same.max_length_mm = a.s_mm;
+        const PathPoint b = end_of(other_surface, best.starts[i], same);
+        if (b.s_mm < kLeastEdges * best.surface.mean_edge_mm) {
+            return;
+        }
+        if (b.s_mm < a.s_mm) {  // the other met a rim first
+            TraceOptions shorter = best.options;
+            shorter.max_length_mm = b.s_mm;
+            a = end_of(best.surface, best.starts[i], shorter);
+        }
+        const Vector3d apart = b.position_mm - a.position_mm;
+        sums[i] = {(apart - a.normal * a.normal.dot(apart)).squaredNorm(), a.s_mm * a.s_mm, 1};
+    });
+    return std::accumulate(sums.begin(), sums.end(), Sum{});
+}
+
+// What the terms that patches lack on exact faces lead paths aside by, from what those of degree 4
+// and of degree 3 do.
+double known_mm_per_m(const BestPaths& best, const std::vector<std::int32_t>& exact) {
+    const Surface& surface = best.surface;
+    const double cubic =
+        drifts(best, without_terms(surface, exact, kJetX4), best.options).mm_per_m();
+    const double square =
+        drifts(best, without_terms(surface, exact, kJetX3), best.options).mm_per_m();
+    const double quartic = square > 0.0 ? cubic * std::min(1.0, cubic / square) : 0.0;
+    return quartic / kQuarticExcess;
+}
+
 }  // namespace
 
 PathAccuracy estimate_path_accuracy(const Surface& surface, int count) {
@@ -173,60 +233,27 @@ PathAccuracy estimate_path_accuracy(const Surface& surface, int count) {
     }
     accuracy.length_mm =
         std::min(diagonal_mm(surface.position_mm), kMostEdges * surface.mean_edge_mm);
-    const std::vector<Start> starts = even_starts(surface, count);
-    std::vector<TraceResult> best(starts.size());
-    const auto for_each_path = [&](const auto& body) {
-        parallel_for(starts.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                body(i);
-            }
-        });
-    };
     const TraceOptions patches{.max_length_mm = accuracy.length_mm,
                                .max_faces = kMostSteps,
                                .method = TraceMethod::Patches};
-    for_each_path([&](std::size_t i) {
-        best[i] = trace(surface, starts[i].at, starts[i].direction, {}, patches);
-    });
-    const auto drifts = [&](const Surface& other_surface, const TraceOptions& options) {
-        std::vector<Sum> sums(starts.size());
-        for_each_path([&](std::size_t i) {
-            PathPoint a = best[i].path.back();
-            TraceOptions same = options;
-            same.max_length_mm = a.s_mm;
-            const PathPoint b = end_of(other_surface, starts[i], same);
-            if (b.s_mm < kLeastEdges * surface.mean_edge_mm) {
-                return;
-            }
-            if (b.s_mm < a.s_mm) {  // the other met a rim first
-                TraceOptions shorter = patches;
-                shorter.max_length_mm = b.s_mm;
-                a = end_of(surface, starts[i], shorter);
-            }
-            const Vector3d apart = b.position_mm - a.position_mm;
-            sums[i] = {(apart - a.normal * a.normal.dot(apart)).squaredNorm(), a.s_mm * a.s_mm, 1};
-        });
-        return std::accumulate(sums.begin(), sums.end(), Sum{});
-    };
-    const Sum walk = drifts(surface, {.max_faces = kMostSteps, .method = TraceMethod::Walk});
-    std::vector<std::int32_t> fitted = corners_near(surface, best);
+    const BestPaths best = best_paths(surface, count, patches);
+    const Sum walk = drifts(best, surface, {.max_faces = kMostSteps, .method = TraceMethod::Walk});
+    std::vector<std::int32_t> fitted = corners_near(surface, best.traced);
     const auto known = std::stable_partition(
         fitted.begin(), fitted.end(),
         [&](std::int32_t corner) { return surface.exact[static_cast<std::size_t>(corner)] == 0; });
     const std::vector<std::int32_t> exact(known, fitted.end());
     fitted.erase(known, fitted.end());
-    const Sum wide = drifts(with_wider_fits(surface, fitted), patches);
+    const Sum wide = drifts(best, with_wider_fits(surface, fitted), patches);
     TraceOptions short_steps = patches;
     short_steps.max_step_mm = kShortStep * surface.mean_edge_mm;
-    const Sum steps = drifts(surface, short_steps);
+    const Sum steps = drifts(best, surface, short_steps);
     accuracy.paths = walk.paths;
     accuracy.walk_mm_per_m = walk.mm_per_m();
     accuracy.patches_mm_per_m = std::hypot(wide.mm_per_m() / kWideExcess, steps.mm_per_m());
     if (!exact.empty()) {
-        const double cubic = drifts(without_terms(surface, exact, kJetX4), patches).mm_per_m();
-        const double square = drifts(without_terms(surface, exact, kJetX3), patches).mm_per_m();
-        const double quartic = square > 0.0 ? cubic * std::min(1.0, cubic / square) : 0.0;
-        accuracy.patches_mm_per_m = std::hypot(accuracy.patches_mm_per_m, quartic / kQuarticExcess);
+        accuracy.patches_mm_per_m =
+            std::hypot(accuracy.patches_mm_per_m, known_mm_per_m(best, exact));
     }
     return accuracy;
 }
