@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/error.h"
@@ -77,6 +78,36 @@ std::vector<Carried> motions(const Machine& machine, const std::vector<double>& 
 
 double angle_between_lines(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
+}
+
+// Bounds and steps of the axes from `first` on, without their residuals.
+LeastSquaresProblem problem_of_axes(const Machine& machine, std::size_t first, bool keep_limits) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    LeastSquaresProblem problem;
+    problem.residuals = kConstraints;
+    for (std::size_t j = first; j < machine.axis_count(); ++j) {
+        const Axis& axis = machine.axis(j);
+        problem.min.push_back(keep_limits ? axis.min : -kInfinity);
+        problem.max.push_back(keep_limits ? axis.max : kInfinity);
+        problem.max_step.push_back(axis.type == AxisType::Rotary ? kStep_rad : kStep_mm);
+    }
+    return problem;
+}
+
+// Turns rotary axes from `first` on by full turns, to where they are nearest to where they were
+// before; those within their limits only where they stay there.
+void turn_near(const Machine& machine, std::size_t first, std::span<const double> previous,
+               std::vector<double>& joints) {
+    for (std::size_t j = first; j < machine.axis_count(); ++j) {
+        const Axis& axis = machine.axis(j);
+        if (axis.type == AxisType::Rotary) {
+            const double nearest =
+                joints[j] + 2.0 * kPi * std::round((previous[j] - joints[j]) / (2.0 * kPi));
+            const bool inside = joints[j] >= axis.min && joints[j] <= axis.max;
+            joints[j] =
+                !inside || (nearest >= axis.min && nearest <= axis.max) ? nearest : joints[j];
+        }
+    }
 }
 
 std::string count_words(std::size_t count, const char* one, const char* many) {
@@ -206,17 +237,8 @@ NumericEyeInverse::NumericEyeInverse(const Machine& machine)
 
 NumericEyeInverse::Found NumericEyeInverse::search(const Task& task, std::vector<double> start,
                                                    bool keep_limits, bool with_roller) const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const std::size_t axes = machine_.axis_count();
-    const std::size_t free = axes - first_free_;
-    LeastSquaresProblem problem;
-    problem.residuals = kConstraints;
-    for (std::size_t j = first_free_; j < axes; ++j) {
-        const Axis& axis = machine_.axis(j);
-        problem.min.push_back(keep_limits ? axis.min : -kInfinity);
-        problem.max.push_back(keep_limits ? axis.max : kInfinity);
-        problem.max_step.push_back(axis.type == AxisType::Rotary ? kStep_rad : kStep_mm);
-    }
+    const std::size_t free = machine_.axis_count() - first_free_;
+    LeastSquaresProblem problem = problem_of_axes(machine_, first_free_, keep_limits);
     std::vector<double> joints = std::move(start);
     if (first_free_ == 1) {
         joints[0] = spindle_sign_ * task.turn_rad;
@@ -250,16 +272,7 @@ NumericEyeInverse::Found NumericEyeInverse::search(const Task& task, std::vector
         kMostIterations);
     std::copy(result.x.begin(), result.x.end(),
               joints.begin() + static_cast<std::ptrdiff_t>(first_free_));
-    for (std::size_t j = first_free_; j < axes; ++j) {
-        const Axis& axis = machine_.axis(j);
-        if (axis.type == AxisType::Rotary) {
-            const double nearest =
-                joints[j] + 2.0 * kPi * std::round((task.previous[j] - joints[j]) / (2.0 * kPi));
-            const bool inside = joints[j] >= axis.min && joints[j] <= axis.max;
-            joints[j] =
-                !inside || (nearest >= axis.min && nearest <= axis.max) ? nearest : joints[j];
-        }
-    }
+    turn_near(machine_, first_free_, task.previous, joints);
     Found found;
     const Isometry3d pose = mandrel_from_eye(machine_, joints);
     found.residual_mm = (pose.translation() - task.target.eye_mm).norm();
