@@ -59,6 +59,90 @@ void forget_swings(const SurfacePath& path, const LaydownTolerance& tolerance,
     }
 }
 
+// The first station behind one that is at another place.
+std::size_t next_apart(const PlannedFibre& planned, std::size_t i) {
+    std::size_t next = i + 1;
+    while (next < planned.size() &&
+           (planned[next].position_mm - planned[i].position_mm).norm() < kOneStation_mm) {
+        ++next;
+    }
+    return next;
+}
+
+// Per laid station the planned one before it: it is between that and the next apart from it.
+std::vector<std::size_t> stations_before(const SurfacePath& laid, const PlannedFibre& planned) {
+    std::vector<std::size_t> before;
+    std::size_t j = 0;
+    for (const PathPoint& station : laid) {
+        std::size_t next = next_apart(planned, j);
+        while (next < planned.size() &&
+               (station.position_mm - planned[next].position_mm).dot(planned[next].tangent) > 0.0 &&
+               (station.position_mm - planned[next].position_mm).norm() < kAhead_mm) {
+            j = next;
+            next = next_apart(planned, j);
+        }
+        before.push_back(j);
+    }
+    return before;
+}
+
+// Where the fibre begins and ends on the edge of a rim, stations lie on either side of it; the
+// wall's is that beside the fibre.
+class RimStations {
+public:
+    explicit RimStations(const SurfacePath& laid)
+        : begin_(stations_at_one_place(laid.begin(), laid.end())),
+          end_(laid.size() - stations_at_one_place(laid.rbegin(), laid.rend())) {}
+
+    [[nodiscard]] bool beyond(std::size_t i) const { return i + 1 < begin_ || i > end_; }
+
+private:
+    std::size_t begin_, end_;
+};
+
+// Whether planned stations are the two sides of a feature edge close by: over it the fibre swings
+// on the spot, and any direction may be found there.
+bool swings(const PlannedFibre& planned, std::size_t first, std::size_t end, const Vector3d& at,
+            double within_mm) {
+    return end - first > 1 && (planned[first].position_mm - at).norm() <= within_mm;
+}
+
+// Per laid station. Both are zero where nothing is compared.
+struct StationOffsets {
+    std::vector<double> sideways_mm;
+    std::vector<double> angle_rad;
+};
+
+StationOffsets offsets_from_plan(const LaidPath& laid, const PlannedFibre& planned,
+                                 const std::vector<std::size_t>& before, double within_mm) {
+    const RimStations rim(laid.path);
+    StationOffsets offsets{std::vector<double>(laid.path.size(), 0.0),
+                           std::vector<double>(laid.path.size(), 0.0)};
+    for (std::size_t i = 0; i < laid.path.size(); ++i) {
+        const PathPoint& station = laid.path[i];
+        const std::size_t j = before[i];
+        const std::size_t next = next_apart(planned, j);
+        if (laid.at[i].lifted || next >= planned.size() || planned[j].lifted ||
+            planned[next].lifted) {
+            continue;
+        }
+        // Of several stations at one place the last leads on.
+        const Matched match = between(planned[next - 1], planned[next], station.position_mm);
+        const Vector3d across = match.normal.cross(match.tangent);
+        offsets.sideways_mm[i] = std::abs((station.position_mm - match.position_mm).dot(across));
+        // About a pin the fibre has the pin's direction, wherever it came from.
+        const bool at_pin = laid.at[i].held || planned[j].held || planned[next].held;
+        const bool on_the_spot =
+            at_pin || rim.beyond(i) || swings(planned, j, next, station.position_mm, within_mm) ||
+            swings(planned, next, next_apart(planned, next), station.position_mm, within_mm);
+        offsets.angle_rad[i] = on_the_spot
+                                   ? 0.0
+                                   : std::abs(std::atan2(station.tangent.dot(across),
+                                                         station.tangent.dot(match.tangent)));
+    }
+    return offsets;
+}
+
 }  // namespace
 
 PlannedFibre planned_fibre(std::span<const Piece> pieces) {
@@ -78,65 +162,22 @@ PlannedFibre planned_fibre(std::span<const Piece> pieces) {
 Deviation compare(const LaidPath& laid, const PlannedFibre& planned,
                   const LaydownTolerance& tolerance) {
     Deviation deviation;
-    std::size_t j = 0;  // laid stations are between planned j and the next apart from it
-    const auto next_of = [&](std::size_t i) {
-        std::size_t next = i + 1;
-        while (next < planned.size() &&
-               (planned[next].position_mm - planned[i].position_mm).norm() < kOneStation_mm) {
-            ++next;
-        }
-        return next;
-    };
-    // Over a feature edge the fibre swings on the spot: any direction may be found there.
-    const auto swings = [&](std::size_t first, std::size_t end, const Vector3d& at) {
-        return end - first > 1 &&
-               (planned[first].position_mm - at).norm() <= tolerance.deviation_mm;
-    };
-    // Where the fibre begins and ends on the edge of a rim, stations lie on either side of it; the
-    // wall's is that beside the fibre.
-    const std::size_t begin = stations_at_one_place(laid.path.begin(), laid.path.end());
-    const std::size_t end =
-        laid.path.size() - stations_at_one_place(laid.path.rbegin(), laid.path.rend());
-    const auto beyond_end = [&](std::size_t i) { return i + 1 < begin || i > end; };
-    std::vector<double> angle_rad(laid.path.size(), 0.0);
-    std::vector<double> sideways_mm(laid.path.size(), 0.0);
+    deviation.planned = stations_before(laid.path, planned);
+    StationOffsets offsets =
+        offsets_from_plan(laid, planned, deviation.planned, tolerance.deviation_mm);
+    forget_swings(laid.path, tolerance, offsets.angle_rad);
     for (std::size_t i = 0; i < laid.path.size(); ++i) {
-        const PathPoint& station = laid.path[i];
-        std::size_t next = next_of(j);
-        while (next < planned.size() &&
-               (station.position_mm - planned[next].position_mm).dot(planned[next].tangent) > 0.0 &&
-               (station.position_mm - planned[next].position_mm).norm() < kAhead_mm) {
-            j = next;
-            next = next_of(j);
-        }
-        deviation.planned.push_back(j);
-        if (laid.at[i].lifted || next >= planned.size() || planned[j].lifted ||
-            planned[next].lifted) {
-            continue;
-        }
-        // Of several stations at one place the last leads on.
-        const Matched match = between(planned[next - 1], planned[next], station.position_mm);
-        const Vector3d across = match.normal.cross(match.tangent);
-        sideways_mm[i] = std::abs((station.position_mm - match.position_mm).dot(across));
-        // About a pin the fibre has the pin's direction, wherever it came from.
-        const bool at_pin = laid.at[i].held || planned[j].held || planned[next].held;
-        const bool on_the_spot = at_pin || beyond_end(i) || swings(j, next, station.position_mm) ||
-                                 swings(next, next_of(next), station.position_mm);
-        angle_rad[i] = on_the_spot ? 0.0
-                                   : std::abs(std::atan2(station.tangent.dot(across),
-                                                         station.tangent.dot(match.tangent)));
-    }
-    forget_swings(laid.path, tolerance, angle_rad);
-    for (std::size_t i = 0; i < laid.path.size(); ++i) {
-        if (sideways_mm[i] > deviation.max_mm) {
-            deviation.max_mm = sideways_mm[i];
+        const double sideways_mm = offsets.sideways_mm[i];
+        const double angle_rad = offsets.angle_rad[i];
+        if (sideways_mm > deviation.max_mm) {
+            deviation.max_mm = sideways_mm;
             deviation.max_at = i;
         }
-        if (angle_rad[i] > deviation.max_angle_rad) {
-            deviation.max_angle_rad = angle_rad[i];
+        if (angle_rad > deviation.max_angle_rad) {
+            deviation.max_angle_rad = angle_rad;
             deviation.max_angle_at = i;
         }
-        if (sideways_mm[i] > tolerance.deviation_mm || angle_rad[i] > tolerance.angle_rad) {
+        if (sideways_mm > tolerance.deviation_mm || angle_rad > tolerance.angle_rad) {
             deviation.wrong.push_back(i);
         }
     }
