@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/units.h"
@@ -110,336 +113,368 @@ private:
     std::vector<std::array<double, kBand + 1>> row_;
 };
 
-class Smoother {
-public:
-    Smoother(const MotionKnots& knots, std::vector<KnotChoice> choices)
-        : knots_(knots), axes_(knots.axis_count()), choices_(std::move(choices)) {}
+// Choices, and the axes there: knots x axes.
+struct ChosenMotion {
+    std::vector<KnotChoice> choices;
+    std::vector<double> joints;
+};
 
-    std::vector<KnotChoice> run() {
-        evaluate();
-        std::vector<KnotChoice> best = choices_;
-        std::vector<double> best_joints = joints_;
-        double best_s = time_s();
-        double damping = kFirstDamping;
-        bool moved = true;
-        for (int round = 0; round < kRounds; ++round) {
-            if (moved) {
-                find_ranges();
-                differentiate();
-            }
-            step(damping);
-            evaluate();
-            const double now = time_s();
-            moved = now < best_s;
-            if (moved) {
-                best_s = now;
-                best = choices_;
-                best_joints = joints_;
-                damping *= kLessDamping;
-            } else {
-                choices_ = best;
-                joints_ = best_joints;
-                damping *= kMoreDamping;
-            }
-        }
-        return best;
+std::span<double> row(std::vector<double>& all, std::size_t k, std::size_t axes) {
+    return {all.data() + k * axes, axes};
+}
+
+// The axes at all knots, one after the other.
+ChosenMotion motion_of(const MotionKnots& knots, std::vector<KnotChoice> choices) {
+    const std::size_t axes = knots.axis_count();
+    ChosenMotion motion{std::move(choices), std::vector<double>(knots.size() * axes)};
+    std::vector<double> previous(knots.start().begin(), knots.start().end());
+    for (std::size_t k = 0; k < knots.size(); ++k) {
+        const std::span<double> here = row(motion.joints, k, axes);
+        knots.joints(k, motion.choices[k], previous, here);
+        std::copy_n(here.begin(), axes, previous.begin());
     }
+    return motion;
+}
 
-private:
-    [[nodiscard]] std::span<double> row(std::vector<double>& all, std::size_t k) const {
-        return {all.data() + k * axes_, axes_};
-    }
+double velocity(const MotionKnots& knots, const ChosenMotion& motion, std::size_t k,
+                std::size_t a) {
+    const std::size_t axes = knots.axis_count();
+    return (motion.joints[(k + 1) * axes + a] - motion.joints[k * axes + a]) / knots.step_s(k);
+}
 
-    // The axes at all knots, one after the other.
-    void evaluate() {
-        joints_.resize(knots_.size() * axes_);
-        std::vector<double> previous(knots_.start().begin(), knots_.start().end());
-        for (std::size_t k = 0; k < knots_.size(); ++k) {
-            knots_.joints(k, choices_[k], previous, row(joints_, k));
-            std::copy_n(row(joints_, k).begin(), axes_, previous.begin());
-        }
-    }
+double acceleration_ratio(const MotionKnots& knots, const ChosenMotion& motion, std::size_t k,
+                          std::size_t a) {
+    return (velocity(knots, motion, k, a) - velocity(knots, motion, k - 1, a)) /
+           (0.5 * (knots.step_s(k) + knots.step_s(k - 1)) * knots.axis(a).acceleration);
+}
 
-    void differentiate() {
-        by_turn_.resize(joints_.size());
-        by_length_.resize(joints_.size());
-        parallel_for(knots_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const std::span<double> q = row(joints_, k);
-                const auto derive = [&](const KnotChoice& other, double by, std::span<double> out) {
-                    knots_.joints(k, other, q, out);
-                    for (std::size_t a = 0; a < axes_; ++a) {
-                        out[a] = (out[a] - q[a]) / by;
-                    }
-                };
-                KnotChoice other = choices_[k];
-                other.turn_rad += kTurnStep_rad;
-                derive(other, kTurnStep_rad, row(by_turn_, k));
-                other = choices_[k];
-                other.length_mm += kLengthStep_mm;
-                derive(other, kLengthStep_mm, row(by_length_, k));
-            }
-        });
-    }
+// Lengthening of the free fibre per mm that is laid, from a knot to the next.
+double length_rise(const MotionKnots& knots, const ChosenMotion& motion, std::size_t k) {
+    return (motion.choices[k + 1].length_mm - motion.choices[k].length_mm) / knots[k].ahead_mm;
+}
 
-    [[nodiscard]] double velocity(std::size_t k, std::size_t a) const {
-        return (joints_[(k + 1) * axes_ + a] - joints_[k * axes_ + a]) / knots_.step_s(k);
-    }
-
-    [[nodiscard]] double acceleration_ratio(std::size_t k, std::size_t a) const {
-        return (velocity(k, a) - velocity(k - 1, a)) /
-               (0.5 * (knots_.step_s(k) + knots_.step_s(k - 1)) * knots_.axis(a).acceleration);
-    }
-
-    // Estimate of the time.
-    [[nodiscard]] double time_s() const {
-        double sum = 0.0;
-        std::vector<double> stretch(knots_.size(), 1.0);  // per step
-        for (std::size_t k = 0; k + 1 < knots_.size(); ++k) {
-            double& s = stretch[k];
-            s = std::max(
-                s, 1.0 + (choices_[k + 1].length_mm - choices_[k].length_mm) / knots_[k].ahead_mm);
-            for (std::size_t a = 0; a < axes_; ++a) {
-                s = std::max(s, std::abs(velocity(k, a)) / knots_.axis(a).velocity);
-            }
-        }
-        for (std::size_t k = 1; k + 1 < knots_.size(); ++k) {
-            double s = 1.0;
-            for (std::size_t a = 0; a < axes_; ++a) {
-                s = std::max(s, std::sqrt(std::abs(acceleration_ratio(k, a))));
-            }
-            stretch[k] = std::max(stretch[k], s);
-            stretch[k - 1] = std::max(stretch[k - 1], s);
-        }
-        for (std::size_t k = 0; k + 1 < knots_.size(); ++k) {
-            sum += stretch[k] * knots_.step_s(k);
-        }
-        return sum;
-    }
-
-    // Ranges of turn and length around each choice that are clear.
-    void find_ranges() {
-        turn_.resize(knots_.size());
-        length_.resize(knots_.size());
-        parallel_for(knots_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                find_range(k);
-            }
-        });
-    }
-
-    void find_range(std::size_t k) {
-        const KnotChoice at = choices_[k];
-        turn_[k] = {at.turn_rad, at.turn_rad};
-        length_[k] = {at.length_mm, at.length_mm};
-        if (knots_[k].kept) {
-            return;
-        }
-        const auto clear = [&](double turn, double length) {
-            const KnotChoice choice{turn, length};
-            return knots_.clear(k, choice) &&
-                   (k == 0 || knots_.clear_between(k - 1, choices_[k - 1], choice)) &&
-                   (k + 1 == knots_.size() || knots_.clear_between(k, choice, choices_[k + 1]));
-        };
-        double reach = kTurnReach_rad;
-        for (int i = 0; i < kHalvings && !(clear(at.turn_rad - reach, at.length_mm) &&
-                                           clear(at.turn_rad + reach, at.length_mm));
-             ++i) {
-            reach = i + 1 < kHalvings ? 0.5 * reach : 0.0;
-        }
-        turn_[k] = {at.turn_rad - reach, at.turn_rad + reach};
-        if (knots_.task().fixed_lengths) {
-            return;
-        }
-        const double least = std::min(at.length_mm, knots_.least_mm(k));
-        const double most = std::max(at.length_mm, knots_[k].longest_mm);
-        const auto free = [&](double length) {
-            return clear(at.turn_rad - reach, length) && clear(at.turn_rad + reach, length);
-        };
-        for (const double side : {-1.0, 1.0}) {
-            double& end = side < 0.0 ? length_[k].low : length_[k].high;
-            for (double by = kScan_mm; by <= kLengthReach_mm; by += kScan_mm) {
-                const double next = std::clamp(at.length_mm + side * by, least, most);
-                if (!free(next)) {
-                    break;
-                }
-                end = next;
-            }
+// Estimate of the time.
+double estimated_time_s(const MotionKnots& knots, const ChosenMotion& motion) {
+    double sum = 0.0;
+    std::vector<double> stretch(knots.size(), 1.0);  // per step
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+        double& s = stretch[k];
+        s = std::max(s, 1.0 + length_rise(knots, motion, k));
+        for (std::size_t a = 0; a < knots.axis_count(); ++a) {
+            s = std::max(s, std::abs(velocity(knots, motion, k, a)) / knots.axis(a).velocity);
         }
     }
-
-    // What weighs a ratio in least squares so that its loss is the time it costs, the square root:
-    // the slope of that over the ratio.
-    static double weight(double ratio) {
-        const double r = std::abs(ratio);
-        return kIdleWeight + (r <= kFreeAcceleration ? 0.0 : 1.0 / (r * std::sqrt(r)));
+    for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
+        double s = 1.0;
+        for (std::size_t a = 0; a < knots.axis_count(); ++a) {
+            s = std::max(s, std::sqrt(std::abs(acceleration_ratio(knots, motion, k, a))));
+        }
+        stretch[k] = std::max(stretch[k], s);
+        stretch[k - 1] = std::max(stretch[k - 1], s);
     }
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+        sum += stretch[k] * knots.step_s(k);
+    }
+    return sum;
+}
 
-    struct Term {
-        std::size_t variable = 0;
-        double slope = 0.0;
+// Ranges of turn and length around a choice that are clear.
+struct ClearRange {
+    Range turn_rad;
+    Range length_mm;
+};
+
+ClearRange clear_range(const MotionKnots& knots, const std::vector<KnotChoice>& choices,
+                       std::size_t k) {
+    const KnotChoice at = choices[k];
+    ClearRange range{{at.turn_rad, at.turn_rad}, {at.length_mm, at.length_mm}};
+    if (knots[k].kept) {
+        return range;
+    }
+    const auto clear = [&](double turn, double length) {
+        const KnotChoice choice{turn, length};
+        return knots.clear(k, choice) &&
+               (k == 0 || knots.clear_between(k - 1, choices[k - 1], choice)) &&
+               (k + 1 == knots.size() || knots.clear_between(k, choice, choices[k + 1]));
     };
-
-    // The normal equations.
-    struct Equations {
-        BandMatrix matrix;
-        std::vector<double> right;
-
-        void add(std::span<const Term> terms, double residual, double weight) {
-            for (const Term& t : terms) {
-                right[t.variable] -= weight * t.slope * residual;
-                for (const Term& u : terms) {
-                    if (u.variable <= t.variable) {
-                        matrix.at(t.variable, t.variable - u.variable) +=
-                            weight * t.slope * u.slope;
-                    }
-                }
-            }
-        }
+    double reach = kTurnReach_rad;
+    for (int i = 0; i < kHalvings && !(clear(at.turn_rad - reach, at.length_mm) &&
+                                       clear(at.turn_rad + reach, at.length_mm));
+         ++i) {
+        reach = i + 1 < kHalvings ? 0.5 * reach : 0.0;
+    }
+    range.turn_rad = {at.turn_rad - reach, at.turn_rad + reach};
+    if (knots.task().fixed_lengths) {
+        return range;
+    }
+    const double least = std::min(at.length_mm, knots.least_mm(k));
+    const double most = std::max(at.length_mm, knots[k].longest_mm);
+    const auto free = [&](double length) {
+        return clear(at.turn_rad - reach, length) && clear(at.turn_rad + reach, length);
     };
-
-    // How an axis' value at a place depends on its two variables, times a factor.
-    [[nodiscard]] std::array<Term, 2> terms_of(std::size_t k, std::size_t axis,
-                                               double factor) const {
-        return {Term{2 * k, factor * by_turn_[k * axes_ + axis] * kTurnUnit_rad},
-                Term{2 * k + 1, factor * by_length_[k * axes_ + axis] * kLengthUnit_mm}};
-    }
-
-    void add_accelerations(Equations& equations) const {
-        for (std::size_t k = 1; k + 1 < knots_.size(); ++k) {
-            const double before_s = knots_.step_s(k - 1);
-            const double after_s = knots_.step_s(k);
-            const double middle_s = 0.5 * (before_s + after_s);
-            for (std::size_t a = 0; a < axes_; ++a) {
-                const double ratio = acceleration_ratio(k, a);
-                const double unit = 1.0 / (middle_s * knots_.axis(a).acceleration);
-                const auto before = terms_of(k - 1, a, unit / before_s);
-                const auto here = terms_of(k, a, -unit * (1.0 / before_s + 1.0 / after_s));
-                const auto after = terms_of(k + 1, a, unit / after_s);
-                const std::array<Term, 6> terms{before[0], before[1], here[0],
-                                                here[1],   after[0],  after[1]};
-                equations.add(terms, ratio, middle_s * weight(ratio));
-            }
-        }
-    }
-
-    void add_velocities(Equations& equations) const {
-        for (std::size_t k = 0; k + 1 < knots_.size(); ++k) {
-            const double step_s = knots_.step_s(k);
-            for (std::size_t a = 0; a < axes_; ++a) {
-                const double ratio = velocity(k, a) / knots_.axis(a).velocity;
-                if (std::abs(ratio) < kFreeVelocity) {
-                    continue;
-                }
-                const double unit = 1.0 / (step_s * knots_.axis(a).velocity);
-                const auto from = terms_of(k, a, -unit);
-                const auto to = terms_of(k + 1, a, unit);
-                const std::array<Term, 4> terms{from[0], from[1], to[0], to[1]};
-                equations.add(terms, ratio - std::copysign(kFreeVelocity, ratio),
-                              kVelocityWeight * step_s);
-            }
-        }
-    }
-
-    // Fibre that runs out faster than it is laid costs time; lengths may not shrink too fast.
-    void add_lengths(Equations& equations) const {
-        for (std::size_t k = 0; k + 1 < knots_.size(); ++k) {
-            const double rise =
-                (choices_[k + 1].length_mm - choices_[k].length_mm) / knots_[k].ahead_mm;
-            const double unit = kLengthUnit_mm / knots_[k].ahead_mm;
-            const std::array<Term, 2> terms{Term{2 * k + 1, -unit}, Term{2 * k + 3, unit}};
-            if (rise > 0.0) {
-                equations.add(terms, rise, knots_.step_s(k) / std::max(rise, kLeastRise));
-            } else if (rise < -kFreeShortening) {
-                equations.add(terms, rise + kFreeShortening, kShorteningWeight * knots_.step_s(k));
-            }
-        }
-    }
-
-    // One step of the method.
-    void step(double damping) {
-        const std::size_t n = knots_.size();
-        Equations equations{BandMatrix(2 * n), std::vector<double>(2 * n, 0.0)};
-        add_accelerations(equations);
-        add_velocities(equations);
-        add_lengths(equations);
-        for (std::size_t i = 0; i < 2 * n; ++i) {
-            equations.matrix.at(i, 0) += damping * knots_.step_s(0) + kLeastDiagonal;
-        }
-        std::vector<char> held(2 * n, 0);
-        for (int pass = 0; pass < kBoundPasses; ++pass) {
-            move_ = solve_with(equations, held);
-            bool any = false;
-            for (std::size_t k = 0; k < n; ++k) {
-                any = hold(2 * k, kTurnUnit_rad, choices_[k].turn_rad, turn_[k], held) || any;
-                any =
-                    hold(2 * k + 1, kLengthUnit_mm, choices_[k].length_mm, length_[k], held) || any;
-            }
-            if (!any) {
+    for (const double side : {-1.0, 1.0}) {
+        double& end = side < 0.0 ? range.length_mm.low : range.length_mm.high;
+        for (double by = kScan_mm; by <= kLengthReach_mm; by += kScan_mm) {
+            const double next = std::clamp(at.length_mm + side * by, least, most);
+            if (!free(next)) {
                 break;
             }
-        }
-        for (std::size_t k = 0; k < n; ++k) {
-            choices_[k].turn_rad += kTurnUnit_rad * move_[2 * k];
-            choices_[k].length_mm += kLengthUnit_mm * move_[2 * k + 1];
+            end = next;
         }
     }
+    return range;
+}
 
-    // The solution with some variables held where they are in move_.
-    [[nodiscard]] std::vector<double> solve_with(const Equations& equations,
-                                                 const std::vector<char>& held) const {
-        BandMatrix matrix = equations.matrix;
-        std::vector<double> x = equations.right;
-        const std::size_t n = x.size();
-        for (std::size_t i = 0; i < n; ++i) {
-            if (held[i] == 0) {
+std::vector<ClearRange> clear_ranges(const MotionKnots& knots,
+                                     const std::vector<KnotChoice>& choices) {
+    std::vector<ClearRange> ranges(knots.size());
+    parallel_for(knots.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            ranges[k] = clear_range(knots, choices, k);
+        }
+    });
+    return ranges;
+}
+
+// Derivatives of the axes by the choice at their knot: knots x axes.
+struct AxisSlopes {
+    std::vector<double> by_turn;
+    std::vector<double> by_length;
+};
+
+AxisSlopes axis_slopes(const MotionKnots& knots, const ChosenMotion& motion) {
+    const std::size_t axes = knots.axis_count();
+    AxisSlopes slopes{std::vector<double>(motion.joints.size()),
+                      std::vector<double>(motion.joints.size())};
+    parallel_for(knots.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::span<const double> q(motion.joints.data() + k * axes, axes);
+            const auto derive = [&](const KnotChoice& other, double by, std::span<double> out) {
+                knots.joints(k, other, q, out);
+                for (std::size_t a = 0; a < axes; ++a) {
+                    out[a] = (out[a] - q[a]) / by;
+                }
+            };
+            KnotChoice other = motion.choices[k];
+            other.turn_rad += kTurnStep_rad;
+            derive(other, kTurnStep_rad, row(slopes.by_turn, k, axes));
+            other = motion.choices[k];
+            other.length_mm += kLengthStep_mm;
+            derive(other, kLengthStep_mm, row(slopes.by_length, k, axes));
+        }
+    });
+    return slopes;
+}
+
+// What weighs a ratio in least squares so that its loss is the time it costs, the square root:
+// the slope of that over the ratio.
+double weight_of(double ratio) {
+    const double r = std::abs(ratio);
+    return kIdleWeight + (r <= kFreeAcceleration ? 0.0 : 1.0 / (r * std::sqrt(r)));
+}
+
+struct Term {
+    std::size_t variable = 0;
+    double slope = 0.0;
+};
+
+// The normal equations. Each knot has two variables, its turn and its length.
+struct Equations {
+    BandMatrix matrix;
+    std::vector<double> right;
+
+    void add(std::span<const Term> terms, double residual, double weight) {
+        for (const Term& t : terms) {
+            right[t.variable] -= weight * t.slope * residual;
+            for (const Term& u : terms) {
+                if (u.variable <= t.variable) {
+                    matrix.at(t.variable, t.variable - u.variable) += weight * t.slope * u.slope;
+                }
+            }
+        }
+    }
+};
+
+// How an axis' value depends on the two variables of its knot, times a factor.
+// \param at of the value: knot x axis
+std::array<Term, 2> terms_of(const AxisSlopes& slopes, std::size_t k, std::size_t at,
+                             double factor) {
+    return {Term{2 * k, factor * slopes.by_turn[at] * kTurnUnit_rad},
+            Term{2 * k + 1, factor * slopes.by_length[at] * kLengthUnit_mm}};
+}
+
+void add_accelerations(const MotionKnots& knots, const ChosenMotion& motion,
+                       const AxisSlopes& slopes, Equations& equations) {
+    const std::size_t axes = knots.axis_count();
+    for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
+        const double before_s = knots.step_s(k - 1);
+        const double after_s = knots.step_s(k);
+        const double middle_s = 0.5 * (before_s + after_s);
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double ratio = acceleration_ratio(knots, motion, k, a);
+            const double unit = 1.0 / (middle_s * knots.axis(a).acceleration);
+            const std::size_t at = k * axes + a;
+            const auto before = terms_of(slopes, k - 1, at - axes, unit / before_s);
+            const auto here = terms_of(slopes, k, at, -unit * (1.0 / before_s + 1.0 / after_s));
+            const auto after = terms_of(slopes, k + 1, at + axes, unit / after_s);
+            const std::array<Term, 6> terms{before[0], before[1], here[0],
+                                            here[1],   after[0],  after[1]};
+            equations.add(terms, ratio, middle_s * weight_of(ratio));
+        }
+    }
+}
+
+void add_velocities(const MotionKnots& knots, const ChosenMotion& motion, const AxisSlopes& slopes,
+                    Equations& equations) {
+    const std::size_t axes = knots.axis_count();
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+        const double step_s = knots.step_s(k);
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double ratio = velocity(knots, motion, k, a) / knots.axis(a).velocity;
+            if (std::abs(ratio) < kFreeVelocity) {
                 continue;
             }
-            for (std::size_t back = 1; back <= std::min(i, BandMatrix::kBand); ++back) {
-                x[i - back] -= matrix.at(i, back) * move_[i];
-                matrix.at(i, back) = 0.0;
-            }
-            for (std::size_t ahead = 1; ahead <= BandMatrix::kBand && i + ahead < n; ++ahead) {
-                x[i + ahead] -= matrix.at(i + ahead, ahead) * move_[i];
-                matrix.at(i + ahead, ahead) = 0.0;
-            }
+            const double unit = 1.0 / (step_s * knots.axis(a).velocity);
+            const auto from = terms_of(slopes, k, k * axes + a, -unit);
+            const auto to = terms_of(slopes, k + 1, (k + 1) * axes + a, unit);
+            const std::array<Term, 4> terms{from[0], from[1], to[0], to[1]};
+            equations.add(terms, ratio - std::copysign(kFreeVelocity, ratio),
+                          kVelocityWeight * step_s);
         }
-        for (std::size_t i = 0; i < n; ++i) {
-            if (held[i] != 0) {
-                matrix.at(i, 0) = 1.0;
-                x[i] = move_[i];
-            }
-        }
-        matrix.solve(x);
-        return x;
     }
+}
 
-    bool hold(std::size_t i, double unit, double at, const Range& range, std::vector<char>& held) {
-        const double low = (range.low - at) / unit;
-        const double high = (range.high - at) / unit;
-        const bool beyond = move_[i] < low || move_[i] > high;
-        if (beyond) {
-            move_[i] = std::clamp(move_[i], low, high);
+// Fibre that runs out faster than it is laid costs time; lengths may not shrink too fast.
+void add_lengths(const MotionKnots& knots, const ChosenMotion& motion, Equations& equations) {
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+        const double rise = length_rise(knots, motion, k);
+        const double unit = kLengthUnit_mm / knots[k].ahead_mm;
+        const std::array<Term, 2> terms{Term{2 * k + 1, -unit}, Term{2 * k + 3, unit}};
+        if (rise > 0.0) {
+            equations.add(terms, rise, knots.step_s(k) / std::max(rise, kLeastRise));
+        } else if (rise < -kFreeShortening) {
+            equations.add(terms, rise + kFreeShortening, kShorteningWeight * knots.step_s(k));
+        }
+    }
+}
+
+Equations damped_equations(const MotionKnots& knots, const ChosenMotion& motion,
+                           const AxisSlopes& slopes, double damping) {
+    const std::size_t variables = 2 * knots.size();
+    Equations equations{BandMatrix(variables), std::vector<double>(variables, 0.0)};
+    add_accelerations(knots, motion, slopes, equations);
+    add_velocities(knots, motion, slopes, equations);
+    add_lengths(knots, motion, equations);
+    for (std::size_t i = 0; i < variables; ++i) {
+        equations.matrix.at(i, 0) += damping * knots.step_s(0) + kLeastDiagonal;
+    }
+    return equations;
+}
+
+// What each variable may change by.
+std::vector<Range> bounds_of(const std::vector<KnotChoice>& choices,
+                             const std::vector<ClearRange>& ranges) {
+    const auto bound = [](double unit, double at, const Range& range) {
+        return Range{(range.low - at) / unit, (range.high - at) / unit};
+    };
+    std::vector<Range> bounds;
+    bounds.reserve(2 * choices.size());
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        bounds.push_back(bound(kTurnUnit_rad, choices[k].turn_rad, ranges[k].turn_rad));
+        bounds.push_back(bound(kLengthUnit_mm, choices[k].length_mm, ranges[k].length_mm));
+    }
+    return bounds;
+}
+
+// The solution with some variables held where they are in `move`.
+std::vector<double> solve_with(const Equations& equations, const std::vector<char>& held,
+                               const std::vector<double>& move) {
+    BandMatrix matrix = equations.matrix;
+    std::vector<double> x = equations.right;
+    const std::size_t n = x.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (held[i] == 0) {
+            continue;
+        }
+        for (std::size_t back = 1; back <= std::min(i, BandMatrix::kBand); ++back) {
+            x[i - back] -= matrix.at(i, back) * move[i];
+            matrix.at(i, back) = 0.0;
+        }
+        for (std::size_t ahead = 1; ahead <= BandMatrix::kBand && i + ahead < n; ++ahead) {
+            x[i + ahead] -= matrix.at(i + ahead, ahead) * move[i];
+            matrix.at(i + ahead, ahead) = 0.0;
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        if (held[i] != 0) {
+            matrix.at(i, 0) = 1.0;
+            x[i] = move[i];
+        }
+    }
+    matrix.solve(x);
+    return x;
+}
+
+// Holds variables that leave their bounds there; whether any does.
+bool hold_within(const std::vector<Range>& bounds, std::vector<double>& move,
+                 std::vector<char>& held) {
+    bool any = false;
+    for (std::size_t i = 0; i < move.size(); ++i) {
+        if (move[i] < bounds[i].low || move[i] > bounds[i].high) {
+            move[i] = std::clamp(move[i], bounds[i].low, bounds[i].high);
             held[i] = 1;
+            any = true;
         }
-        return beyond;
     }
+    return any;
+}
 
-    const MotionKnots& knots_;
-    std::size_t axes_;
-    std::vector<KnotChoice> choices_;
-    std::vector<double> joints_;
-    std::vector<double> by_turn_;
-    std::vector<double> by_length_;
-    std::vector<Range> turn_;
-    std::vector<Range> length_;
-    std::vector<double> move_;
-};
+std::vector<double> solve_within(const Equations& equations, const std::vector<Range>& bounds) {
+    std::vector<char> held(bounds.size(), 0);
+    std::vector<double> move;
+    for (int pass = 0; pass < kBoundPasses; ++pass) {
+        move = solve_with(equations, held, move);
+        if (!hold_within(bounds, move, held)) {
+            break;
+        }
+    }
+    return move;
+}
+
+std::vector<KnotChoice> moved_by(std::vector<KnotChoice> choices, const std::vector<double>& move) {
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        choices[k].turn_rad += kTurnUnit_rad * move[2 * k];
+        choices[k].length_mm += kLengthUnit_mm * move[2 * k + 1];
+    }
+    return choices;
+}
 
 }  // namespace
 
 std::vector<KnotChoice> smooth_motion(const MotionKnots& knots, std::vector<KnotChoice> choices) {
-    return Smoother(knots, std::move(choices)).run();
+    ChosenMotion best = motion_of(knots, std::move(choices));
+    double best_s = estimated_time_s(knots, best);
+    double damping = kFirstDamping;
+    std::vector<ClearRange> ranges;
+    AxisSlopes slopes;
+    bool moved = true;
+    for (int round = 0; round < kRounds; ++round) {
+        if (moved) {
+            ranges = clear_ranges(knots, best.choices);
+            slopes = axis_slopes(knots, best);
+        }
+        const Equations equations = damped_equations(knots, best, slopes, damping);
+        const std::vector<double> move = solve_within(equations, bounds_of(best.choices, ranges));
+        ChosenMotion next = motion_of(knots, moved_by(best.choices, move));
+        const double next_s = estimated_time_s(knots, next);
+        moved = next_s < best_s;
+        if (moved) {
+            best_s = next_s;
+            best = std::move(next);
+        }
+        damping *= moved ? kLessDamping : kMoreDamping;
+    }
+    return best.choices;
 }
 
 }  // namespace meshwind
