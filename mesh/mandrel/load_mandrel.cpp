@@ -16,6 +16,7 @@
 #include "mesh/even/wall_pieces.h"
 #include "mesh/even/winding_mesh.h"
 #include "mesh/io/import.h"
+#include "mesh/mandrel/cad_part.h"
 #include "mesh/mandrel/part_wall.h"
 #include "mesh/mandrel/remarks.h"
 #include "mesh/profile/profile_file.h"
@@ -127,62 +128,6 @@ void keep_named_regions(Segmentation& segmentation, const std::vector<std::int32
     }
 }
 
-// What is kept of a CAD part's faces becomes a region of its own.
-[[noreturn]] void fail_face(const CadMesh* cad, const std::string& word, const std::string& name) {
-    std::string words = "has no face " + word;
-    if (cad == nullptr) {
-        words += ", only CAD files have faces; keep_regions is for others";
-    } else {
-        words += ", its faces are 1 to " + std::to_string(cad->faces.size()) +
-                 ", with the kinds and colours that meshwind inspect lists";
-    }
-    throw InputError("mesh.no_such_face", name, words);
-}
-
-// Per face of the part whether one of the words means it. Each has to mean one.
-std::vector<char> named_faces(const CadMesh* cad, const std::vector<std::string>& words,
-                              const std::string& name) {
-    std::vector<char> named(cad != nullptr ? cad->faces.size() : 0, 0);
-    for (const std::string& word : words) {
-        bool any = false;
-        for (std::size_t i = 0; i < named.size(); ++i) {
-            if (is_named(cad->faces[i], i + 1, word)) {
-                named[i] = 1;
-                any = true;
-            }
-        }
-        if (!any) {
-            fail_face(cad, word, name);
-        }
-    }
-    return named;
-}
-
-void keep_named_faces(const CadMesh* cad, const TriangleSoup& whole,
-                      const std::vector<std::string>& words, const std::string& name,
-                      Segmentation& segmentation) {
-    if (words.empty()) {
-        return;
-    }
-    const std::vector<char> wanted = named_faces(cad, words, name);
-    const ExactCorners known = exact_corners(*cad, whole);
-    Region kept;
-    kept.id = static_cast<std::int32_t>(segmentation.regions.size());
-    kept.kind = RegionKind::OuterWall;
-    kept.visible_fraction = 1.0;
-    for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-        if (known.face[f] >= 0 && wanted[static_cast<std::size_t>(known.face[f])] != 0) {
-            segmentation.region[f] = kept.id;
-        }
-    }
-    for (Region& region : segmentation.regions) {
-        region.kept = false;
-    }
-    kept.kept = true;
-    segmentation.regions.push_back(kept);
-    count_regions(whole, segmentation.regions.size(), segmentation);
-}
-
 std::string words_of(const Region& region) {
     const std::string why = region.kind == RegionKind::EndCap
                                 ? std::string("a flat end")
@@ -235,14 +180,6 @@ std::vector<AngularEnd> angular_ends_of(const TriangleSoup& whole, const Segment
     return ends;
 }
 
-std::vector<CadFace> moved(std::vector<CadFace> faces, const Eigen::Isometry3d& motion) {
-    for (CadFace& face : faces) {
-        face.axis_point_mm = motion * face.axis_point_mm;
-        face.axis_direction = motion.linear() * face.axis_direction;
-    }
-    return faces;
-}
-
 // Takes off what is no part of the ends' legs.
 std::vector<EndCut> cut_ends(Mandrel& mandrel, Segmentation& segmentation,
                              const std::optional<double>& depth_mm, const std::string& name) {
@@ -288,33 +225,8 @@ std::vector<Eigen::Vector3d> leave_crumbs(std::vector<WallPiece>& pieces,
     return crumbs_mm;
 }
 
-void add_cad_remarks(const CadMesh& cad, Mandrel& mandrel) {
-    constexpr double kNoteworthy_mm = 1e-3;
-    if (cad.sewn_edges > 0) {
-        add_remark(mandrel,
-                   std::to_string(cad.sewn_edges) +
-                       " edges of the CAD part's faces were apart and are sewn",
-                   {});
-    }
-    if (cad.open_edges > 0) {
-        add_remark(mandrel,
-                   "the CAD part is open: " + std::to_string(cad.open_edges) +
-                       " of its edges are of one face only",
-                   {});
-    }
-    if (cad.off_face_mm > kNoteworthy_mm) {
-        add_remark(mandrel,
-                   "edges of the CAD part are up to " + fixed(cad.off_face_mm, 3) +
-                       " mm off its faces: paths there are no better",
-                   {});
-    }
-}
-
-// \param cad that the triangles are of, or nullptr
-Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& name,
-              const MandrelOptions& options, const CadMesh* cad = nullptr) {
-    check_options(options, name);
-    check_triangles(file_units, name);
+// The file's triangles welded and repaired, in its unit.
+Mandrel repaired_part(TriangleSoup&& file_units, const std::string& name) {
     Mandrel mandrel;
     mandrel.file = std::filesystem::path(name).filename().string();
     mandrel.whole = std::move(file_units);
@@ -325,23 +237,23 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
     check_interrupt();
     repair(mandrel.whole, name, mandrel.repairs);
     check_interrupt();
-    decide_unit(mandrel, options, stated_mm);
-    for (Eigen::Vector3d& p : mandrel.whole.points_mm) {
-        p *= mandrel.unit_mm;
-    }
+    return mandrel;
+}
 
-    mandrel.winding_mesh.file_triangles = mandrel.whole.faces.size();
-    Segmentation segmentation = segment(mandrel.whole);
+// The regions of the part, and which of them are wound.
+Segmentation segment_part(const TriangleSoup& whole, const CadMesh* cad,
+                          const MandrelOptions& options, const std::string& name) {
+    Segmentation segmentation = segment(whole);
     keep_named_regions(segmentation, options.keep_regions, name);
-    keep_named_faces(cad, mandrel.whole, options.keep_faces, name, segmentation);
+    keep_named_faces(cad, whole, options.keep_faces, name, segmentation);
     check_wall(segmentation.regions, name);
-    mandrel.pieces = wall_pieces(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
-    std::vector<Eigen::Vector3d> crumbs_mm;
-    if (options.keep_regions.empty() && options.keep_faces.empty()) {
-        crumbs_mm = leave_crumbs(mandrel.pieces, segmentation.regions);
-        mandrel.angular_ends = angular_ends_of(mandrel.whole, segmentation);
-    }
-    check_interrupt();
+    return segmentation;
+}
+
+// Ends squared, triangles laid out anew, hollows filled up as the options say; still in the file's
+// frame, in mm.
+Wall wound_wall(const MandrelOptions& options, const std::string& name, Mandrel& mandrel,
+                Segmentation& segmentation) {
     std::optional<MandrelOptions::Axis> given = options.axis;
     if (given) {
         given->origin *= mandrel.unit_mm;
@@ -358,55 +270,83 @@ Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& na
         blend(mandrel, segmentation, wall, options.blend_mm, name);
     }
     note(cuts, wall.rims.rims);
-    auto& [kept, rims, frame] = wall;
+    return wall;
+}
 
-    std::optional<ExactCorners> exact;
-    std::vector<std::int32_t> face_region;
-    if (cad != nullptr) {
-        exact = exact_corners(*cad, kept.soup);
-        face_region = regions_of_faces(*cad, mandrel.whole, segmentation.region);
-        mark_bend_borders(*cad, *exact, kept);
+// \param wall its triangles in the mandrel's frame
+Surface frozen(const Wall& wall, const std::optional<ExactWall>& exact) {
+    Surface surface = freeze_surface(
+        wall.kept.soup,
+        {.feature = wall.kept.feature, .region = wall.kept.region, .rim = wall.rims.of_edge});
+    if (exact) {
+        set_exact(exact->cad, exact->corners, wall.frame.mandrel_from_file, surface);
     }
-    move(mandrel.whole, frame.mandrel_from_file);
-    move(mandrel.details, frame.mandrel_from_file);
-    move(kept.soup, frame.mandrel_from_file);
-    const auto freeze = [&, &rims = rims, &frame = frame, &kept = kept] {
-        Surface surface = freeze_surface(
-            kept.soup, {.feature = kept.feature, .region = kept.region, .rim = rims.of_edge});
-        if (exact) {
-            set_exact(*cad, *exact, frame.mandrel_from_file, surface);
-        }
-        return surface;
-    };
+    return surface;
+}
+
+// Surface, regions and rims in the mandrel's frame.
+void freeze_wall(const std::optional<ExactWall>& exact, Mandrel& mandrel,
+                 Segmentation&& segmentation, Wall& wall) {
+    const Eigen::Isometry3d& motion = wall.frame.mandrel_from_file;
+    move(mandrel.whole, motion);
+    move(mandrel.details, motion);
+    move(wall.kept.soup, motion);
     check_interrupt();
-    mandrel.surface = freeze();
+    mandrel.surface = frozen(wall, exact);
     check_interrupt();
     mandrel.whole_region = std::move(segmentation.region);
     mandrel.regions = std::move(segmentation.regions);
-    mandrel.rims = rims.rims;
-    move(mandrel.rims, frame.mandrel_from_file);
+    mandrel.rims = wall.rims.rims;
+    move(mandrel.rims, motion);
     const RevolutionFinding found = find_revolution(mandrel.surface, mandrel.rims);
-    if (found.body && mark_crease_rings(*found.body, kept.soup, kept.feature)) {
-        mandrel.surface = freeze();
+    if (found.body && mark_crease_rings(*found.body, wall.kept.soup, wall.kept.feature)) {
+        mandrel.surface = frozen(wall, exact);
     }
-    if (exact) {
-        mandrel.cad_face = std::move(exact->face);
-        mandrel.cad_faces = moved(cad->faces, frame.mandrel_from_file);
-        for (std::size_t i = 0; i < face_region.size(); ++i) {
-            mandrel.cad_faces[i].region = face_region[i];
-        }
-    }
+}
+
+void set_frame(const SpindleFrame& frame, Mandrel& mandrel) {
     mandrel.axis = frame.axis;
     mandrel.file_to_mandrel = frame.mandrel_from_file * Eigen::Scaling(mandrel.unit_mm);
     for (WallPiece& piece : mandrel.pieces) {
         piece.middle_mm = frame.mandrel_from_file * piece.middle_mm;
     }
-    move(rims.holes_mm, frame.mandrel_from_file);
-    move(crumbs_mm, frame.mandrel_from_file);
     for (AngularEnd& end : mandrel.angular_ends) {
         end.middle_mm = frame.mandrel_from_file * end.middle_mm;
     }
-    add_remarks(mandrel, rims.holes_mm, crumbs_mm);
+}
+
+// \param cad that the triangles are of, or nullptr
+Mandrel build(TriangleSoup&& file_units, double stated_mm, const std::string& name,
+              const MandrelOptions& options, const CadMesh* cad = nullptr) {
+    check_options(options, name);
+    check_triangles(file_units, name);
+    Mandrel mandrel = repaired_part(std::move(file_units), name);
+    decide_unit(mandrel, options, stated_mm);
+    for (Eigen::Vector3d& p : mandrel.whole.points_mm) {
+        p *= mandrel.unit_mm;
+    }
+    mandrel.winding_mesh.file_triangles = mandrel.whole.faces.size();
+
+    Segmentation segmentation = segment_part(mandrel.whole, cad, options, name);
+    mandrel.pieces = wall_pieces(view(mandrel.whole, segmentation), kept_of(segmentation.regions));
+    std::vector<Eigen::Vector3d> crumbs_mm;
+    if (options.keep_regions.empty() && options.keep_faces.empty()) {
+        crumbs_mm = leave_crumbs(mandrel.pieces, segmentation.regions);
+        mandrel.angular_ends = angular_ends_of(mandrel.whole, segmentation);
+    }
+    check_interrupt();
+
+    Wall wall = wound_wall(options, name, mandrel, segmentation);
+    std::optional<ExactWall> exact = exact_wall(cad, mandrel.whole, segmentation, wall.kept);
+    freeze_wall(exact, mandrel, std::move(segmentation), wall);
+    if (exact) {
+        take_cad_faces(std::move(*exact), wall.frame.mandrel_from_file, mandrel);
+    }
+    set_frame(wall.frame, mandrel);
+
+    move(wall.rims.holes_mm, wall.frame.mandrel_from_file);
+    move(crumbs_mm, wall.frame.mandrel_from_file);
+    add_remarks(mandrel, wall.rims.holes_mm, crumbs_mm);
     if (cad != nullptr) {
         add_cad_remarks(*cad, mandrel);
     }
