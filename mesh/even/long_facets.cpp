@@ -83,257 +83,282 @@ Facet facet_of(const WorkMesh& work, Face face) {
     return facet;
 }
 
-class LongFacetHalver {
-public:
-    LongFacetHalver(const LabelledMesh& part, const std::vector<char>& kept, double edge_mm,
-                    const std::vector<WallShape>& exact)
-        : work_(part, kept), edge_mm_(edge_mm), shapes_(exact), exact_(exact.size()) {}
+// A part's triangles, and the shapes that the faces' labels name.
+struct ShapedMesh {
+    WorkMesh work;
+    std::vector<WallShape> shapes;
+};
 
-    LongFacets run() {
-        survey();
-        group();
-        const double most = std::clamp(kMostHalvesEach * static_cast<double>(facets_.size()),
-                                       kFewHalves, kMostHalves);
-        const bool wanted = halves() <= most;
-        for (int round = 0; wanted && round < kMostRounds && halve_once(); ++round) {
-            check_interrupt();
-        }
-        if (found_.halved > 0) {
-            flip();
-        }
-        found_.part = work_.part();
-        for (std::int32_t& shape : found_.part.shape) {
-            shape = shape < static_cast<std::int32_t>(exact_) ? shape : -1;
-        }
-        found_.shapes = static_cast<int>(shapes_.size());
-        return std::move(found_);
+// Per face of the part; those that are no wall have none.
+std::vector<Facet> facets_of(const WorkMesh& work) {
+    std::vector<Facet> facets;
+    for (const Face face : work.mesh.faces()) {
+        facets.push_back(work.is_wall(face) ? facet_of(work, face) : Facet{});
     }
+    return facets;
+}
 
-private:
-    void survey() {
-        for (const Face face : work_.mesh.faces()) {
-            facets_.push_back(work_.is_wall(face) ? facet_of(work_, face) : Facet{});
-            if (work_.label(face).shape >= 0) {
-                const WallShape& shape = shapes_[at(work_.label(face).shape)];
-                for (const Vertex v : work_.mesh.fv_range(face)) {
-                    found_.residual_mm =
-                        std::max(found_.residual_mm, shape.distance_mm(work_.at(v)));
-                }
+// The farthest that a vertex is off the shape of its face.
+double residual_mm(const ShapedMesh& mesh) {
+    double most = 0.0;
+    for (const Face face : mesh.work.mesh.faces()) {
+        if (mesh.work.label(face).shape >= 0) {
+            const WallShape& shape = mesh.shapes[at(mesh.work.label(face).shape)];
+            for (const Vertex v : mesh.work.mesh.fv_range(face)) {
+                most = std::max(most, shape.distance_mm(mesh.work.at(v)));
             }
         }
     }
+    return most;
+}
 
-    [[nodiscard]] bool is_long(Face face) const {
-        const Facet& facet = facets_[at(face.idx())];
-        return work_.is_wall(face) && work_.label(face).shape < 0 && facet.seen.area_mm2 > 0.0 &&
-               facet.longest_mm > edge_mm_ && facet.longest_mm > kLong * facet.height_mm;
+bool is_long(const WorkMesh& work, const std::vector<Facet>& facets, double edge_mm, Face face) {
+    const Facet& facet = facets[at(face.idx())];
+    return work.is_wall(face) && work.label(face).shape < 0 && facet.seen.area_mm2 > 0.0 &&
+           facet.longest_mm > edge_mm && facet.longest_mm > kLong * facet.height_mm;
+}
+
+// What a row's facets say together.
+struct RowFit {
+    std::optional<RuledShape> shape;
+    double most_off_mm = 0.0;  // what vertices of the shape may be off it
+};
+
+RowFit fit_row(const WorkMesh& work, const std::vector<Facet>& facets,
+               const std::vector<Face>& row) {
+    std::vector<RuledFacet> seen;
+    std::vector<std::int32_t> vertices;
+    double widest = 0.0;
+    for (const Face face : row) {
+        seen.push_back(facets[at(face.idx())].seen);
+        widest = std::max(widest, facets[at(face.idx())].height_mm);
+        for (const Vertex v : work.mesh.fv_range(face)) {
+            vertices.push_back(v.idx());
+        }
     }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<Vector3d> points;
+    points.reserve(vertices.size());
+    for (const std::int32_t v : vertices) {
+        points.push_back(work.at(Vertex(v)));
+    }
+    RowFit fit{fit_ruled_shape(points, seen), 0.0};
+    if (fit.shape && widest <= kWidest * fit.shape->radius_mm) {
+        const double sagitta = widest * widest / (8.0 * fit.shape->radius_mm);
+        fit.most_off_mm = std::max(kOfFacets * sagitta, kRounding * fit.shape->radius_mm);
+    } else {
+        fit.shape.reset();
+    }
+    return fit;
+}
 
-    // Long facets beside each other along their long edges, and the shape of each such row.
-    void group() {
-        std::vector<char> used(facets_.size(), 0);
-        for (const Face seed : work_.mesh.faces()) {
-            if (used[at(seed.idx())] != 0 || !is_long(seed)) {
+// The shape of a row becomes its facets'. Facets that belong to something else are left out, a few
+// at a time. \return what the row's vertices are off it, 0: it has none
+double add_shape(std::vector<Face> row, const std::vector<Facet>& facets, ShapedMesh& mesh) {
+    WorkMesh& work = mesh.work;
+    const std::size_t whole = row.size();
+    while (row.size() >= kFewFacets &&
+           static_cast<double>(row.size()) >= kLeastShare * static_cast<double>(whole)) {
+        const RowFit fit = fit_row(work, facets, row);
+        if (!fit.shape) {
+            return 0.0;
+        }
+        if (fit.shape->residual_mm <= fit.most_off_mm) {
+            for (const Face face : row) {
+                work.label(face).shape = static_cast<std::int32_t>(mesh.shapes.size());
+            }
+            WallShape shape;
+            shape.kind = WallShape::Kind::Ruled;
+            shape.ruled = *fit.shape;
+            mesh.shapes.push_back(shape);
+            return fit.shape->residual_mm;
+        }
+        const double limit = std::max(fit.most_off_mm, kFarOff * fit.shape->residual_mm);
+        row.erase(std::remove_if(row.begin(), row.end(),
+                                 [&](Face face) {
+                                     return std::any_of(
+                                         work.mesh.cfv_begin(face), work.mesh.cfv_end(face),
+                                         [&](Vertex v) {
+                                             return fit.shape->distance_mm(work.at(v)) > limit;
+                                         });
+                                 }),
+                  row.end());
+    }
+    return 0.0;
+}
+
+// Long facets beside each other along their long edges, from one on.
+std::vector<Face> row_from(const WorkMesh& work, const std::vector<Facet>& facets, double edge_mm,
+                           Face seed, std::vector<char>& used) {
+    std::vector<Face> row{seed};
+    used[at(seed.idx())] = 1;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        for (const Halfedge half : work.mesh.fh_range(row[i])) {
+            const Edge edge = work.mesh.edge_handle(half);
+            const Face other = work.mesh.face_handle(work.mesh.opposite_halfedge_handle(half));
+            if (work.is_line(edge) || !other.is_valid() || used[at(other.idx())] != 0 ||
+                !is_long(work, facets, edge_mm, other) ||
+                work.length(edge) < kAlong * facets[at(row[i].idx())].longest_mm ||
+                work.length(edge) < kAlong * facets[at(other.idx())].longest_mm) {
                 continue;
             }
-            std::vector<Face> row{seed};
-            used[at(seed.idx())] = 1;
-            for (std::size_t i = 0; i < row.size(); ++i) {
-                for (const Halfedge half : work_.mesh.fh_range(row[i])) {
-                    const Edge edge = work_.mesh.edge_handle(half);
-                    const Face other =
-                        work_.mesh.face_handle(work_.mesh.opposite_halfedge_handle(half));
-                    if (work_.is_line(edge) || !other.is_valid() || used[at(other.idx())] != 0 ||
-                        !is_long(other) ||
-                        work_.length(edge) < kAlong * facets_[at(row[i].idx())].longest_mm ||
-                        work_.length(edge) < kAlong * facets_[at(other.idx())].longest_mm) {
-                        continue;
-                    }
-                    used[at(other.idx())] = 1;
-                    row.push_back(other);
-                }
-            }
-            add_shape(row);
+            used[at(other.idx())] = 1;
+            row.push_back(other);
         }
     }
+    return row;
+}
 
-    // What a row's facets say together.
-    struct RowFit {
-        std::optional<RuledShape> shape;
-        double most_off_mm = 0.0;  // what vertices of the shape may be off it
-    };
-
-    [[nodiscard]] RowFit fit_row(const std::vector<Face>& row) const {
-        std::vector<RuledFacet> facets;
-        std::vector<std::int32_t> vertices;
-        double widest = 0.0;
-        for (const Face face : row) {
-            facets.push_back(facets_[at(face.idx())].seen);
-            widest = std::max(widest, facets_[at(face.idx())].height_mm);
-            for (const Vertex v : work_.mesh.fv_range(face)) {
-                vertices.push_back(v.idx());
-            }
-        }
-        std::sort(vertices.begin(), vertices.end());
-        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-        std::vector<Vector3d> points;
-        points.reserve(vertices.size());
-        for (const std::int32_t v : vertices) {
-            points.push_back(work_.at(Vertex(v)));
-        }
-        RowFit fit{fit_ruled_shape(points, facets), 0.0};
-        if (fit.shape && widest <= kWidest * fit.shape->radius_mm) {
-            const double sagitta = widest * widest / (8.0 * fit.shape->radius_mm);
-            fit.most_off_mm = std::max(kOfFacets * sagitta, kRounding * fit.shape->radius_mm);
-        } else {
-            fit.shape.reset();
-        }
-        return fit;
-    }
-
-    // Facets that belong to something else are left out, a few at a time.
-    void add_shape(std::vector<Face> row) {
-        const std::size_t whole = row.size();
-        while (row.size() >= kFewFacets &&
-               static_cast<double>(row.size()) >= kLeastShare * static_cast<double>(whole)) {
-            const RowFit fit = fit_row(row);
-            if (!fit.shape) {
-                return;
-            }
-            if (fit.shape->residual_mm <= fit.most_off_mm) {
-                for (const Face face : row) {
-                    work_.label(face).shape = static_cast<std::int32_t>(shapes_.size());
-                }
-                WallShape shape;
-                shape.kind = WallShape::Kind::Ruled;
-                shape.ruled = *fit.shape;
-                shapes_.push_back(shape);
-                found_.residual_mm = std::max(found_.residual_mm, fit.shape->residual_mm);
-                return;
-            }
-            const double limit = std::max(fit.most_off_mm, kFarOff * fit.shape->residual_mm);
-            row.erase(std::remove_if(row.begin(), row.end(),
-                                     [&](Face face) {
-                                         return std::any_of(
-                                             work_.mesh.cfv_begin(face), work_.mesh.cfv_end(face),
-                                             [&](Vertex v) {
-                                                 return fit.shape->distance_mm(work_.at(v)) > limit;
-                                             });
-                                     }),
-                      row.end());
+// Gives each row of long facets its shape. \return the farthest that a vertex is off one
+double add_shapes(const std::vector<Facet>& facets, double edge_mm, ShapedMesh& mesh) {
+    double most = 0.0;
+    std::vector<char> used(facets.size(), 0);
+    for (const Face seed : mesh.work.mesh.faces()) {
+        if (used[at(seed.idx())] == 0 && is_long(mesh.work, facets, edge_mm, seed)) {
+            const std::vector<Face> row = row_from(mesh.work, facets, edge_mm, seed, used);
+            most = std::max(most, add_shape(row, facets, mesh));
         }
     }
+    return most;
+}
 
-    // Not of a ball: its facets are as long as high.
-    [[nodiscard]] std::int32_t shape_of(Edge edge) const {
-        for (const unsigned side : {0U, 1U}) {
-            const Face face = work_.mesh.face_handle(work_.mesh.halfedge_handle(edge, side));
-            if (work_.is_wall(face) && work_.label(face).shape >= 0 &&
-                shapes_[at(work_.label(face).shape)].kind != WallShape::Kind::Ball) {
-                return work_.label(face).shape;
-            }
+// Not of a ball: its facets are as long as high.
+std::int32_t shape_of(const ShapedMesh& mesh, Edge edge) {
+    for (const unsigned side : {0U, 1U}) {
+        const Face face = mesh.work.mesh.face_handle(mesh.work.mesh.halfedge_handle(edge, side));
+        if (mesh.work.is_wall(face) && mesh.work.label(face).shape >= 0 &&
+            mesh.shapes[at(mesh.work.label(face).shape)].kind != WallShape::Kind::Ball) {
+            return mesh.work.label(face).shape;
         }
-        return -1;
     }
+    return -1;
+}
 
-    // Straight creases are halved too: a facet beside one has no other long edge.
-    [[nodiscard]] bool may_halve(Edge edge) const {
-        if (shape_of(edge) < 0) {
-            return false;
+// How many pieces the long edges come to, about.
+double halves(const ShapedMesh& mesh, double edge_mm) {
+    double count = 0.0;
+    for (const Edge edge : mesh.work.mesh.edges()) {
+        if (!mesh.work.is_line(edge) && shape_of(mesh, edge) >= 0) {
+            count += mesh.work.length(edge) / edge_mm;
         }
-        if (!work_.is_line(edge)) {
-            return true;
-        }
-        const Vector3d middle = middle_of(edge);
-        for (const unsigned side : {0U, 1U}) {
-            const Face face = work_.mesh.face_handle(work_.mesh.halfedge_handle(edge, side));
-            if (!work_.is_wall(face) || work_.label(face).shape < 0 ||
-                shapes_[at(work_.label(face).shape)].distance_mm(middle) >
-                    kStraight * work_.length(edge)) {
-                return false;
-            }
-        }
+    }
+    return count;
+}
+
+Vector3d middle_of(const ShapedMesh& mesh, Edge edge) {
+    const Halfedge half = mesh.work.mesh.halfedge_handle(edge, 0);
+    return 0.5 * (mesh.work.at(mesh.work.mesh.from_vertex_handle(half)) +
+                  mesh.work.at(mesh.work.mesh.to_vertex_handle(half)));
+}
+
+// Straight creases are halved too: a facet beside one has no other long edge.
+bool may_halve(const ShapedMesh& mesh, Edge edge) {
+    if (shape_of(mesh, edge) < 0) {
+        return false;
+    }
+    if (!mesh.work.is_line(edge)) {
         return true;
     }
-
-    [[nodiscard]] Vector3d middle_of(Edge edge) const {
-        const Halfedge half = work_.mesh.halfedge_handle(edge, 0);
-        return 0.5 * (work_.at(work_.mesh.from_vertex_handle(half)) +
-                      work_.at(work_.mesh.to_vertex_handle(half)));
-    }
-
-    // How many pieces the long edges come to, about.
-    [[nodiscard]] double halves() const {
-        double count = 0.0;
-        for (const Edge edge : work_.mesh.edges()) {
-            if (!work_.is_line(edge) && shape_of(edge) >= 0) {
-                count += work_.length(edge) / edge_mm_;
-            }
-        }
-        return count;
-    }
-
-    // The longest edges first, each once.
-    bool halve_once() {
-        struct Entry {
-            double length;
-            std::int32_t edge;
-        };
-        std::vector<Entry> entries;
-        for (const Edge edge : work_.mesh.edges()) {
-            const double length = work_.length(edge);
-            if (length > edge_mm_ && may_halve(edge)) {
-                entries.push_back({length, edge.idx()});
-            }
-        }
-        std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-            return a.length != b.length ? a.length > b.length : a.edge < b.edge;
-        });
-        // Those much shorter than the longest wait for the next round.
-        constexpr double kThisRound = 0.7;
-        for (const Entry& entry : entries) {
-            if (entry.length < kThisRound * entries.front().length) {
-                break;
-            }
-            const Edge edge(entry.edge);
-            const Vector3d chord = middle_of(edge);
-            const Vector3d foot = shapes_[at(shape_of(edge))].nearest(chord);
-            const bool near =
-                !work_.is_line(edge) && (foot - chord).norm() <= kNearShare * entry.length;
-            work_.split(edge, near ? foot : chord);
-            ++found_.halved;
-        }
-        return !entries.empty();
-    }
-
-    void flip() {
-        constexpr int kRounds = 4;
-        for (int round = 0; round < kRounds; ++round) {
-            for (const Edge edge : work_.mesh.edges()) {
-                if (work_.mesh.is_boundary(edge) || work_.is_line(edge) || shape_of(edge) < 0) {
-                    continue;
-                }
-                const auto [before, after] = work_.angles(edge);
-                if (after < before && work_.may_flip(edge, kTurnCosine)) {
-                    work_.flip(edge);
-                }
-            }
+    const Vector3d middle = middle_of(mesh, edge);
+    for (const unsigned side : {0U, 1U}) {
+        const Face face = mesh.work.mesh.face_handle(mesh.work.mesh.halfedge_handle(edge, side));
+        if (!mesh.work.is_wall(face) || mesh.work.label(face).shape < 0 ||
+            mesh.shapes[at(mesh.work.label(face).shape)].distance_mm(middle) >
+                kStraight * mesh.work.length(edge)) {
+            return false;
         }
     }
+    return true;
+}
 
-    WorkMesh work_;
-    double edge_mm_;
-    std::vector<Facet> facets_;  // per face of the part
-    std::vector<WallShape> shapes_;
-    std::size_t exact_;  // of them, the first
-    LongFacets found_;
-};
+// The longest edges first, each once. \return how many
+int halve_once(ShapedMesh& mesh, double edge_mm) {
+    struct Entry {
+        double length;
+        std::int32_t edge;
+    };
+    std::vector<Entry> entries;
+    for (const Edge edge : mesh.work.mesh.edges()) {
+        const double length = mesh.work.length(edge);
+        if (length > edge_mm && may_halve(mesh, edge)) {
+            entries.push_back({length, edge.idx()});
+        }
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return a.length != b.length ? a.length > b.length : a.edge < b.edge;
+    });
+    // Those much shorter than the longest wait for the next round.
+    constexpr double kThisRound = 0.7;
+    int halved = 0;
+    for (const Entry& entry : entries) {
+        if (entry.length < kThisRound * entries.front().length) {
+            break;
+        }
+        const Edge edge(entry.edge);
+        const Vector3d chord = middle_of(mesh, edge);
+        const Vector3d foot = mesh.shapes[at(shape_of(mesh, edge))].nearest(chord);
+        const bool near =
+            !mesh.work.is_line(edge) && (foot - chord).norm() <= kNearShare * entry.length;
+        mesh.work.split(edge, near ? foot : chord);
+        ++halved;
+    }
+    return halved;
+}
+
+// In rounds, until no edge is too long. \return how many
+int halve_long(ShapedMesh& mesh, double edge_mm) {
+    int count = 0;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const int halved = halve_once(mesh, edge_mm);
+        if (halved == 0) {
+            break;
+        }
+        count += halved;
+        check_interrupt();
+    }
+    return count;
+}
+
+void flip(ShapedMesh& mesh) {
+    constexpr int kRounds = 4;
+    for (int round = 0; round < kRounds; ++round) {
+        for (const Edge edge : mesh.work.mesh.edges()) {
+            if (mesh.work.mesh.is_boundary(edge) || mesh.work.is_line(edge) ||
+                shape_of(mesh, edge) < 0) {
+                continue;
+            }
+            const auto [before, after] = mesh.work.angles(edge);
+            if (after < before && mesh.work.may_flip(edge, kTurnCosine)) {
+                mesh.work.flip(edge);
+            }
+        }
+    }
+}
 
 }  // namespace
 
 LongFacets halve_long_facets(const LabelledMesh& part, const std::vector<char>& kept,
                              double edge_mm, const std::vector<WallShape>& exact) {
-    return LongFacetHalver(part, kept, edge_mm, exact).run();
+    ShapedMesh mesh{WorkMesh(part, kept), exact};
+    LongFacets found;
+    const std::vector<Facet> facets = facets_of(mesh.work);
+    found.residual_mm = residual_mm(mesh);
+    found.residual_mm = std::max(found.residual_mm, add_shapes(facets, edge_mm, mesh));
+    const double most =
+        std::clamp(kMostHalvesEach * static_cast<double>(facets.size()), kFewHalves, kMostHalves);
+    if (halves(mesh, edge_mm) <= most) {
+        found.halved = halve_long(mesh, edge_mm);
+    }
+    if (found.halved > 0) {
+        flip(mesh);
+    }
+    found.part = mesh.work.part();
+    for (std::int32_t& shape : found.part.shape) {
+        shape = shape < static_cast<std::int32_t>(exact.size()) ? shape : -1;
+    }
+    found.shapes = static_cast<int>(mesh.shapes.size());
+    return found;
 }
 
 }  // namespace meshwind
