@@ -14,7 +14,7 @@ namespace meshwind {
 struct WallShape {
     enum class Kind { Plane, Ball, Ruled };
     Kind kind = Kind::Plane;
-    RuledShape ruled;                                     ///< of a cylinder or cone
+    RuledShape ruled{};                                   ///< of a cylinder or cone
     Eigen::Vector3d centre_mm = Eigen::Vector3d::Zero();  ///< of a ball; a point of a plane
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< of a plane, unit
     double radius_mm = 0.0;                               ///< of a ball
