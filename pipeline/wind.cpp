@@ -114,245 +114,261 @@ std::string layer_words(std::size_t layer) {
     return "layer " + std::to_string(layer + 1);
 }
 
-class Winder {
-public:
-    explicit Winder(const WindOptions& options)
-        : options_(options), watch_(run_.timing_s, options.reading_s) {
-        run_.seed = options.context.seed;
-        run_.effort = options.context.effort;
-    }
+std::string mesh_digest(const Mandrel& mandrel) {
+    return short_digest(mesh_file_bytes(mandrel.whole, MeshFormat::Obj));
+}
 
-    Run wind(Mandrel&& mandrel, const Machine& machine, const Job& job) {
-        begin(std::move(mandrel), machine, job);
-        while (wind_next()) {
-        }
-        run_.usable = run_.planned() && (run_.passed() || options_.force);
-        return std::move(run_);
+// What no plan can change is refused before there is one. \return what may be meant otherwise
+std::vector<std::string> look_ahead(const Setup& setup, const WindOptions& options) {
+    const InputFiles& files = options.files;
+    check_controller(setup.machine, files.machine);
+    refuse_what_is_not_offered(setup.job, files.job, !options.import);
+    const EyeLaw& eye = setup.job.eye;
+    require_main_job(setup.machine, eye.rule == EyeRule::Cylinder ? eye.radius_mm : 0.0);
+    refuse_turns_not_free(setup.job, files.job, setup.machine);
+    if (options.import) {
+        return {};
     }
-
-private:
-    void begin(Mandrel&& mandrel, const Machine& machine, const Job& job) {
-        WoundLayer& first = run_.layers.emplace_back();
-        first.setup = make_setup(std::move(mandrel), machine, job, options_.files,
-                                 [this](const Setup& setup) { look_ahead(setup); });
-        header_.version = kVersion;
-        header_.mandrel = first.setup.mandrel.file;
-        header_.mandrel_digest = options_.mandrel_digest.empty() ? mesh_digest(first.setup.mandrel)
-                                                                 : options_.mandrel_digest;
-        header_.job_digest = job_digest(first.setup.job);
-        tell_origin(first.setup, job);
-        watch_.stage("import");
-    }
-
-    // What the same run needs. The setup's job is what became of the job on this machine.
-    void tell_origin(const Setup& setup, Job job) {
-        job.mandrel.units = setup.job.mandrel.units;
-        header_.job = told_job_text(job);
-        run_.job = header_.job;
-        if (options_.files.machine != InputFiles{}.machine) {
-            header_.machine_file = options_.files.machine.filename().string();
-        }
-        if (!options_.import) {
-            header_.run =
-                MainJobRun{setup.mandrel.file, options_.context.seed, options_.context.effort};
+    for (std::size_t i = 0; i < setup.job.layers.size(); ++i) {
+        if (setup.job.layers[i].kind == LayerKind::Wall) {
+            require_wall(setup.mandrel, setup.job, i, files.job);
         }
     }
-
-    static std::string mesh_digest(const Mandrel& mandrel) {
-        return short_digest(mesh_file_bytes(mandrel.whole, MeshFormat::Obj));
+    const PlannedTask task{setup.machine, setup.envelope, setup.mandrel,
+                           setup.job,     files.machine,  files.job};
+    require_can_be_wound(task);
+    std::vector<std::string> remarks = remarks_before_planning(task);
+    for (const std::string& remark : remarks) {
+        options.context.report_remark(remark);
     }
+    return remarks;
+}
 
-    // What no plan can change is refused before there is one.
-    void look_ahead(const Setup& setup) {
-        const InputFiles& files = options_.files;
-        check_controller(setup.machine, files.machine);
-        refuse_what_is_not_offered(setup.job, files.job, !options_.import);
-        const EyeLaw& eye = setup.job.eye;
-        require_main_job(setup.machine, eye.rule == EyeRule::Cylinder ? eye.radius_mm : 0.0);
-        refuse_turns_not_free(setup.job, files.job, setup.machine);
-        if (options_.import) {
-            return;
-        }
-        for (std::size_t i = 0; i < setup.job.layers.size(); ++i) {
-            if (setup.job.layers[i].kind == LayerKind::Wall) {
-                require_wall(setup.mandrel, setup.job, i, files.job);
-            }
-        }
-        const PlannedTask task{setup.machine, setup.envelope, setup.mandrel,
-                               setup.job,     files.machine,  files.job};
-        require_can_be_wound(task);
-        run_.remarks = remarks_before_planning(task);
-        for (const std::string& remark : run_.remarks) {
-            options_.context.report_remark(remark);
-        }
+// What the programs' heads say, and what the same run needs. The setup's job is what became of the
+// job on this machine.
+ProgramHeader header_of(const Setup& setup, Job job, const WindOptions& options) {
+    ProgramHeader header;
+    header.version = kVersion;
+    header.mandrel = setup.mandrel.file;
+    header.mandrel_digest =
+        options.mandrel_digest.empty() ? mesh_digest(setup.mandrel) : options.mandrel_digest;
+    header.job_digest = job_digest(setup.job);
+    job.mandrel.units = setup.job.mandrel.units;
+    header.job = told_job_text(job);
+    if (options.files.machine != InputFiles{}.machine) {
+        header.machine_file = options.files.machine.filename().string();
     }
-
-    // Winds the last layer that is there, a layer of the job or a stage of its wall; adds the next
-    // one where there is one and this one can be wound on.
-    bool wind_next() {
-        const std::size_t number = run_.layers.size() - 1;
-        WoundLayer& layer = run_.layers.back();
-        const std::vector<LayerJob>& jobs = layer.setup.job.layers;
-        layer.job = jobs[job_layer_];
-        if (layer.job.kind == LayerKind::Wall && !wall_) {
-            wall_.emplace(layer.setup.mandrel, layer.setup.job, job_layer_, options_.context.seed,
-                          options_.files.job);
-            run_.walls.push_back({number, number, wall_->figures(), wall_->asked_of_faces()});
-        }
-        std::optional<StageAsk> stage;
-        WindLayerOptions options;
-        if (wall_) {
-            options.stage = &stage.emplace(wall_->next());
-        }
-        options.suffix = layer_suffix(number);
-        options.header = header_;
-        options.import = import_of(options_, layer.job);
-        if (number > 0) {
-            options.before = &run_.layers[number - 1];
-            options.bare = &run_.layers.front().setup.mandrel;
-            for (const WoundLayer& before : run_.layers) {
-                options.build_up_mm +=
-                    before.build_up_mm.empty()
-                        ? 0.0
-                        : *std::max_element(before.build_up_mm.begin(), before.build_up_mm.end());
-            }
-        }
-        options.context = options_.context;
-        if (jobs.size() > 1 || wall_) {
-            options.context.progress = [&](const std::string& step, double share) {
-                options_.context.report_progress(layer_words(number) + ", " + step, share);
-            };
-        }
-        options.stage_done = [this](const char* stage) { watch_.stage(stage); };
-        options.least_covered = number == 0 ? options_.least_covered : 0.0;
-        options.least_joined = number == 0 ? options_.least_joined : 0.0;
-        options.patterns_first = number == 0 && options_.patterns_first;
-        wind_layer(layer, options);
-        if (wall_ && wall_->laid() && !layer.plan.failure.empty()) {
-            return give_up_stage();
-        }
-        if (!layer.plan.failure.empty()) {
-            layer.checks.back().words += so_far();
-        }
-        if (number == 0 && !options_.import) {
-            propose_mends(layer);
-        }
-        for (Check check : layer.checks) {
-            check.name += options.suffix;
-            if (check.place) {
-                check.place->layer = number;
-            }
-            run_.checks.push_back(std::move(check));
-        }
-        if (!layer.plan.failure.empty() || options_.import) {
-            return false;
-        }
-        if (wall_) {
-            end_stage(layer, number);
-        }
-        job_layer_ += wall_ ? 0 : 1;
-        run_.complete = job_layer_ == jobs.size();
-        if (run_.complete && number == 0) {
-            return false;
-        }
-        layer.build_up_mm = build_up_of(layer);
-        return !run_.complete && grow_next(layer, number + 1);
+    if (!options.import) {
+        header.run = MainJobRun{setup.mandrel.file, options.context.seed, options.context.effort};
     }
+    return header;
+}
 
-    // Of a wall that cannot be finished, what of it can be wound.
-    [[nodiscard]] std::string so_far() const {
-        return !wall_ || wall_->stages() == 0
-                   ? std::string()
-                   : "; the " + counted(wall_->stages(), "stage") +
-                         " before can be wound, which are " + fixed(wall_->layers_so_far(), 1) +
-                         " layers of the wall";
-    }
-
-    // A wall is laid but for a few places, for which there are no courses. What is next in the job
-    // lies on the same mandrel.
-    bool give_up_stage() {
-        end_wall();
-        ++job_layer_;
-        run_.complete = job_layer_ == run_.layers.front().setup.job.layers.size();
-        WoundLayer again;
-        again.setup = std::move(run_.layers.back().setup);
-        run_.layers.pop_back();
-        if (!run_.complete) {
-            run_.layers.push_back(std::move(again));
-        }
-        return !run_.complete;
-    }
-
-    void end_wall() {
-        const WoundWall& wall = run_.walls.back();
-        const double most_below = run_.layers.back().setup.job.tolerance.bare;
-        Check& check = run_.checks.emplace_back(wall_check(wall.figures, most_below));
-        check.name += layer_suffix(wall.first);
-        wall_.reset();
-    }
-
-    // What lies there now, and the wall's check where that was the last stage.
-    void end_stage(const WoundLayer& layer, std::size_t number) {
-        wall_->enter(layer.setup.mandrel.surface, layer.plan);
-        WoundWall& wall = run_.walls.back();
-        wall.last = number;
-        wall.figures = wall_->figures();
-        if (wall_->done()) {
-            end_wall();
-        }
-    }
-
-    // What may help where little of the bare mandrel is covered.
-    void propose_mends(const WoundLayer& layer) {
-        if (layer.plan.failure.empty() && layer.plan.coverage.fraction >= kCoveredShare) {
-            return;
-        }
-        const std::size_t told = run_.remarks.size();
-        propose_blend(layer.setup.mandrel, layer.setup.job.tow.width_mm, run_.remarks);
-        for (std::size_t i = told; i < run_.remarks.size(); ++i) {
-            options_.context.report_remark(run_.remarks[i]);
-        }
-    }
-
-    // The mandrel with a layer on it, for the next one.
-    bool grow_next(const WoundLayer& layer, std::size_t number) {
-        const Setup& setup = layer.setup;
-        WoundLayer next;
-        try {
-            next.setup = setup_for(setup, thicken(setup.mandrel, layer.build_up_mm), number);
-        } catch (const InputError& error) {
-            Check& check = run_.checks.emplace_back(
-                check_kind::kPlan, false, layer_words(number) + ": " + error.what() + so_far());
-            check.name += layer_suffix(number);
-            return false;
-        }
-        header_.mandrel = grown_mandrel_name(number);
-        header_.mandrel_digest = mesh_digest(next.setup.mandrel);
-        run_.layers.push_back(std::move(next));
-        watch_.stage("import");
-        return true;
-    }
-
-    static std::vector<double> build_up_of(const WoundLayer& layer) {
-        const Surface& surface = layer.setup.mandrel.surface;
-        const Job::TowJob& tow = layer.setup.job.tow;
-        if (layer.plan.planner == Planner::Pattern) {
-            const RevolutionFinding found = find_revolution(layer.setup.mandrel);
-            if (found.body) {
-                return regular_build_up_mm(surface, *found.body, layer.plan.pieces, tow.width_mm,
-                                           tow.thickness_mm);
-            }
-        }
-        return build_up_mm(surface, layer.plan.face_layers, tow.width_mm, tow.thickness_mm);
-    }
-
-    const WindOptions& options_;
-    Run run_;
-    Stopwatch watch_;
-    ProgramHeader header_;            // of the layer that is wound
-    std::size_t job_layer_ = 0;       // of the job, that is wound
-    std::optional<WallStages> wall_;  // while that is one
+// A run as far as its layers are wound.
+struct RunSoFar {
+    Run run{};
+    ProgramHeader header{};          // of the layer that is wound
+    std::size_t job_layer = 0;       // of the job, that is wound
+    std::optional<WallStages> wall;  // while that is one
 };
+
+// Sets the job of the last layer; a wall is begun where that asks for one.
+// \return the wall's next stage
+std::optional<StageAsk> next_stage(const WindOptions& options, RunSoFar& so_far) {
+    const std::size_t number = so_far.run.layers.size() - 1;
+    WoundLayer& layer = so_far.run.layers.back();
+    std::optional<WallStages>& wall = so_far.wall;
+    layer.job = layer.setup.job.layers[so_far.job_layer];
+    if (layer.job.kind == LayerKind::Wall && !wall) {
+        wall.emplace(layer.setup.mandrel, layer.setup.job, so_far.job_layer, options.context.seed,
+                     options.files.job);
+        so_far.run.walls.push_back({number, number, wall->figures(), wall->asked_of_faces()});
+    }
+    return wall ? std::optional(wall->next()) : std::nullopt;
+}
+
+// Sum of what each layer adds at most.
+double most_build_up_mm(const std::vector<WoundLayer>& layers) {
+    double sum_mm = 0.0;
+    for (const WoundLayer& layer : layers) {
+        sum_mm += layer.build_up_mm.empty()
+                      ? 0.0
+                      : *std::max_element(layer.build_up_mm.begin(), layer.build_up_mm.end());
+    }
+    return sum_mm;
+}
+
+// \param stage of a wall; both are kept
+WindLayerOptions options_of_layer(const WindOptions& options, const RunSoFar& so_far,
+                                  const std::optional<StageAsk>& stage) {
+    const std::vector<WoundLayer>& layers = so_far.run.layers;
+    const std::size_t number = layers.size() - 1;
+    const WoundLayer& layer = layers.back();
+    WindLayerOptions of_layer;
+    of_layer.stage = stage ? &*stage : nullptr;
+    of_layer.suffix = layer_suffix(number);
+    of_layer.header = so_far.header;
+    of_layer.import = import_of(options, layer.job);
+    if (number > 0) {
+        of_layer.before = &layers[number - 1];
+        of_layer.bare = &layers.front().setup.mandrel;
+        of_layer.build_up_mm = most_build_up_mm(layers);
+    }
+    of_layer.context = options.context;
+    if (layer.setup.job.layers.size() > 1 || stage) {
+        of_layer.context.progress = [&options, number](const std::string& step, double share) {
+            options.context.report_progress(layer_words(number) + ", " + step, share);
+        };
+    }
+    of_layer.least_covered = number == 0 ? options.least_covered : 0.0;
+    of_layer.least_joined = number == 0 ? options.least_joined : 0.0;
+    of_layer.patterns_first = number == 0 && options.patterns_first;
+    return of_layer;
+}
+
+// Of a wall that cannot be finished, what of it can be wound.
+std::string stages_so_far(const std::optional<WallStages>& wall) {
+    return !wall || wall->stages() == 0
+               ? std::string()
+               : "; the " + counted(wall->stages(), "stage") + " before can be wound, which are " +
+                     fixed(wall->layers_so_far(), 1) + " layers of the wall";
+}
+
+void end_wall(RunSoFar& so_far) {
+    Run& run = so_far.run;
+    const WoundWall& wall = run.walls.back();
+    const double most_below = run.layers.back().setup.job.tolerance.bare;
+    Check& check = run.checks.emplace_back(wall_check(wall.figures, most_below));
+    check.name += layer_suffix(wall.first);
+    so_far.wall.reset();
+}
+
+// A wall is laid but for a few places, for which there are no courses. What is next in the job lies
+// on the same mandrel. \return whether there is something
+bool give_up_stage(RunSoFar& so_far) {
+    Run& run = so_far.run;
+    end_wall(so_far);
+    ++so_far.job_layer;
+    run.complete = so_far.job_layer == run.layers.front().setup.job.layers.size();
+    WoundLayer again;
+    again.setup = std::move(run.layers.back().setup);
+    run.layers.pop_back();
+    if (!run.complete) {
+        run.layers.push_back(std::move(again));
+    }
+    return !run.complete;
+}
+
+// What lies there now, and the wall's check where that was the last stage.
+void end_stage(const WoundLayer& layer, std::size_t number, RunSoFar& so_far) {
+    so_far.wall->enter(layer.setup.mandrel.surface, layer.plan);
+    WoundWall& wall = so_far.run.walls.back();
+    wall.last = number;
+    wall.figures = so_far.wall->figures();
+    if (so_far.wall->done()) {
+        end_wall(so_far);
+    }
+}
+
+// What may help where little of the bare mandrel is covered.
+void propose_mends(const WoundLayer& layer, const RunContext& context,
+                   std::vector<std::string>& remarks) {
+    if (layer.plan.failure.empty() && layer.plan.coverage.fraction >= kCoveredShare) {
+        return;
+    }
+    const std::size_t told = remarks.size();
+    propose_blend(layer.setup.mandrel, layer.setup.job.tow.width_mm, remarks);
+    for (std::size_t i = told; i < remarks.size(); ++i) {
+        context.report_remark(remarks[i]);
+    }
+}
+
+// Those of a layer, as the run has them.
+void add_checks(const WoundLayer& layer, std::size_t number, std::vector<Check>& checks) {
+    for (Check check : layer.checks) {
+        check.name += layer_suffix(number);
+        if (check.place) {
+            check.place->layer = number;
+        }
+        checks.push_back(std::move(check));
+    }
+}
+
+std::vector<double> build_up_of(const WoundLayer& layer) {
+    const Surface& surface = layer.setup.mandrel.surface;
+    const Job::TowJob& tow = layer.setup.job.tow;
+    if (layer.plan.planner == Planner::Pattern) {
+        const RevolutionFinding found = find_revolution(layer.setup.mandrel);
+        if (found.body) {
+            return regular_build_up_mm(surface, *found.body, layer.plan.pieces, tow.width_mm,
+                                       tow.thickness_mm);
+        }
+    }
+    return build_up_mm(surface, layer.plan.face_layers, tow.width_mm, tow.thickness_mm);
+}
+
+// The mandrel with the last layer on it, for the next one. \param number of that
+// \return whether there is such a mandrel
+bool grow_next(std::size_t number, Stopwatch& watch, RunSoFar& so_far) {
+    Run& run = so_far.run;
+    const WoundLayer& layer = run.layers.back();
+    const Setup& setup = layer.setup;
+    WoundLayer next;
+    try {
+        next.setup = setup_for(setup, thicken(setup.mandrel, layer.build_up_mm), number);
+    } catch (const InputError& error) {
+        Check& check = run.checks.emplace_back(
+            check_kind::kPlan, false,
+            layer_words(number) + ": " + error.what() + stages_so_far(so_far.wall));
+        check.name += layer_suffix(number);
+        return false;
+    }
+    so_far.header.mandrel = grown_mandrel_name(number);
+    so_far.header.mandrel_digest = mesh_digest(next.setup.mandrel);
+    run.layers.push_back(std::move(next));
+    watch.stage("import");
+    return true;
+}
+
+// Goes on in the job behind a layer that was wound. \return whether there is something to wind
+bool go_on(std::size_t number, Stopwatch& watch, RunSoFar& so_far) {
+    Run& run = so_far.run;
+    WoundLayer& layer = run.layers.back();
+    if (so_far.wall) {
+        end_stage(layer, number, so_far);
+    }
+    so_far.job_layer += so_far.wall ? 0 : 1;
+    run.complete = so_far.job_layer == layer.setup.job.layers.size();
+    if (run.complete && number == 0) {
+        return false;
+    }
+    layer.build_up_mm = build_up_of(layer);
+    return !run.complete && grow_next(number + 1, watch, so_far);
+}
+
+// Winds the last layer that is there, a layer of the job or a stage of its wall; adds the next one
+// where there is one and this one can be wound on. \return whether one was added
+bool wind_next(const WindOptions& options, Stopwatch& watch, RunSoFar& so_far) {
+    Run& run = so_far.run;
+    const std::size_t number = run.layers.size() - 1;
+    WoundLayer& layer = run.layers.back();
+    const std::optional<StageAsk> stage = next_stage(options, so_far);
+    WindLayerOptions of_layer = options_of_layer(options, so_far, stage);
+    of_layer.stage_done = [&watch](const char* name) { watch.stage(name); };
+    wind_layer(layer, of_layer);
+    const bool failed = !layer.plan.failure.empty();
+    if (failed && so_far.wall && so_far.wall->laid()) {
+        return give_up_stage(so_far);
+    }
+    if (failed) {
+        layer.checks.back().words += stages_so_far(so_far.wall);
+    }
+    if (number == 0 && !options.import) {
+        propose_mends(layer, options.context, run.remarks);
+    }
+    add_checks(layer, number, run.checks);
+    return !failed && !options.import && go_on(number, watch, so_far);
+}
 
 }  // namespace
 
@@ -366,7 +382,21 @@ bool Run::planned() const {
 }
 
 Run wind(Mandrel mandrel, const Machine& machine, const Job& job, const WindOptions& options) {
-    return Winder(options).wind(std::move(mandrel), machine, job);
+    RunSoFar so_far;
+    Run& run = so_far.run;
+    Stopwatch watch(run.timing_s, options.reading_s);
+    run.seed = options.context.seed;
+    run.effort = options.context.effort;
+    WoundLayer& first = run.layers.emplace_back();
+    first.setup = make_setup(std::move(mandrel), machine, job, options.files,
+                             [&](const Setup& setup) { run.remarks = look_ahead(setup, options); });
+    so_far.header = header_of(first.setup, job, options);
+    run.job = so_far.header.job;
+    watch.stage("import");
+    while (wind_next(options, watch, so_far)) {
+    }
+    run.usable = run.planned() && (run.passed() || options.force);
+    return std::move(run);
 }
 
 }  // namespace meshwind
