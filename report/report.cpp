@@ -143,20 +143,52 @@ json elbow_report(const LaidElbow& laid) {
             {"legs", legs}};
 }
 
-json plan_report(const Plan& plan) {
+json uncovered_report(const Plan& plan) {
     json uncovered = json::array();
     for (const Uncovered& u : plan.uncovered) {
         uncovered.push_back(
             {{"region", u.region}, {"area_mm2", report_number(u.area_mm2)}, {"reason", u.reason}});
     }
+    return uncovered;
+}
+
+json plan_coverage_report(const Coverage& coverage) {
+    json report = {{"fraction", report_number(coverage.fraction)},
+                   {"reachable", report_number(coverage.reachable)},
+                   {"mean_layers", report_number(coverage.mean_layers)},
+                   {"max_layers", coverage.max_layers},
+                   {"p1_layers", coverage.p1_layers},
+                   {"cv", report_number(coverage.cv)}};
+    if (coverage.joinable) {
+        report["joinable"] = report_number(*coverage.joinable);
+    }
+    if (coverage.regular_cv) {
+        report["regular_cv"] = report_number(*coverage.regular_cv);
+    }
+    if (coverage.thinnest_layers && coverage.thickest_layers) {
+        report["thinnest_layers"] = report_number(*coverage.thinnest_layers);
+        report["thickest_layers"] = report_number(*coverage.thickest_layers);
+    }
+    return report;
+}
+
+// Candidates and courses that did not come into the plan, by their reasons.
+json library_report(const PlanEffort& effort) {
     json refusals = json::object();
     for (std::size_t r = 0; r < kRefusals; ++r) {
-        refusals[name_of(static_cast<Refusal>(r))] = plan.effort.refusals[r];
+        refusals[name_of(static_cast<Refusal>(r))] = effort.refusals[r];
     }
     json rejections = json::object();
     for (std::size_t r = 1; r < kRejections; ++r) {
-        rejections[name_of(static_cast<Rejection>(r))] = plan.effort.rejections[r];
+        rejections[name_of(static_cast<Rejection>(r))] = effort.rejections[r];
     }
+    return {{"candidates", effort.candidates},
+            {"outcomes", refusals},
+            {"rejected_courses", effort.rejected_courses},
+            {"rejections", rejections}};
+}
+
+json plan_report(const Plan& plan) {
     json report = {
         {"planner", name_of(plan.planner)},
         {"courses", plan.courses},
@@ -164,14 +196,8 @@ json plan_report(const Plan& plan) {
         {"fibres", plan.fibres},
         {"reach_of_fibres", reach_report(plan)},
         {"fibre_length_mm", report_number(plan.fibre_length_mm)},
-        {"coverage",
-         {{"fraction", report_number(plan.coverage.fraction)},
-          {"reachable", report_number(plan.coverage.reachable)},
-          {"mean_layers", report_number(plan.coverage.mean_layers)},
-          {"max_layers", plan.coverage.max_layers},
-          {"p1_layers", plan.coverage.p1_layers},
-          {"cv", report_number(plan.coverage.cv)}}},
-        {"uncovered", uncovered},
+        {"coverage", plan_coverage_report(plan.coverage)},
+        {"uncovered", uncovered_report(plan)},
         {"what_if", what_if_report(plan)},
         {"annealing",
          {{"seed", plan.effort.seed},
@@ -184,21 +210,7 @@ json plan_report(const Plan& plan) {
         {"order",
          {{"junctions_at", report_number(plan.places.junction)},
           {"hoops_at", report_number(plan.places.hoop)}}},
-        {"library",
-         {{"candidates", plan.effort.candidates},
-          {"outcomes", refusals},
-          {"rejected_courses", plan.effort.rejected_courses},
-          {"rejections", rejections}}}};
-    if (plan.coverage.joinable) {
-        report["coverage"]["joinable"] = report_number(*plan.coverage.joinable);
-    }
-    if (plan.coverage.regular_cv) {
-        report["coverage"]["regular_cv"] = report_number(*plan.coverage.regular_cv);
-    }
-    if (plan.coverage.thinnest_layers && plan.coverage.thickest_layers) {
-        report["coverage"]["thinnest_layers"] = report_number(*plan.coverage.thinnest_layers);
-        report["coverage"]["thickest_layers"] = report_number(*plan.coverage.thickest_layers);
-    }
+        {"library", library_report(plan.effort)}};
     if (plan.pattern() != nullptr) {
         report["pattern"] = pattern_report(*plan.pattern());
     }
