@@ -1,0 +1,58 @@
+/// Sweeps of machine parts over one step of a motion. Included by .cpp files of this folder only.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "machines/machine.h"
+#include "mesh/ray_query.h"
+#include "postproc/collision/chunk.h"
+#include "postproc/collision/collision.h"
+#include "postproc/eye/eye_path.h"
+
+namespace meshwind {
+
+/// What a sweep may take for a hit that is none.
+inline constexpr double kSweepSlack_mm = 2.0 * kSweepResolution_mm;
+
+/// A piece of a machine part, and the link that carries it.
+struct LinkedChunk {
+    char link = '?';
+    Chunk chunk;
+};
+
+[[nodiscard]] std::vector<LinkedChunk> chunks_of(const std::vector<HeadEnvelope::Part>& parts);
+
+/// Pose of a link of either chain, or of the base.
+[[nodiscard]] Eigen::Isometry3d base_from_part(const Machine& machine, std::span<const double> q,
+                                               char link);
+
+/// The joints go straight from one position to the other.
+struct MachineStep {
+    const Machine& machine;
+    std::span<const double> from;
+    std::span<const double> to;
+};
+
+/// What turns with the mandrel, and how far off a piece has to stay.
+struct SweptObstacles {
+    const RayQuery& obstacles;
+    double need_mm = 0.0;
+};
+
+/// Whether a piece stays clear of the mandrel over a step.
+[[nodiscard]] bool is_clear(const MachineStep& step, const SweptObstacles& mandrel,
+                            const LinkedChunk& part);
+
+/// How far a piece moves at most over a step, against the mandrel.
+[[nodiscard]] double most_motion_mm(const MachineStep& step, const LinkedChunk& part);
+
+/// Whether the head's piece stays clear of a body that stands on the machine over a step.
+[[nodiscard]] bool is_clear_of_body(const MachineStep& step, const LinkedChunk& body,
+                                    const LinkedChunk& part, double need_mm);
+
+/// The same of the straight fibre from the landing point, which the mandrel carries, to the eye.
+[[nodiscard]] bool is_fibre_clear_of_body(const MachineStep& step, const LinkedChunk& body,
+                                          const EyePoint& a, const EyePoint& b);
+
+}  // namespace meshwind
