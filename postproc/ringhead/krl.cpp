@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text/decimal_text.h"
@@ -121,36 +122,22 @@ void append_comment(std::string& text, const std::string& comment) {
     text += '\n';
 }
 
-class KrlReader {
+// The lines of a program that are neither empty nor comments, each taken word by word.
+class KrlLines {
 public:
-    KrlReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
+    KrlLines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {}
 
-    KrlProgram read() && {
-        head();
-        while (line_text_ != "END") {
-            body_line();
-            if (!next()) {
-                fail("krl.no_end", "the program has no END; it may be cut off: write it again");
-            }
-        }
-        if (program_.moves.size() < 2) {
-            fail("krl.no_motion", "has fewer than two LIN moves; there is nothing to run");
-        }
-        return std::move(program_);
-    }
-
-private:
-    // Goes to the next line that is neither empty nor a comment; false at the end.
+    // Goes to the next line; false at the end.
     bool next() {
         while (!rest_.empty()) {
             const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-            line_text_ = rest_.substr(0, end);
+            words_ = rest_.substr(0, end);
             rest_.remove_prefix(std::min(end + 1, rest_.size()));
             ++line_;
-            while (!line_text_.empty() && (line_text_.back() == '\r' || line_text_.back() == ' ')) {
-                line_text_.remove_suffix(1);
+            while (!words_.empty() && (words_.back() == '\r' || words_.back() == ' ')) {
+                words_.remove_suffix(1);
             }
-            if (!line_text_.empty() && line_text_.front() != ';') {
+            if (!words_.empty() && words_.front() != ';') {
                 return true;
             }
         }
@@ -163,120 +150,26 @@ private:
         }
     }
 
+    // What the line begins with; false where it does not.
     bool take(std::string_view start) {
-        if (line_text_.substr(0, start.size()) != start) {
+        if (words_.substr(0, start.size()) != start) {
             return false;
         }
-        line_text_.remove_prefix(start.size());
+        words_.remove_prefix(start.size());
         return true;
     }
 
-    void head() {
-        need();
-        while (line_text_.front() == '&') {
-            need();
-        }
-        const std::string_view whole = line_text_;
-        if (!take("DEF ") || line_text_.size() < 3 ||
-            line_text_.substr(line_text_.size() - 3) != "( )") {
-            not_understood(whole, "DEF name( )");
-        }
-        program_.name = std::string(line_text_.substr(0, line_text_.size() - 3));
-        if (!is_name(program_.name)) {
-            not_understood(whole, "DEF name( )");
-        }
-        need();
+    // Up to one of the characters, or to the end.
+    std::string_view take_until(const char* characters) {
+        const std::size_t end = std::min(words_.find_first_of(characters), words_.size());
+        const std::string_view taken = words_.substr(0, end);
+        words_.remove_prefix(end);
+        return taken;
     }
 
-    void body_line() {
-        const std::string_view whole = line_text_;
-        if (whole == kInit || whole == kAdvance || whole == kOrientation ||
-            whole == kApproximation || whole == "HALT") {
-            return;
-        }
-        if (take("$BASE=")) {
-            program_.base.nano = aggregate(kFrameNames, "");
-        } else if (take("$TOOL=")) {
-            program_.tool.nano = aggregate(kFrameNames, "");
-        } else if (take("PTP ")) {
-            program_.start_nano = aggregate(kAxisNames, "");
-        } else if (take(kPathSpeed)) {
-            path_nano_m_s_ = speed();
-        } else if (take(kSwivelSpeed)) {
-            turn_nano_deg_s_ = speed();
-            need();
-            if (!take(kSpinSpeed) || speed() != turn_nano_deg_s_) {
-                not_understood(line_text_, "$VEL.ORI2 of the value of $VEL.ORI1 behind it");
-            }
-        } else if (take("LIN ")) {
-            move();
-        } else {
-            not_understood(whole, "the lines in postproc/ringhead/krl.h");
-        }
-    }
-
-    void move() {
-        if (path_nano_m_s_ == 0 || turn_nano_deg_s_ == 0) {
-            fail("krl.no_motion", "LIN before $VEL.CP and $VEL.ORI1 are set; set them");
-        }
-        KrlMove move{{}, path_nano_m_s_, turn_nano_deg_s_, line_};
-        move.to.nano = aggregate(kFrameNames, " C_DIS");
-        program_.moves.push_back(move);
-    }
-
-    // {NAME number,..} with the names in order, then perhaps `tail`.
-    std::array<std::int64_t, 6> aggregate(const std::array<std::string_view, 6>& names,
-                                          std::string_view tail) {
-        const std::string_view whole = line_text_;
-        std::array<std::int64_t, 6> nano{};
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            if (!take(i == 0 ? "{" : ",") || !take(names[i]) || !take(" ")) {
-                not_understood(whole, "{X ..,Y ..,Z ..,A ..,B ..,C ..} or {A1 ..,..,A6 ..}");
-            }
-            const std::size_t end = std::min(line_text_.find_first_of(",}"), line_text_.size());
-            nano[i] = number(line_text_.substr(0, end));
-            line_text_.remove_prefix(end);
-        }
-        if (!take("}") || (!line_text_.empty() && line_text_ != tail)) {
-            not_understood(whole, "one closing bracket, then at most C_DIS");
-        }
-        return nano;
-    }
-
-    std::int64_t speed() {
-        const std::int64_t nano = number(line_text_);
-        if (nano <= 0) {
-            fail("krl.number", "a speed must be above 0");
-        }
-        return nano;
-    }
-
-    // Decimal text of at most nine digits before and after the point, exactly, in 1e-9.
-    [[nodiscard]] std::int64_t number(std::string_view text) const {
-        const std::string_view whole = text;
-        const bool negative = !text.empty() && text.front() == '-';
-        text.remove_prefix(negative ? 1 : 0);
-        const std::size_t point = std::min(text.find('.'), text.size());
-        const std::string_view before = text.substr(0, point);
-        const std::string_view after = point < text.size() ? text.substr(point + 1) : "";
-        const auto digits = [](std::string_view part) {
-            return part.size() <= 9 && std::all_of(part.begin(), part.end(),
-                                                   [](char c) { return c >= '0' && c <= '9'; });
-        };
-        if (before.empty() || !digits(before) || !digits(after)) {
-            fail("krl.number", "'" + std::string(whole) +
-                                   "' is not a number of at most nine "
-                                   "digits before and after the point");
-        }
-        std::int64_t nano = 0;
-        for (const char c : before) {
-            nano = 10 * nano + (c - '0');
-        }
-        for (std::size_t i = 0; i < 9; ++i) {
-            nano = 10 * nano + (i < after.size() ? after[i] - '0' : 0);
-        }
-        return negative ? -nano : nano;
-    }
+    // What is left of the line.
+    [[nodiscard]] std::string_view words() const { return words_; }
+    [[nodiscard]] std::int32_t line() const { return line_; }
 
     [[noreturn]] void not_understood(std::string_view found, const std::string& wanted) const {
         fail("krl.not_understood",
@@ -287,14 +180,137 @@ private:
         throw InputError(code, file_ + ":" + std::to_string(line_), words);
     }
 
+private:
     std::string_view rest_;
-    std::string_view line_text_;
+    std::string_view words_;
     std::string file_;
     std::int32_t line_ = 0;
-    std::int64_t path_nano_m_s_ = 0;
-    std::int64_t turn_nano_deg_s_ = 0;
-    KrlProgram program_;
 };
+
+// Decimal text of at most nine digits before and after the point, exactly, in 1e-9.
+// \param lines whose last one it stands in
+std::int64_t read_nano(std::string_view text, const KrlLines& lines) {
+    const std::string_view whole = text;
+    const bool negative = !text.empty() && text.front() == '-';
+    text.remove_prefix(negative ? 1 : 0);
+    const std::size_t point = std::min(text.find('.'), text.size());
+    const std::string_view before = text.substr(0, point);
+    const std::string_view after = point < text.size() ? text.substr(point + 1) : "";
+    const auto digits = [](std::string_view part) {
+        return part.size() <= 9 &&
+               std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+    };
+    if (before.empty() || !digits(before) || !digits(after)) {
+        lines.fail("krl.number", "'" + std::string(whole) +
+                                     "' is not a number of at most nine "
+                                     "digits before and after the point");
+    }
+    std::int64_t nano = 0;
+    for (const char c : before) {
+        nano = 10 * nano + (c - '0');
+    }
+    for (std::size_t i = 0; i < 9; ++i) {
+        nano = 10 * nano + (i < after.size() ? after[i] - '0' : 0);
+    }
+    return negative ? -nano : nano;
+}
+
+// {NAME number,..} with the names in order, then perhaps `tail`.
+std::array<std::int64_t, 6> read_aggregate(const std::array<std::string_view, 6>& names,
+                                           std::string_view tail, KrlLines& lines) {
+    const std::string_view whole = lines.words();
+    std::array<std::int64_t, 6> nano{};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (!lines.take(i == 0 ? "{" : ",") || !lines.take(names[i]) || !lines.take(" ")) {
+            lines.not_understood(whole, "{X ..,Y ..,Z ..,A ..,B ..,C ..} or {A1 ..,..,A6 ..}");
+        }
+        nano[i] = read_nano(lines.take_until(",}"), lines);
+    }
+    if (!lines.take("}") || (!lines.words().empty() && lines.words() != tail)) {
+        lines.not_understood(whole, "one closing bracket, then at most C_DIS");
+    }
+    return nano;
+}
+
+std::int64_t read_speed(const KrlLines& lines) {
+    const std::int64_t nano = read_nano(lines.words(), lines);
+    if (nano <= 0) {
+        lines.fail("krl.number", "a speed must be above 0");
+    }
+    return nano;
+}
+
+// The name in the head; goes to the line behind it.
+std::string read_name(KrlLines& lines) {
+    lines.need();
+    while (lines.words().front() == '&') {
+        lines.need();
+    }
+    const std::string_view whole = lines.words();
+    if (!lines.take("DEF ") || lines.words().size() < 3 ||
+        lines.words().substr(lines.words().size() - 3) != "( )") {
+        lines.not_understood(whole, "DEF name( )");
+    }
+    std::string name(lines.words().substr(0, lines.words().size() - 3));
+    if (!is_name(name)) {
+        lines.not_understood(whole, "DEF name( )");
+    }
+    lines.need();
+    return name;
+}
+
+// As $VEL was set last; 0: not yet.
+struct KrlSpeeds {
+    std::int64_t path_nano_m_s = 0;
+    std::int64_t turn_nano_deg_s = 0;
+};
+
+// Behind "LIN ".
+KrlMove read_move(const KrlSpeeds& speeds, KrlLines& lines) {
+    if (speeds.path_nano_m_s == 0 || speeds.turn_nano_deg_s == 0) {
+        lines.fail("krl.no_motion", "LIN before $VEL.CP and $VEL.ORI1 are set; set them");
+    }
+    KrlMove move{{}, speeds.path_nano_m_s, speeds.turn_nano_deg_s, lines.line()};
+    move.to.nano = read_aggregate(kFrameNames, " C_DIS", lines);
+    return move;
+}
+
+// Behind "$VEL.ORI1=", whose line that of "$VEL.ORI2=" follows.
+std::int64_t read_turn_speed(KrlLines& lines) {
+    const std::int64_t swivel = read_speed(lines);
+    lines.need();
+    if (!lines.take(kSpinSpeed) || read_speed(lines) != swivel) {
+        lines.not_understood(lines.words(), "$VEL.ORI2 of the value of $VEL.ORI1 behind it");
+    }
+    return swivel;
+}
+
+bool is_fixed_line(std::string_view line) {
+    return line == kInit || line == kAdvance || line == kOrientation || line == kApproximation ||
+           line == "HALT";
+}
+
+void read_body_line(KrlLines& lines, KrlSpeeds& speeds, KrlProgram& program) {
+    const std::string_view whole = lines.words();
+    if (is_fixed_line(whole)) {
+        return;
+    }
+    if (lines.take("$BASE=")) {
+        program.base.nano = read_aggregate(kFrameNames, "", lines);
+    } else if (lines.take("$TOOL=")) {
+        program.tool.nano = read_aggregate(kFrameNames, "", lines);
+    } else if (lines.take("PTP ")) {
+        program.start_nano = read_aggregate(kAxisNames, "", lines);
+    } else if (lines.take(kPathSpeed)) {
+        speeds.path_nano_m_s = read_speed(lines);
+    } else if (lines.take(kSwivelSpeed)) {
+        speeds.turn_nano_deg_s = read_turn_speed(lines);
+    } else if (lines.take("LIN ")) {
+        program.moves.push_back(read_move(speeds, lines));
+    } else {
+        lines.not_understood(whole, "the lines in postproc/ringhead/krl.h");
+    }
+}
 
 }  // namespace
 
@@ -369,7 +385,20 @@ std::string write_krl(const KrlProgram& program, const std::vector<std::string>&
 }
 
 KrlProgram read_krl(std::string_view text, const std::string& file) {
-    return KrlReader(text, file).read();
+    KrlLines lines(text, file);
+    KrlSpeeds speeds;
+    KrlProgram program;
+    program.name = read_name(lines);
+    while (lines.words() != "END") {
+        read_body_line(lines, speeds, program);
+        if (!lines.next()) {
+            lines.fail("krl.no_end", "the program has no END; it may be cut off: write it again");
+        }
+    }
+    if (program.moves.size() < 2) {
+        lines.fail("krl.no_motion", "has fewer than two LIN moves; there is nothing to run");
+    }
+    return program;
 }
 
 std::vector<double> durations_s(const KrlProgram& program) {
