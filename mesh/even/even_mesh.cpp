@@ -330,12 +330,13 @@ double wanted_triangles(const Surface& wall, const EvenMeshOptions& options) {
 LabelledMesh even_mesh(const LabelledMesh& part, const std::vector<char>& kept, Surface wall,
                        const EvenMeshOptions& options) {
     PlacedMesh placed(part, kept);
-    const WallProjection projection(wall);
-    const std::vector<double> size_mm = sizes_of(wall, options);
-    const Target target{wall, projection, size_mm};
+    const Surface surface = std::move(wall);
+    const WallProjection projection(surface);
+    const std::vector<double> size_mm = sizes_of(surface, options);
+    const Target target{surface, projection, size_mm};
     set_wanted_sizes(target, placed);
     const double wanted =
-        static_cast<double>(placed.work.mesh.n_faces()) + triangles_of(wall, size_mm);
+        static_cast<double>(placed.work.mesh.n_faces()) + triangles_of(surface, size_mm);
     sweep_even(target, options, kMostGrowth * wanted + kMostGrowthFaces, placed);
     polish(target, options, placed);
     return placed.work.part();

@@ -68,7 +68,7 @@ FaceOutline outline_of(const MeasuredFaces& part, const std::vector<std::vector<
                        const Vector3d& normal) {
     FaceOutline outline;
     for (const auto& loop : loops) {
-        const Vector3d origin = part.corner(loop.front().first, loop.front().second);
+        const Vector3d& origin = part.corner(loop.front().first, loop.front().second);
         double area = 0.0;
         for (const auto& [f, e] : loop) {
             area += 0.5 *

@@ -7,24 +7,16 @@
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
-#include <BRepBndLib.hxx>
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
-#include <Poly_PolygonOnTriangulation.hxx>
-#include <Poly_Triangulation.hxx>
 #include <TopExp.hxx>
-#include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopTools_ListOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
-#include <TopoDS_Vertex.hxx>
 #include <gp_Cone.hxx>
 #include <gp_Cylinder.hxx>
-#include <gp_Pnt.hxx>
 #include <gp_Sphere.hxx>
 #include <gp_Torus.hxx>
 
@@ -39,11 +31,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-// The first mesh: how far its triangles are off the faces, as a share of the part, and by how much
-// they turn along an edge.
-constexpr double kFirstDeflection = 1e-3;
-constexpr double kFirstTurn_rad = 0.15;
 
 // Newton's way to the nearest point ends when it moves by less, mm, or has made so many steps.
 constexpr double kFound_mm = 1e-10;
@@ -63,19 +50,6 @@ constexpr double kFlat_per_mm = 1e-9;
 
 // The tangents of a place span less of a square than this share where it is a pole.
 constexpr double kPole = 1e-7;
-
-Vector3d vector_of(const gp_XYZ& p) {
-    return {p.X(), p.Y(), p.Z()};
-}
-Vector3d vector_of(const gp_Pnt& p) {
-    return vector_of(p.XYZ());
-}
-Vector3d vector_of(const gp_Vec& v) {
-    return vector_of(v.XYZ());
-}
-Vector3d vector_of(const gp_Dir& d) {
-    return vector_of(d.XYZ());
-}
 
 struct SurfacePlace {
     Vector3d at, by_u, by_v, by_uu, by_vv, by_uv;
@@ -169,6 +143,29 @@ struct OcctFaces::Face {
         }
         return {};
     }
+
+    // Places of the surface in rings about one of them, mm.
+    // \param at_mm, uv_there that place \param to_uv from lengths along the surface
+    [[nodiscard]] std::vector<Vector3d> places_around(const Vector2d& uv_there,
+                                                      const Vector3d& at_mm,
+                                                      const Eigen::Matrix2d& to_uv,
+                                                      double reach_mm) const {
+        std::vector<Vector3d> around;
+        for (int ring = 1; ring <= kJetRings; ++ring) {
+            for (int spoke = 0; spoke < kJetSpokes; ++spoke) {
+                const double angle = 2.0 * kPi * (spoke + 0.5 * (ring % 2)) / kJetSpokes;
+                const double far = reach_mm * ring / kJetRings;
+                const Vector2d at = clamped(
+                    uv_there + to_uv * Vector2d(far * std::cos(angle), far * std::sin(angle)));
+                const Vector3d place = vector_of(surface.Value(at.x(), at.y()));
+                // Where the surface ends beside the point, places fall onto it.
+                if ((place - at_mm).norm() > kJetNearest * reach_mm) {
+                    around.push_back(place);
+                }
+            }
+        }
+        return around;
+    }
 };
 
 struct OcctFaces::Edge {
@@ -248,114 +245,21 @@ OcctFaces::OcctFaces(const TopoDS_Shape& shape) : shape_(shape) {
 OcctFaces::~OcctFaces() = default;
 
 OcctMesh OcctFaces::first_mesh() {
-    Bnd_Box box;
-    BRepBndLib::Add(shape_, box);
-    IMeshTools_Parameters wanted;
-    wanted.Deflection = kFirstDeflection * std::sqrt(box.SquareExtent());
-    wanted.Angle = kFirstTurn_rad;
-    wanted.MinSize = wanted.Deflection;  // else spline faces with many knots take minutes
-    wanted.InParallel = Standard_False;
-    const BRepMesh_IncrementalMesh mesher(shape_, wanted);
-
-    OcctMesh mesh;
-    TopTools_IndexedMapOfShape edges;
-    TopTools_IndexedMapOfShape vertices;
-    TopExp::MapShapes(shape_, TopAbs_EDGE, edges);
-    TopExp::MapShapes(shape_, TopAbs_VERTEX, vertices);
-    // Points of edges by the edge's number and theirs along it, points of vertices as those of no
-    // edge.
-    std::map<std::pair<int, int>, std::int32_t> shared;
-    std::vector<int> used(static_cast<std::size_t>(edges.Extent()) + 1, 0);
-    const auto point_at = [&](const std::pair<int, int>& key, const Vector3d& p,
-                              std::int32_t face) {
-        const auto [found, is_new] =
-            shared.try_emplace(key, static_cast<std::int32_t>(mesh.soup.points_mm.size()));
-        if (is_new) {
-            mesh.soup.points_mm.push_back(p);
-        } else {
-            const double off =
-                (mesh.soup.points_mm[static_cast<std::size_t>(found->second)] - p).norm();
-            if (off > mesh.off_face_mm) {
-                mesh.off_face_mm = off;
-                mesh.off_face = face;
-            }
-        }
-        return found->second;
-    };
+    tessellate(shape_);
+    SharedMesh shared(shape_);
     for (std::size_t f = 0; f < faces_.size(); ++f) {
         Face& face = faces_[f];
         const auto number = static_cast<std::int32_t>(f);
-        TopLoc_Location location;
-        const Handle(Poly_Triangulation) triangles = BRep_Tool::Triangulation(face.face, location);
-        if (triangles.IsNull() || triangles->NbTriangles() == 0) {
-            mesh.failed_faces.push_back(number);
+        const FaceTriangles triangles(face.face);
+        if (triangles.none()) {
+            shared.add_failed(number);
             continue;
         }
-        const gp_Trsf& moved = location.Transformation();
-        const auto node = [&](int i) { return vector_of(triangles->Node(i).Transformed(moved)); };
-        std::vector<std::int32_t> point(static_cast<std::size_t>(triangles->NbNodes()) + 1, -1);
-        for (TopExp_Explorer at(face.face, TopAbs_EDGE); at.More(); at.Next()) {
-            const TopoDS_Edge& edge = TopoDS::Edge(at.Current());
-            const Handle(Poly_PolygonOnTriangulation) polygon =
-                BRep_Tool::PolygonOnTriangulation(edge, triangles, location);
-            if (polygon.IsNull()) {
-                continue;
-            }
-            const int id = edges.FindIndex(edge);
-            ++used[static_cast<std::size_t>(id)];
-            const bool point_only = BRep_Tool::Degenerated(edge);
-            const TopoDS_Vertex first = TopExp::FirstVertex(edge);
-            const TopoDS_Vertex last = TopExp::LastVertex(edge);
-            for (int i = 1; i <= polygon->NbNodes(); ++i) {
-                const int n = polygon->Node(i);
-                const bool at_first = point_only || i == 1;
-                std::pair<int, int> key(id, i);
-                Vector3d p = node(n);
-                if (at_first || i == polygon->NbNodes()) {
-                    const TopoDS_Vertex& vertex = at_first ? first : last;
-                    key = {0, vertices.FindIndex(vertex)};
-                    point_at(key, vector_of(BRep_Tool::Pnt(vertex)), number);
-                }
-                point[static_cast<std::size_t>(n)] = point_at(key, p, number);
-            }
-        }
-        std::vector<Vector3d> at_mm;
-        for (int n = 1; n <= triangles->NbNodes(); ++n) {
-            at_mm.push_back(node(n));
-            if (triangles->HasUVNodes()) {
-                const gp_Pnt2d uv = triangles->UVNode(n);
-                face.uv.emplace_back(uv.X(), uv.Y());
-            }
-            if (point[static_cast<std::size_t>(n)] < 0) {
-                point[static_cast<std::size_t>(n)] =
-                    static_cast<std::int32_t>(mesh.soup.points_mm.size());
-                mesh.soup.points_mm.push_back(node(n));
-            }
-        }
-        face.known = NearestPoints(at_mm);
-        const bool turned = face.reversed != moved.IsNegative();
-        for (int t = 1; t <= triangles->NbTriangles(); ++t) {
-            int a = 0, b = 0, c = 0;
-            triangles->Triangle(t).Get(a, b, c);
-            if (turned) {
-                std::swap(b, c);
-            }
-            const std::array<std::int32_t, 3> corners = {point[static_cast<std::size_t>(a)],
-                                                         point[static_cast<std::size_t>(b)],
-                                                         point[static_cast<std::size_t>(c)]};
-            if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) {
-                mesh.soup.faces.push_back(corners);
-                mesh.face.push_back(number);
-            }
-        }
+        shared.add(triangles, face.face, number);
+        face.uv = triangles.uv();
+        face.known = NearestPoints(triangles.nodes_mm());
     }
-    for (int i = 1; i <= edges.Extent(); ++i) {
-        mesh.open_edges += used[static_cast<std::size_t>(i)] == 1 &&
-                                   !BRep_Tool::Degenerated(TopoDS::Edge(edges(i)))
-                               ? 1
-                               : 0;
-    }
-    return mesh;
+    return std::move(shared).mesh();
 }
 
 std::vector<CadFace> OcctFaces::describe(const FaceColours& colours) const {
@@ -455,22 +359,8 @@ std::optional<Jet> OcctFaces::jet(std::int32_t face, const Vector3d& p, double r
     if (reach_mm > 0.0) {
         const double most_turn_mm = kJetMostTurn_rad / std::max(bent.norm(), kFlat_per_mm);
         const double reach = std::min(kJetReach * reach_mm, most_turn_mm);
-        std::vector<Vector3d> around;
-        for (int ring = 1; ring <= kJetRings; ++ring) {
-            for (int spoke = 0; spoke < kJetSpokes; ++spoke) {
-                const double angle = 2.0 * kPi * (spoke + 0.5 * (ring % 2)) / kJetSpokes;
-                const double far = reach * ring / kJetRings;
-                const Vector2d at = of.clamped(
-                    *uv + to_uv * Vector2d(far * std::cos(angle), far * std::sin(angle)));
-                const Vector3d place = vector_of(of.surface.Value(at.x(), at.y()));
-                // Where the surface ends beside the point, places fall onto it.
-                if ((place - s.at).norm() > kJetNearest * reach) {
-                    around.push_back(place);
-                }
-            }
-        }
-        const std::optional<Jet> fit = fit_jet(s.at, normal, around);
-        if (fit) {
+        if (const std::optional<Jet> fit =
+                fit_jet(s.at, normal, of.places_around(*uv, s.at, to_uv, reach))) {
             jet.height = fit->height;
             jet.terms = fit->terms;
             return jet;

@@ -11,19 +11,10 @@
 #include <TopoDS_Shape.hxx>
 
 #include "mesh/brep/even_part.h"
+#include "mesh/brep/occt/occt_mesh.h"
 #include "mesh/brep/occt/occt_read.h"
 
 namespace meshwind {
-
-/// Triangles between points of the exact edges and faces, as narrow as the faces allow.
-struct OcctMesh {
-    TriangleSoup soup;  ///< points that faces share are there once
-    std::vector<std::int32_t> face;
-    double off_face_mm = 0.0;  ///< largest distance of a shared point from one of its faces
-    std::int32_t off_face = -1;
-    int open_edges = 0;
-    std::vector<std::int32_t> failed_faces;
-};
 
 /// Not thread-safe: Open CASCADE keeps what it evaluated last.
 class OcctFaces : public ExactFaces {
