@@ -138,7 +138,7 @@ struct Bracket {
 };
 
 // What is shot at what, and how.
-struct Aim {
+struct ConnectTask {
     const Surface& surface;
     const SurfacePoint& from;
     Place start;  // of `from`
@@ -148,55 +148,55 @@ struct Aim {
     const ConnectOptions& options;
 };
 
-TraceResult trace_to(const Aim& aim, double angle_rad, double length_mm) {
-    TraceOptions options = aim.options.trace;
+TraceResult trace_to(const ConnectTask& task, double angle_rad, double length_mm) {
+    TraceOptions options = task.options.trace;
     options.max_length_mm = std::min(length_mm, options.max_length_mm);
-    const Vector3d direction =
-        std::cos(angle_rad) * aim.ahead + std::sin(angle_rad) * aim.start.normal.cross(aim.ahead);
-    return trace(aim.surface, aim.from, direction, {aim.slip_ratio, aim.slip_ratio}, options);
+    const Vector3d direction = std::cos(angle_rad) * task.ahead +
+                               std::sin(angle_rad) * task.start.normal.cross(task.ahead);
+    return trace(task.surface, task.from, direction, {task.slip_ratio, task.slip_ratio}, options);
 }
 
 // The target seen from the end of a path, in the tangent plane there.
-void measure_miss(const Aim& aim, Shot& shot) {
+void measure_miss(const ConnectTask& task, Shot& shot) {
     const PathPoint& end = shot.path.back();
-    const Vector3d miss = aim.target.position_mm - end.position_mm;
+    const Vector3d miss = task.target.position_mm - end.position_mm;
     shot.along_mm = miss.dot(end.tangent);
     shot.across_mm = miss.dot(end.normal.cross(end.tangent));
-    shot.on_sheet = end.normal.dot(aim.target.normal) >= 0.0 &&
-                    std::abs(miss.dot(end.normal)) < kHeightEdges * aim.surface.mean_edge_mm;
+    shot.on_sheet = end.normal.dot(task.target.normal) >= 0.0 &&
+                    std::abs(miss.dot(end.normal)) < kHeightEdges * task.surface.mean_edge_mm;
 }
 
-void follow_neighbours(const Aim& aim, Shot& shot) {
-    const std::vector<double> field = jacobi_field_mm(aim.surface, shot.path, aim.slip_ratio);
+void follow_neighbours(const ConnectTask& task, Shot& shot) {
+    const std::vector<double> field = jacobi_field_mm(task.surface, shot.path, task.slip_ratio);
     shot.jacobi_mm = field.back();
     for (std::size_t i = 2; i < field.size(); ++i) {
         shot.conjugate_points += (field[i] > 0.0) != (field[i - 1] > 0.0) ? 1 : 0;
     }
 }
 
-Shot shoot(const Aim& aim, double angle_rad, double expected_mm) {
-    const double tolerance_mm = aim.options.tolerance_mm;
+Shot shoot(const ConnectTask& task, double angle_rad, double expected_mm) {
+    const double tolerance_mm = task.options.tolerance_mm;
     const double window =
-        std::max(kWindowShare * expected_mm, kWindowEdges * aim.surface.mean_edge_mm);
-    TraceResult traced = trace_to(aim, angle_rad, expected_mm + window);
+        std::max(kWindowShare * expected_mm, kWindowEdges * task.surface.mean_edge_mm);
+    TraceResult traced = trace_to(task, angle_rad, expected_mm + window);
     const double reach = traced.path.back().s_mm;
     Shot shot;
     shot.angle_rad = angle_rad;
     shot.stop = traced.stop;
     shot.rim = traced.rim;
     double s =
-        std::max(nearest_s_mm(traced.path, aim.target, expected_mm - window, reach), tolerance_mm);
+        std::max(nearest_s_mm(traced.path, task.target, expected_mm - window, reach), tolerance_mm);
     shot.path = std::move(traced.path);
-    measure_miss(aim, shot);
+    measure_miss(task, shot);
     for (int cut = 0; cut < kMaxCuts && s < reach; ++cut) {
-        shot.path = trace_to(aim, angle_rad, s).path;
-        measure_miss(aim, shot);
+        shot.path = trace_to(task, angle_rad, s).path;
+        measure_miss(task, shot);
         if (std::abs(shot.along_mm) <= kCutShare * tolerance_mm) {
             break;
         }
         s = std::clamp(s + shot.along_mm, tolerance_mm, reach);
     }
-    follow_neighbours(aim, shot);
+    follow_neighbours(task, shot);
     return shot;
 }
 
@@ -269,14 +269,14 @@ ConnectResult concluded(Shot best, ConnectStop end, int iterations, const Connec
 }
 
 // From a first shot to the nearest that can be had.
-ConnectResult shoot_nearer(const Aim& aim, Shot best) {
-    const double tolerance_mm = aim.options.tolerance_mm;
+ConnectResult shoot_nearer(const ConnectTask& task, Shot best) {
+    const double tolerance_mm = task.options.tolerance_mm;
     Bracket bracket;
     bracket.take(best);
     Stepping stepping;
     ConnectStop end = ConnectStop::Stalled;
     int iterations = 1;
-    for (; iterations < aim.options.max_iterations; ++iterations) {
+    for (; iterations < task.options.max_iterations; ++iterations) {
         if (hits(best, tolerance_mm)) {
             end = ConnectStop::Reached;
             break;
@@ -285,10 +285,10 @@ ConnectResult shoot_nearer(const Aim& aim, Shot best) {
             end = ConnectStop::Gap;
             break;
         }
-        if (std::abs(best.across_mm) <= tolerance_mm && cut_off(best, aim.options)) {
+        if (std::abs(best.across_mm) <= tolerance_mm && cut_off(best, task.options)) {
             break;
         }
-        Shot shot = shoot(aim, next_angle(best, bracket, stepping), best.length_mm());
+        Shot shot = shoot(task, next_angle(best, bracket, stepping), best.length_mm());
         bracket.take(shot);
         const double share = shot.miss_mm() / best.miss_mm();
         stepping.bisect = share >= kGoodStep;
@@ -300,7 +300,7 @@ ConnectResult shoot_nearer(const Aim& aim, Shot best) {
             break;
         }
     }
-    return concluded(std::move(best), end, iterations, aim.options);
+    return concluded(std::move(best), end, iterations, task.options);
 }
 
 // From `from` to where the tracer sees the target.
@@ -316,8 +316,8 @@ ConnectResult connect_to(const Surface& surface, const SurfacePoint& from, const
     }
     const Vector3d& n = start.normal;
     const Vector3d ahead = (guess.direction - n * n.dot(guess.direction)).normalized();
-    const Aim aim{surface, from, start, target, ahead, slip_ratio, options};
-    return shoot_nearer(aim, shoot(aim, 0.0, guess.length_mm));
+    const ConnectTask task{surface, from, start, target, ahead, slip_ratio, options};
+    return shoot_nearer(task, shoot(task, 0.0, guess.length_mm));
 }
 
 // Along the first chord that is long enough to have a direction.

@@ -236,7 +236,7 @@ SteeredLeg steered(const Leg& leg, const Wish& wish, double offset_rad) {
 }
 
 // No gaps come first, then the least fibre; where there are gaps, the least of them.
-bool is_better(const SteeredLeg& one, const SteeredLeg& other, double width_mm) {
+bool closes_better(const SteeredLeg& one, const SteeredLeg& other, double width_mm) {
     const bool closed = one.leg.widest_mm <= width_mm;
     if (closed != (other.leg.widest_mm <= width_mm)) {
         return closed;
@@ -264,7 +264,7 @@ SteeredLeg best_steering(const Leg& leg) {
                     continue;
                 }
                 SteeredLeg offered = steered(leg, wish, *offset);
-                if (best.leg.even == 0.0 || is_better(offered, best, leg.width_mm)) {
+                if (best.leg.even == 0.0 || closes_better(offered, best, leg.width_mm)) {
                     best = std::move(offered);
                 }
             }

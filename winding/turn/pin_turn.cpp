@@ -250,7 +250,7 @@ struct PinHold {
     double slope;
 };
 
-FreeStart start_at(const PinnedExtension& pins, const PinHold& hold) {
+FreeStart free_start_at(const PinnedExtension& pins, const PinHold& hold) {
     const Rim& rim = pins.rim;
     const PinTurnShape& shape = pins.shape;
     const PinnedExtension::Frame f = pins.frame(hold.pin_mm);
@@ -304,8 +304,9 @@ void lay_behind_pins(const PinnedExtension& pins, double behind, PinFibre& fibre
         fibre.starts.back().from_mm += share * most * fibre.path.back().tangent;
         return;
     }
-    fibre.starts.back() = start_at(pins, {pins.last_mm(), swing.direction_rad(behind), 0.0,
-                                          tangent_height_mm(radius_mm, behind), std::tan(turned)});
+    fibre.starts.back() =
+        free_start_at(pins, {pins.last_mm(), swing.direction_rad(behind), 0.0,
+                             tangent_height_mm(radius_mm, behind), std::tan(turned)});
 }
 
 // About the last pin. The eye sinks, but never rises again: the rest of the bend is laid at once.
@@ -324,8 +325,8 @@ double lay_about_last_pin(const PinnedExtension& pins, PinFibre& fibre) {
         const double sinks = -std::cos(angle) * std::tan(turned);
         if (sinks < slope) {
             slope = sinks;
-            lowest = start_at(pins, {pins.last_mm(), out_rad, angle,
-                                     radius_mm * (std::cos(turned) - 1.0), slope});
+            lowest = free_start_at(pins, {pins.last_mm(), out_rad, angle,
+                                          radius_mm * (std::cos(turned) - 1.0), slope});
         }
         fibre.starts.back() = lowest;
     }
