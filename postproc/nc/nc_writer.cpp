@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -60,159 +62,281 @@ void check_feed(const NcFlavour& flavour, const Machine& machine) {
     }
 }
 
-class Writer {
-public:
-    Writer(const NcFlavour& flavour, const Machine& machine, const BlockList& list,
-           const ProgramHeader& header)
-        : flavour_(flavour),
-          machine_(machine),
-          list_(list),
-          header_(header),
-          time_s_(nc_run_time_s(flavour, machine, list)) {
-        for (const BlockAxis& axis : list.axes) {
-            decimals_.push_back(decimals_of(axis.resolution_nano));
-        }
-        // X Y Z A B C U V W is what an operator expects, whatever the order of the chains.
-        for (const char letter : flavour.letters) {
-            for (std::size_t a = 0; a < list.axes.size(); ++a) {
-                if (list.axes[a].letter == letter) {
-                    order_.push_back(a);
-                }
+// What is written.
+struct NcSource {
+    const NcFlavour& flavour;
+    const Machine& machine;
+    const BlockList& list;
+    const ProgramHeader& header;
+    double time_s = 0.0;               // of a run
+    std::vector<int> decimals{};       // of the axes
+    std::vector<std::size_t> order{};  // in which a line has them
+
+    [[nodiscard]] bool inverse_time() const {
+        return machine.controller.feed == FeedMode::InverseTime;
+    }
+    [[nodiscard]] std::int32_t number() const {
+        return machine.controller.program_number.value_or(1);
+    }
+};
+
+NcSource source_of(const NcFlavour& flavour, const Machine& machine, const BlockList& list,
+                   const ProgramHeader& header) {
+    NcSource source{flavour, machine, list, header, nc_run_time_s(flavour, machine, list)};
+    for (const BlockAxis& axis : list.axes) {
+        source.decimals.push_back(decimals_of(axis.resolution_nano));
+    }
+    // X Y Z A B C U V W is what an operator expects, whatever the order of the chains.
+    for (const char letter : flavour.letters) {
+        for (std::size_t a = 0; a < list.axes.size(); ++a) {
+            if (list.axes[a].letter == letter) {
+                source.order.push_back(a);
             }
         }
-        number_ = machine.controller.program_number.value_or(1);
-        text_.reserve(kTypicalLine * (list.blocks.size() + 40));
+    }
+    return source;
+}
+
+std::string head_text(const NcSource& source) {
+    const NcFlavour& flavour = source.flavour;
+    std::string text = flavour.percent ? "%\n" : "";
+    if (flavour.o_number) {
+        std::string number = std::to_string(source.number());
+        number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
+        std::string title =
+            source.header.mandrel.empty() ? source.machine.name : source.header.mandrel;
+        title.resize(std::min(title.size(), kTitleLength));
+        for (char& c : title) {
+            c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        }
+        text += "O" + number + ' ' + comment_lines(flavour, title);
+    }
+    for (std::string& words :
+         head_comments(flavour, source.machine, source.list, source.header, source.time_s)) {
+        text += comment_lines(flavour, std::move(words));
+    }
+    return text;
+}
+
+// The controller's own lines.
+std::string own_lines(const NcSource& source, const std::vector<std::string>& lines) {
+    const LineValues values =
+        line_values(source.flavour, source.machine, source.list, source.header, source.time_s);
+    std::string text;
+    for (const std::string& line : filled_lines(lines, values, source.machine.name)) {
+        check_own_line(source.flavour, source.machine, line);
+        text += line + '\n';
+    }
+    return text;
+}
+
+std::size_t digits_of(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }));
+}
+
+// \param nano of an axis
+void append_position(const NcSource& source, std::int64_t nano, std::size_t axis, std::size_t block,
+                     std::string& to) {
+    const NcFlavour& flavour = source.flavour;
+    const std::size_t begin = to.size();
+    append_nano(to, nano, source.decimals[axis]);
+    if (flavour.needs_point && source.decimals[axis] == 0) {
+        to += '.';
+    } else if (flavour.most_digits > 0) {
+        if (digits_of(std::string_view(to).substr(begin)) > flavour.most_digits) {
+            throw InputError("dialect.digits", "block " + std::to_string(block),
+                             std::string("axis ") + source.list.axes[axis].letter + ": \"" +
+                                 to.substr(begin) + "\" has more than the " +
+                                 std::to_string(flavour.most_digits) + " digits that " +
+                                 std::string(flavour.controller) +
+                                 " reads; give the axis a coarser resolution");
+        }
+    }
+}
+
+// Moves to the start.
+struct StartWords {
+    std::string absolute;
+    std::string rest;  // incremental, what the controller could not read in one word
+};
+
+// A start of too many digits is taken in whole units first.
+void append_start(const NcSource& source, std::size_t axis, StartWords& words) {
+    const std::int64_t nano = source.list.row(0)[axis];
+    const std::int64_t whole = nano / kNanoPerUnit * kNanoPerUnit;
+    const std::string letter = std::string(" ") + source.list.axes[axis].letter;
+    std::string all;
+    append_nano(all, nano, source.decimals[axis]);
+    words.absolute += letter;
+    if (source.flavour.most_digits > 0 && digits_of(all) > source.flavour.most_digits) {
+        append_nano(words.absolute, whole, 0);
+        words.rest += letter;
+        append_position(source, nano - whole, axis, 0, words.rest);
+    } else {
+        append_position(source, nano, axis, 0, words.absolute);
+    }
+}
+
+std::string start_moves(const NcSource& source) {
+    std::string text;
+    for (const AxisType type : {AxisType::Rotary, AxisType::Linear}) {
+        StartWords words;
+        for (const std::size_t a : source.order) {
+            if (source.list.axes[a].type == type) {
+                append_start(source, a, words);
+            }
+        }
+        if (!words.absolute.empty()) {
+            text += std::string(source.flavour.absolute) + "G0" + words.absolute + '\n';
+        }
+        if (!words.rest.empty()) {
+            text += "G91 G0" + words.rest + '\n';
+        }
+    }
+    return text;
+}
+
+// To the start, and the stop there.
+std::string approach_text(const NcSource& source) {
+    const NcFlavour& flavour = source.flavour;
+    const ProgramHeader& header = source.header;
+    const bool goes_on = !header.goes_on_from.empty();
+    std::string text = comment_lines(
+        flavour, "approach: rotary axes turn first, then the linear axes move together;");
+    text += comment_lines(flavour,
+                          goes_on ? "the eye stands nearly there, the fibre stays on"
+                                  : "bring the eye clear of the mandrel by hand before the start");
+    text += start_moves(source);
+    text += comment_lines(
+        flavour,
+        std::string(flavour.message) +
+            (header.in_the_air ? std::string("no fibre for this run in the air, start again")
+             : goes_on         ? std::string("the fibre is on already, start again")
+                               : std::string(flavour.tie_on)));
+    text += "M0\n";
+    return text;
+}
+
+// As many significant digits as the controller reads when it counts leading zeros.
+void append_short(const NcSource& source, double value, std::size_t block, std::string& text) {
+    const auto most_digits = static_cast<int>(source.flavour.most_digits);
+    const int whole = std::max(static_cast<int>(std::floor(std::log10(value))) + 1, 1);
+    const int leading = whole - static_cast<int>(std::floor(std::log10(value))) - 1;
+    const int decimals = std::min(kFeedDigits + leading - whole, most_digits - whole);
+    if (whole >= most_digits || whole + decimals - leading < kLeastFeedDigits) {
+        throw InputError("dialect.duration", "block " + std::to_string(block),
+                         "takes " + fixed(source.list.blocks[block].duration_s, 6) +
+                             " s, which F cannot say in the digits that " +
+                             std::string(source.flavour.controller) + " reads");
+    }
+    append_fixed(text, value, std::max(decimals, 0));
+    if (decimals > 0) {
+        text.erase(text.find_last_not_of('0') + 1);
+        text.erase(text.find_last_not_of('.') + 1);
+    }
+}
+
+void append_feed(const NcSource& source, std::size_t block, std::string& text) {
+    const BlockList& list = source.list;
+    const double duration_s = list.blocks[block].duration_s;
+    if (!(duration_s > 0.0)) {
+        throw InputError("dialect.duration", "block " + std::to_string(block),
+                         "takes no time; give every block a duration above 0");
+    }
+    const double length =
+        source.inverse_time()
+            ? 1.0
+            : feed_length(source.flavour.feed_rule,
+                          move_lengths(list.axes, list.row(block - 1), list.row(block)));
+    const double value = kSecondsPerMinute * length / duration_s;
+    text += " F";
+    const std::size_t begin = text.size();
+    if (source.flavour.most_digits > 0) {
+        append_short(source, value, block, text);
+    } else {
+        append_significant(text, value);
+    }
+    if (source.flavour.needs_point && text.find('.', begin) == std::string::npos) {
+        text += '.';
+    }
+}
+
+// Blanks may be left out of the line that begins at `begin`.
+void fit_line(const NcFlavour& flavour, std::size_t begin, std::size_t block, std::string& text) {
+    const auto first = text.begin() + static_cast<std::ptrdiff_t>(begin);
+    text.erase(std::remove(first, text.end(), ' '), text.end());
+    if (text.size() - begin > flavour.line_length) {
+        throw InputError("dialect.long_line", "block " + std::to_string(block),
+                         "its line has " + std::to_string(text.size() - begin) + " characters, " +
+                             std::string(flavour.controller) + " reads at most " +
+                             std::to_string(flavour.line_length) +
+                             "; give the axes coarser resolutions");
+    }
+}
+
+void append_block(const NcSource& source, std::size_t block, std::string& text) {
+    const std::span<const std::int64_t> now = source.list.row(block);
+    const std::span<const std::int64_t> before = source.list.row(block - 1);
+    const std::size_t begin = text.size();
+    if (std::equal(now.begin(), now.end(), before.begin())) {
+        throw InputError("dialect.duration", "block " + std::to_string(block),
+                         "moves no axis, so that no feed tells its time; join it with the "
+                         "next one");
+    }
+    text += "G1";
+    for (const std::size_t a : source.order) {
+        if (now[a] != before[a]) {
+            text += ' ';
+            text += source.list.axes[a].letter;
+            append_position(source, now[a] - before[a], a, block, text);
+        }
+    }
+    append_feed(source, block, text);
+    if (text.size() - begin > source.flavour.line_length) {
+        fit_line(source.flavour, begin, block, text);
+    }
+    text += '\n';
+}
+
+// The number of the first one, clear of the program's own.
+std::size_t first_subprogram(const NcSource& source, const ProgramLayout& layout) {
+    const auto own = static_cast<std::size_t>(source.number());
+    const bool taken = source.flavour.o_number && own >= kFirstSubprogram &&
+                       own < kFirstSubprogram + layout.subprograms.size();
+    return taken ? own + 1 : kFirstSubprogram;
+}
+
+// Writes the blocks as they are laid out, with a mark where a course begins.
+class LayoutWriter {
+public:
+    LayoutWriter(const NcSource& source, const ProgramLayout& layout, std::string& text)
+        : source_(source),
+          layout_(layout),
+          first_subprogram_(first_subprogram(source, layout)),
+          written_(layout.subprograms.size(), false),
+          text_(text) {}
+
+    void main() {
+        if (layout_.main.empty()) {
+            const ProgramPart all{.first = 1, .last = source_.list.blocks.size() - 1};
+            parts({&all, 1});
+        } else {
+            parts(layout_.main);
+        }
     }
 
-    std::string program(const ProgramLayout& layout) && {
-        first_subprogram_ = kFirstSubprogram;
-        const auto own = static_cast<std::size_t>(number_);
-        if (flavour_.o_number && own >= kFirstSubprogram &&
-            own < kFirstSubprogram + layout.subprograms.size()) {
-            first_subprogram_ = own + 1;
+    void subprograms() {
+        marks_ = false;
+        for (std::size_t s = 0; s < layout_.subprograms.size(); ++s) {
+            text_ += "O" + std::to_string(first_subprogram_ + s) + '\n';
+            parts(layout_.subprograms[s]);
+            text_ += "M99\n";
         }
-        head();
-        text_ += flavour_.first_modes;
-        own_lines(machine_.controller.header);
-        comment("approach: rotary axes turn first, then the linear axes move together;");
-        const bool goes_on = !header_.goes_on_from.empty();
-        comment(goes_on ? "the eye stands nearly there, the fibre stays on"
-                        : "bring the eye clear of the mandrel by hand before the start");
-        start_moves();
-        comment(std::string(flavour_.message) +
-                (header_.in_the_air ? std::string("no fibre for this run in the air, start again")
-                 : goes_on          ? std::string("the fibre is on already, start again")
-                                    : std::string(flavour_.tie_on)));
-        text_ += "M0\n";
-        text_ += flavour_.winding_modes;
-        text_ += !flavour_.has_feed_modes ? "" : inverse() ? "G93\n" : "G94\n";
-        std::vector<ProgramPart> main = layout.main;
-        if (main.empty()) {
-            main.push_back({.first = 1, .last = list_.blocks.size() - 1});
-        }
-        layout_ = &layout;
-        written_.assign(layout.subprograms.size(), false);
-        parts(main);
-        own_lines(machine_.controller.footer);
-        text_ += flavour_.end;
-        if (!flavour_.end_comment.empty()) {
-            comment(std::string(flavour_.end_comment));
-        }
-        if (flavour_.repeats == NcRepeats::Subprograms) {
-            subprograms(layout);
-        }
-        text_ += flavour_.percent ? "%\n" : "";
-        return std::move(text_);
     }
 
 private:
-    [[nodiscard]] bool inverse() const { return machine_.controller.feed == FeedMode::InverseTime; }
-
-    void head() {
-        text_ += flavour_.percent ? "%\n" : "";
-        if (flavour_.o_number) {
-            std::string number = std::to_string(number_);
-            number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
-            std::string title = header_.mandrel.empty() ? machine_.name : header_.mandrel;
-            title.resize(std::min(title.size(), kTitleLength));
-            for (char& c : title) {
-                c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-            }
-            text_ += "O" + number + ' ' + comment_lines(flavour_, title);
-        }
-        for (std::string& words : head_comments(flavour_, machine_, list_, header_, time_s_)) {
-            comment(std::move(words));
-        }
-    }
-
-    void comment(std::string words) { text_ += comment_lines(flavour_, std::move(words)); }
-
-    void own_lines(const std::vector<std::string>& lines) {
-        const LineValues values = line_values(flavour_, machine_, list_, header_, time_s_);
-        for (const std::string& line : filled_lines(lines, values, machine_.name)) {
-            check_own_line(flavour_, machine_, line);
-            text_ += line + '\n';
-        }
-    }
-
-    void start_moves() {
-        for (const AxisType type : {AxisType::Rotary, AxisType::Linear}) {
-            std::string words;
-            std::string rest;
-            for (const std::size_t a : order_) {
-                if (list_.axes[a].type == type) {
-                    start(a, words, rest);
-                }
-            }
-            if (!words.empty()) {
-                text_ += std::string(flavour_.absolute) + "G0" + words + '\n';
-            }
-            if (!rest.empty()) {
-                text_ += "G91 G0" + rest + '\n';
-            }
-        }
-    }
-
-    // A start of too many digits is taken in whole units first.
-    void start(std::size_t axis, std::string& words, std::string& rest) {
-        const std::int64_t nano = list_.row(0)[axis];
-        const std::int64_t whole = nano / kNanoPerUnit * kNanoPerUnit;
-        const std::string letter = std::string(" ") + list_.axes[axis].letter;
-        std::string all;
-        append_nano(all, nano, decimals_[axis]);
-        words += letter;
-        if (flavour_.most_digits > 0 && digits_of(all) > flavour_.most_digits) {
-            append_nano(words, whole, 0);
-            rest += letter;
-            append_position(rest, nano - whole, axis, 0);
-        } else {
-            append_position(words, nano, axis, 0);
-        }
-    }
-
-    static std::size_t digits_of(std::string_view text) {
-        return static_cast<std::size_t>(
-            std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }));
-    }
-
-    void append_position(std::string& to, std::int64_t nano, std::size_t axis, std::size_t block) {
-        const std::size_t begin = to.size();
-        append_nano(to, nano, decimals_[axis]);
-        if (flavour_.needs_point && decimals_[axis] == 0) {
-            to += '.';
-        } else if (flavour_.most_digits > 0) {
-            if (digits_of(std::string_view(to).substr(begin)) > flavour_.most_digits) {
-                throw InputError("dialect.digits", "block " + std::to_string(block),
-                                 std::string("axis ") + list_.axes[axis].letter + ": \"" +
-                                     to.substr(begin) + "\" has more than the " +
-                                     std::to_string(flavour_.most_digits) + " digits that " +
-                                     std::string(flavour_.controller) +
-                                     " reads; give the axis a coarser resolution");
-            }
-        }
-    }
-
-    void parts(const std::vector<ProgramPart>& parts) {
+    void parts(std::span<const ProgramPart> parts) {
         for (const ProgramPart& part : parts) {
             if (part.kind == ProgramPart::Kind::Call) {
                 mark(part.first);
@@ -221,7 +345,7 @@ private:
             }
             for (std::size_t i = part.first; i <= part.last; ++i) {
                 mark(i);
-                block(i);
+                append_block(source_, i, text_);
             }
         }
     }
@@ -229,7 +353,7 @@ private:
     void call(const ProgramPart& part) {
         const std::size_t s = part.subprogram;
         std::int64_t times = part.times;
-        if (flavour_.repeats == NcRepeats::Subprograms) {
+        if (source_.flavour.repeats == NcRepeats::Subprograms) {
             text_ += "M98 P" + std::to_string(first_subprogram_ + s);
             text_ += times > 1 ? " L" + std::to_string(times) + '\n' : "\n";
             return;
@@ -240,7 +364,7 @@ private:
             written_[s] = true;
             text_ += label + ":\n";
             const bool marks = std::exchange(marks_, false);
-            this->parts(layout_->subprograms[s]);
+            parts(layout_.subprograms[s]);
             marks_ = marks;
             text_ += label + "_END:\n";
             --times;
@@ -250,114 +374,19 @@ private:
         }
     }
 
-    void subprograms(const ProgramLayout& layout) {
-        marks_ = false;
-        for (std::size_t s = 0; s < layout.subprograms.size(); ++s) {
-            text_ += "O" + std::to_string(first_subprogram_ + s) + '\n';
-            parts(layout.subprograms[s]);
-            text_ += "M99\n";
-        }
-    }
-
     void mark(std::size_t block) {
-        if (marks_ && list_.blocks[block].piece != piece_) {
-            piece_ = list_.blocks[block].piece;
-            comment("course " + std::to_string(piece_));
+        const std::int32_t piece = source_.list.blocks[block].piece;
+        if (marks_ && piece != piece_) {
+            piece_ = piece;
+            text_ += comment_lines(source_.flavour, "course " + std::to_string(piece_));
         }
     }
 
-    void block(std::size_t i) {
-        const std::span<const std::int64_t> now = list_.row(i);
-        const std::span<const std::int64_t> before = list_.row(i - 1);
-        const std::size_t begin = text_.size();
-        if (std::equal(now.begin(), now.end(), before.begin())) {
-            throw InputError("dialect.duration", "block " + std::to_string(i),
-                             "moves no axis, so that no feed tells its time; join it with the "
-                             "next one");
-        }
-        text_ += "G1";
-        for (const std::size_t a : order_) {
-            if (now[a] != before[a]) {
-                text_ += ' ';
-                text_ += list_.axes[a].letter;
-                append_position(text_, now[a] - before[a], a, i);
-            }
-        }
-        feed(i);
-        if (text_.size() - begin > flavour_.line_length) {
-            fit_line(begin, i);
-        }
-        text_ += '\n';
-    }
-
-    // Blanks may be left out.
-    void fit_line(std::size_t begin, std::size_t i) {
-        const auto first = text_.begin() + static_cast<std::ptrdiff_t>(begin);
-        text_.erase(std::remove(first, text_.end(), ' '), text_.end());
-        if (text_.size() - begin > flavour_.line_length) {
-            throw InputError("dialect.long_line", "block " + std::to_string(i),
-                             "its line has " + std::to_string(text_.size() - begin) +
-                                 " characters, " + std::string(flavour_.controller) +
-                                 " reads at most " + std::to_string(flavour_.line_length) +
-                                 "; give the axes coarser resolutions");
-        }
-    }
-
-    void feed(std::size_t i) {
-        const double duration_s = list_.blocks[i].duration_s;
-        if (!(duration_s > 0.0)) {
-            throw InputError("dialect.duration", "block " + std::to_string(i),
-                             "takes no time; give every block a duration above 0");
-        }
-        const double length =
-            inverse() ? 1.0
-                      : feed_length(flavour_.feed_rule,
-                                    move_lengths(list_.axes, list_.row(i - 1), list_.row(i)));
-        const double value = kSecondsPerMinute * length / duration_s;
-        text_ += " F";
-        const std::size_t begin = text_.size();
-        if (flavour_.most_digits > 0) {
-            append_short(value, i);
-        } else {
-            append_significant(text_, value);
-        }
-        if (flavour_.needs_point && text_.find('.', begin) == std::string::npos) {
-            text_ += '.';
-        }
-    }
-
-    // As many significant digits as the controller reads when it counts leading zeros.
-    void append_short(double value, std::size_t i) {
-        const int whole = std::max(static_cast<int>(std::floor(std::log10(value))) + 1, 1);
-        const int leading = whole - static_cast<int>(std::floor(std::log10(value))) - 1;
-        const int decimals =
-            std::min(kFeedDigits + leading - whole, static_cast<int>(flavour_.most_digits) - whole);
-        if (whole >= static_cast<int>(flavour_.most_digits) ||
-            whole + decimals - leading < kLeastFeedDigits) {
-            throw InputError("dialect.duration", "block " + std::to_string(i),
-                             "takes " + fixed(list_.blocks[i].duration_s, 6) +
-                                 " s, which F cannot say in the digits that " +
-                                 std::string(flavour_.controller) + " reads");
-        }
-        append_fixed(text_, value, std::max(decimals, 0));
-        if (decimals > 0) {
-            text_.erase(text_.find_last_not_of('0') + 1);
-            text_.erase(text_.find_last_not_of('.') + 1);
-        }
-    }
-
-    const NcFlavour& flavour_;
-    const Machine& machine_;
-    const BlockList& list_;
-    const ProgramHeader& header_;
-    double time_s_;
-    const ProgramLayout* layout_ = nullptr;
-    std::int32_t number_ = 1;
-    std::size_t first_subprogram_ = kFirstSubprogram;
+    const NcSource& source_;
+    const ProgramLayout& layout_;
+    std::size_t first_subprogram_;
     std::vector<bool> written_;  // sections that stand in their place already
-    std::vector<int> decimals_;
-    std::vector<std::size_t> order_;
-    std::string text_;
+    std::string& text_;
     std::int32_t piece_ = -1;  // of the last course mark
     bool marks_ = true;
 };
@@ -369,7 +398,27 @@ std::string write_nc(const NcFlavour& flavour, const Machine& machine, const Blo
     assert(!list.blocks.empty() && list.axes.size() == machine.axis_count());
     check_letters(flavour, machine, list);
     check_feed(flavour, machine);
-    return Writer(flavour, machine, list, header).program(layout);
+    const NcSource source = source_of(flavour, machine, list, header);
+    std::string text;
+    text.reserve(kTypicalLine * (list.blocks.size() + 40));
+    text += head_text(source);
+    text += flavour.first_modes;
+    text += own_lines(source, machine.controller.header);
+    text += approach_text(source);
+    text += flavour.winding_modes;
+    text += !flavour.has_feed_modes ? "" : source.inverse_time() ? "G93\n" : "G94\n";
+    LayoutWriter blocks(source, layout, text);
+    blocks.main();
+    text += own_lines(source, machine.controller.footer);
+    text += flavour.end;
+    if (!flavour.end_comment.empty()) {
+        text += comment_lines(flavour, std::string(flavour.end_comment));
+    }
+    if (flavour.repeats == NcRepeats::Subprograms) {
+        blocks.subprograms();
+    }
+    text += flavour.percent ? "%\n" : "";
+    return text;
 }
 
 }  // namespace meshwind
