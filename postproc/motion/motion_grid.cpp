@@ -3,6 +3,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/units.h"
@@ -63,279 +66,317 @@ struct Column {
     std::vector<double> joints;  // kStates x axes
 };
 
-class Grid {
-public:
-    explicit Grid(const MotionKnots& knots) : knots_(knots), axes_(knots.axis_count()) {
-        for (std::size_t a = 0; a < axes_; ++a) {
-            const Axis& axis = knots.axis(a);
-            wraps_.push_back(axis.type == AxisType::Rotary);
-            turns_or_moves_eye_.push_back(knots.moves_eye(a));
-            velocity_.push_back(axis.velocity);
-            acceleration_.push_back(axis.acceleration);
-        }
-    }
+// Of three neighbouring knots, the middle one being looked at.
+struct Columns {
+    Column before;
+    Column now;
+    Column after;
+};
 
-    // Empty where no way leads through.
-    std::vector<KnotChoice> choose() {
-        const std::size_t n = knots_.size();
-        std::vector<std::vector<std::uint16_t>> from(n);
-        Column before;
-        Column now;
-        Column after;
-        fill(0, now, now);
-        fill(1, now, after);
-        std::vector<double> cost(kStates, kInfinity);
-        for (std::size_t s = 0; s < kStates; ++s) {
-            cost[s] = clear(0, s, now) ? 0.0 : kInfinity;
-        }
-        for (std::size_t k = 1; k < n; ++k) {
-            std::swap(before, now);
-            std::swap(now, after);
-            if (k + 1 < n) {
-                fill(k + 1, now, after);
-            }
-            const std::vector<double> next = advance(k, before, now, after, cost, from[k]);
-            const double least = *std::min_element(next.begin(), next.end());
-            if (least == kInfinity) {
-                return {};
-            }
-            for (std::size_t s = 0; s < kStates; ++s) {
-                cost[s] = s == kGiven || next[s] <= least + kBeam_s ? next[s] : kInfinity;
-            }
-        }
-        return trace_back(cost, from);
-    }
+// The axes, as the programme asks for them.
+struct GridAxes {
+    std::size_t count = 0;
+    std::vector<bool> wraps{};
+    std::vector<bool> turns_or_moves_eye{};  // not the wrist, whose solution may change
+    std::vector<double> velocity{};
+    std::vector<double> acceleration{};
+};
 
-private:
-    // The times at which the states of a knot are reached at best, and from which states.
-    std::vector<double> advance(std::size_t k, const Column& before, const Column& now,
-                                const Column& after, const std::vector<double>& cost,
-                                std::vector<std::uint16_t>& from) const {
-        from.assign(kStates, 0);
-        std::vector<double> next(kStates, kInfinity);
-        const bool last = k + 1 == knots_.size();
-        const auto stay = [&](std::size_t s) {
-            return last ? 0.0 : stay_s(k, s, before, now, after);
-        };
-        const double latest_s = latest(k, before, now, cost, stay);
-        const std::size_t first = knots_[k].kept ? kGiven : 0;
-        parallel_for(kStates - first, kChunk, [&](std::size_t begin, std::size_t end) {
-            std::vector<Best> steps;
-            for (std::size_t s = first + begin; s < first + end; ++s) {
-                if (!in_reach(s, cost) || !clear(k, s, now)) {
-                    continue;
-                }
-                const double stay_here_s = stay(s);
-                const Best best =
-                    best_before(k, s, before, now, cost,
-                                s == kGiven ? kInfinity : latest_s - stay_here_s, steps);
-                if (best.cost < kInfinity) {
-                    from[s] = static_cast<std::uint16_t>(best.state);
-                    next[s] = best.cost + stay_here_s;
-                }
-            }
-        });
-        return next;
+GridAxes grid_axes(const MotionKnots& knots) {
+    GridAxes axes{.count = knots.axis_count()};
+    for (std::size_t a = 0; a < axes.count; ++a) {
+        const Axis& axis = knots.axis(a);
+        axes.wraps.push_back(axis.type == AxisType::Rotary);
+        axes.turns_or_moves_eye.push_back(knots.moves_eye(a));
+        axes.velocity.push_back(axis.velocity);
+        axes.acceleration.push_back(axis.acceleration);
     }
+    return axes;
+}
 
-    // States that are reached later than this are given up: those that stay as they are, the given
-    // one and the first of all, are reached by then.
-    template <typename Stay>
-    [[nodiscard]] double latest(std::size_t k, const Column& before, const Column& now,
-                                const std::vector<double>& cost, const Stay& stay) const {
-        const auto arrival = [&](std::size_t s) {
-            return cost[s] + step_cost(k, s, s, before, now) + stay(s);
-        };
-        double least = cost[kGiven] < kInfinity ? arrival(kGiven) : kInfinity;
-        const auto first =
-            static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
-        if (first != kGiven && !knots_[k].kept && arrival(first) < least && clear(k, first, now) &&
-            passes(k, before.choice[first], now.choice[first])) {
-            least = arrival(first);
-        }
-        return least + kBeam_s + kRounding_s;
+KnotChoice choice_of(const MotionKnots& knots, std::size_t k, std::size_t s) {
+    if (s == kGiven) {
+        return knots[k].given;
     }
-
-    [[nodiscard]] KnotChoice choice(std::size_t k, std::size_t s) const {
-        if (s == kGiven) {
-            return knots_[k].given;
-        }
-        const double length = knots_.task().fixed_lengths
-                                  ? knots_[k].given.length_mm
-                                  : knots_.least_mm(k) + length_of(s) * kLengthStep_mm;
-        return {
-            knots_.central_rad(k, length, knots_[k].given.turn_rad) + turn_of(s) * kTurnStep_rad,
+    const double length = knots.task().fixed_lengths
+                              ? knots[k].given.length_mm
+                              : knots.least_mm(k) + length_of(s) * kLengthStep_mm;
+    return {knots.central_rad(k, length, knots[k].given.turn_rad) + turn_of(s) * kTurnStep_rad,
             length};
-    }
+}
 
-    [[nodiscard]] bool clear(std::size_t k, std::size_t s, const Column& column) const {
-        const bool twice = knots_.task().fixed_lengths && length_of(s) > 0;
-        return s == kGiven || (!knots_[k].kept && !twice && knots_.clear(k, column.choice[s]));
-    }
+bool is_clear(const MotionKnots& knots, std::size_t k, std::size_t s, const Column& column) {
+    const bool twice = knots.task().fixed_lengths && length_of(s) > 0;
+    return s == kGiven || (!knots[k].kept && !twice && knots.clear(k, column.choice[s]));
+}
 
-    void fill(std::size_t k, const Column& before, Column& column) const {
-        column.joints.resize(kStates * axes_);
-        // What is kept has no other state, nor have its neighbours a use for theirs there.
-        const bool kept = knots_[k].kept && (k == 0 || knots_[k - 1].kept) &&
-                          (k + 1 == knots_.size() || knots_[k + 1].kept);
-        const std::size_t least = kept ? kGiven : 0;
-        parallel_for(kStates - least, kChunk, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t s = least + begin; s < least + end; ++s) {
-                column.choice[s] = choice(k, s);
-                const std::span<double> row(column.joints.data() + s * axes_, axes_);
-                const bool first = before.joints.empty() || k == 0;
-                knots_.joints(
-                    k, column.choice[s],
-                    first ? knots_.start() : std::span(before.joints.data() + s * axes_, axes_),
-                    row);
-            }
-        });
-    }
+void fill(const MotionKnots& knots, std::size_t k, const Column& before, Column& column) {
+    const std::size_t axes = knots.axis_count();
+    column.joints.resize(kStates * axes);
+    // What is kept has no other state, nor have its neighbours a use for theirs there.
+    const bool kept = knots[k].kept && (k == 0 || knots[k - 1].kept) &&
+                      (k + 1 == knots.size() || knots[k + 1].kept);
+    const std::size_t least = kept ? kGiven : 0;
+    parallel_for(kStates - least, kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = least + begin; s < least + end; ++s) {
+            column.choice[s] = choice_of(knots, k, s);
+            const std::span<double> row(column.joints.data() + s * axes, axes);
+            const bool first = before.joints.empty() || k == 0;
+            knots.joints(k, column.choice[s],
+                         first ? knots.start() : std::span(before.joints.data() + s * axes, axes),
+                         row);
+        }
+    });
+}
 
-    [[nodiscard]] double move(const Column& a, std::size_t from, const Column& b, std::size_t to,
-                              std::size_t axis) const {
-        const double d = b.joints[to * axes_ + axis] - a.joints[from * axes_ + axis];
-        // Within half a turn the remainder is the difference itself.
-        return wraps_[axis] && std::abs(d) >= kPi ? std::remainder(d, 2.0 * kPi) : d;
-    }
+// What steps cost to a knot from the one before.
+class StepCosts {
+public:
+    StepCosts(const MotionKnots& knots, const GridAxes& axes, std::size_t k, const Columns& columns)
+        : knots_(knots),
+          axes_(axes),
+          k_(k),
+          before_(columns.before),
+          now_(columns.now),
+          after_(columns.after) {}
+
+    // The time of a step, with what a change of column counts; infinite where lengths change too
+    // fast.
+    [[nodiscard]] double step_s(std::size_t from, std::size_t to) const;
 
     // How much longer the accelerations make a step, were the state to stay as it is.
-    [[nodiscard]] double stay_s(std::size_t k, std::size_t s, const Column& before,
-                                const Column& now, const Column& after) const {
-        const double t1 = knots_.step_s(k - 1);
-        const double t2 = knots_.step_s(k);
-        double worst = 1.0;
-        for (std::size_t a = 0; a < axes_; ++a) {
-            const double v1 = move(before, s, now, s, a) / t1;
-            const double v2 = move(now, s, after, s, a) / t2;
-            worst = std::max({worst, std::abs(v2 - v1) / (0.5 * (t1 + t2) * acceleration_[a])});
-        }
-        return 0.5 * (t1 + t2) * (std::sqrt(worst) - 1.0);
-    }
+    [[nodiscard]] double stay_s(std::size_t s) const;
 
-    struct Best {
-        double cost = kInfinity;
-        std::size_t state = 0;
-        std::size_t order = 0;
-    };
-
-    [[nodiscard]] double step_cost(std::size_t k, std::size_t from, std::size_t to,
-                                   const Column& before, const Column& now) const {
-        const double ds = knots_[k - 1].ahead_mm;
-        const double dl = now.choice[to].length_mm - before.choice[from].length_mm;
-        if (dl < -kShorteningRate * ds - kRateSlack_mm ||
-            dl > kLengtheningRate * ds + kRateSlack_mm) {
-            return kInfinity;
-        }
-        const double t = knots_.step_s(k - 1);
-        double ratio = std::max(1.0, 1.0 + dl / ds);
-        for (std::size_t a = 0; a < axes_; ++a) {
-            if (turns_or_moves_eye_[a]) {
-                ratio =
-                    std::max(ratio, std::abs(move(before, from, now, to, a)) / (t * velocity_[a]));
-            }
-        }
-        if (from != kGiven && to != kGiven) {
-            ratio += kChangeOfTurn * std::abs(turn_of(to) - turn_of(from)) +
-                     kChangeOfLength * std::abs(length_of(to) - length_of(from));
-        } else if (from != to) {
-            ratio += kChangeOfTurn;
-        }
-        return t * ratio;
-    }
+    // The time of a step is no less.
+    [[nodiscard]] double least_s() const { return knots_.step_s(k_ - 1); }
 
     // From a place to the next, whole turns apart.
-    [[nodiscard]] bool passes(std::size_t k, const KnotChoice& from, const KnotChoice& to) const {
-        KnotChoice near = to;
-        near.turn_rad = from.turn_rad + std::remainder(to.turn_rad - from.turn_rad, 2.0 * kPi);
-        return knots_.clear_between(k - 1, from, near);
-    }
+    [[nodiscard]] bool passes(std::size_t from, std::size_t to) const;
 
-    // Whether a step is clear costs much more to know than how long it takes: the cheapest are
-    // asked first, and the first that is clear is the best. None where that would be later than the
-    // latest.
-    [[nodiscard]] Best best_before(std::size_t k, std::size_t s, const Column& before,
-                                   const Column& now, const std::vector<double>& cost,
-                                   double latest, std::vector<Best>& steps) const {
-        steps.clear();
-        for_states_before(s, [&](std::size_t from) {
-            if (cost[from] + knots_.step_s(k - 1) <= latest) {
-                const double c = cost[from] + step_cost(k, from, s, before, now);
-                if (c < kInfinity && c <= latest) {
-                    steps.push_back({c, from, steps.size()});
-                }
-            }
-        });
-        for (auto first = steps.begin(); first != steps.end(); ++first) {
-            // Of equals the one that was thought of first.
-            std::iter_swap(first,
-                           std::min_element(first, steps.end(), [](const Best& a, const Best& b) {
-                               return a.cost < b.cost || (a.cost == b.cost && a.order < b.order);
-                           }));
-            const bool given = first->state == kGiven && s == kGiven;
-            if (given || passes(k, before.choice[first->state], now.choice[s])) {
-                return *first;
-            }
-        }
-        return {};
+    [[nodiscard]] bool is_clear(std::size_t s) const {
+        return meshwind::is_clear(knots_, k_, s, now_);
     }
+    [[nodiscard]] bool kept() const { return knots_[k_].kept; }
 
-    // The states from which a step to this one is thought of.
-    template <typename Visit>
-    static void for_states_before(std::size_t s, const Visit& visit) {
-        if (s == kGiven) {
-            for (std::size_t from = 0; from < kStates; ++from) {
-                visit(from);
-            }
-            return;
-        }
-        visit(kGiven);
-        for (int turn = std::max(-kTurnsToASide, turn_of(s) - 1);
-             turn <= std::min(kTurnsToASide, turn_of(s) + 1); ++turn) {
-            for (int length = std::max(0, length_of(s) - kMostLonger);
-                 length <= std::min(kLengths - 1, length_of(s) + kMostShorter); ++length) {
-                visit(state_of(turn, length));
-            }
-        }
-    }
-
-    [[nodiscard]] static bool in_reach(std::size_t s, const std::vector<double>& cost) {
-        bool any = false;
-        for_states_before(s, [&](std::size_t from) { any = any || cost[from] < kInfinity; });
-        return any;
-    }
-
-    [[nodiscard]] std::vector<KnotChoice> trace_back(
-        const std::vector<double>& cost,
-        const std::vector<std::vector<std::uint16_t>>& from) const {
-        const std::size_t n = knots_.size();
-        std::vector<KnotChoice> way(n);
-        std::size_t s =
-            static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
-        for (std::size_t k = n; k-- > 0;) {
-            way[k] = choice(k, s);
-            s = k > 0 ? from[k][s] : 0;
-        }
-        // Turns were compared but for whole ones.
-        for (std::size_t k = 1; k < n; ++k) {
-            way[k].turn_rad = way[k - 1].turn_rad +
-                              std::remainder(way[k].turn_rad - way[k - 1].turn_rad, 2.0 * kPi);
-        }
-        return way;
+private:
+    [[nodiscard]] double move(const Column& a, std::size_t from, const Column& b, std::size_t to,
+                              std::size_t axis) const {
+        const double d = b.joints[to * axes_.count + axis] - a.joints[from * axes_.count + axis];
+        // Within half a turn the remainder is the difference itself.
+        return axes_.wraps[axis] && std::abs(d) >= kPi ? std::remainder(d, 2.0 * kPi) : d;
     }
 
     const MotionKnots& knots_;
-    std::size_t axes_;
-    std::vector<bool> wraps_;
-    std::vector<bool> turns_or_moves_eye_;  // not the wrist, whose solution may change
-    std::vector<double> velocity_;
-    std::vector<double> acceleration_;
+    const GridAxes& axes_;
+    std::size_t k_;
+    const Column& before_;
+    const Column& now_;
+    const Column& after_;
 };
+
+double StepCosts::step_s(std::size_t from, std::size_t to) const {
+    const double ds = knots_[k_ - 1].ahead_mm;
+    const double dl = now_.choice[to].length_mm - before_.choice[from].length_mm;
+    if (dl < -kShorteningRate * ds - kRateSlack_mm || dl > kLengtheningRate * ds + kRateSlack_mm) {
+        return kInfinity;
+    }
+    const double t = knots_.step_s(k_ - 1);
+    double ratio = std::max(1.0, 1.0 + dl / ds);
+    for (std::size_t a = 0; a < axes_.count; ++a) {
+        if (axes_.turns_or_moves_eye[a]) {
+            ratio = std::max(ratio,
+                             std::abs(move(before_, from, now_, to, a)) / (t * axes_.velocity[a]));
+        }
+    }
+    if (from != kGiven && to != kGiven) {
+        ratio += kChangeOfTurn * std::abs(turn_of(to) - turn_of(from)) +
+                 kChangeOfLength * std::abs(length_of(to) - length_of(from));
+    } else if (from != to) {
+        ratio += kChangeOfTurn;
+    }
+    return t * ratio;
+}
+
+double StepCosts::stay_s(std::size_t s) const {
+    if (k_ + 1 == knots_.size()) {
+        return 0.0;
+    }
+    const double t1 = knots_.step_s(k_ - 1);
+    const double t2 = knots_.step_s(k_);
+    double worst = 1.0;
+    for (std::size_t a = 0; a < axes_.count; ++a) {
+        const double v1 = move(before_, s, now_, s, a) / t1;
+        const double v2 = move(now_, s, after_, s, a) / t2;
+        worst = std::max({worst, std::abs(v2 - v1) / (0.5 * (t1 + t2) * axes_.acceleration[a])});
+    }
+    return 0.5 * (t1 + t2) * (std::sqrt(worst) - 1.0);
+}
+
+bool StepCosts::passes(std::size_t from, std::size_t to) const {
+    const KnotChoice& start = before_.choice[from];
+    KnotChoice near = now_.choice[to];
+    near.turn_rad = start.turn_rad + std::remainder(near.turn_rad - start.turn_rad, 2.0 * kPi);
+    return knots_.clear_between(k_ - 1, start, near);
+}
+
+// The states from which a step to this one is thought of.
+template <typename Visit>
+void for_states_before(std::size_t s, const Visit& visit) {
+    if (s == kGiven) {
+        for (std::size_t from = 0; from < kStates; ++from) {
+            visit(from);
+        }
+        return;
+    }
+    visit(kGiven);
+    for (int turn = std::max(-kTurnsToASide, turn_of(s) - 1);
+         turn <= std::min(kTurnsToASide, turn_of(s) + 1); ++turn) {
+        for (int length = std::max(0, length_of(s) - kMostLonger);
+             length <= std::min(kLengths - 1, length_of(s) + kMostShorter); ++length) {
+            visit(state_of(turn, length));
+        }
+    }
+}
+
+bool in_reach(std::size_t s, const std::vector<double>& cost_s) {
+    bool any = false;
+    for_states_before(s, [&](std::size_t from) { any = any || cost_s[from] < kInfinity; });
+    return any;
+}
+
+// States that are reached later than this are given up: those that stay as they are, the given
+// one and the first of all, are reached by then.
+double latest_s(const StepCosts& costs, const std::vector<double>& cost_s) {
+    const auto arrival = [&](std::size_t s) {
+        return cost_s[s] + costs.step_s(s, s) + costs.stay_s(s);
+    };
+    double least = cost_s[kGiven] < kInfinity ? arrival(kGiven) : kInfinity;
+    const auto first =
+        static_cast<std::size_t>(std::min_element(cost_s.begin(), cost_s.end()) - cost_s.begin());
+    if (first != kGiven && !costs.kept() && arrival(first) < least && costs.is_clear(first) &&
+        costs.passes(first, first)) {
+        least = arrival(first);
+    }
+    return least + kBeam_s + kRounding_s;
+}
+
+// A state reached from one before.
+struct Arrival {
+    double cost_s = kInfinity;
+    std::size_t state = 0;
+    std::size_t order = 0;
+};
+
+// Whether a step is clear costs much more to know than how long it takes: the cheapest are
+// asked first, and the first that is clear is the best. None where that would be later than the
+// latest.
+// \param steps room for those that are thought of
+Arrival best_arrival(const StepCosts& costs, std::size_t s, const std::vector<double>& cost_s,
+                     double latest, std::vector<Arrival>& steps) {
+    steps.clear();
+    for_states_before(s, [&](std::size_t from) {
+        if (cost_s[from] + costs.least_s() <= latest) {
+            const double c = cost_s[from] + costs.step_s(from, s);
+            if (c < kInfinity && c <= latest) {
+                steps.push_back({c, from, steps.size()});
+            }
+        }
+    });
+    for (auto first = steps.begin(); first != steps.end(); ++first) {
+        // Of equals the one that was thought of first.
+        std::iter_swap(
+            first, std::min_element(first, steps.end(), [](const Arrival& a, const Arrival& b) {
+                return a.cost_s < b.cost_s || (a.cost_s == b.cost_s && a.order < b.order);
+            }));
+        const bool given = first->state == kGiven && s == kGiven;
+        if (given || costs.passes(first->state, s)) {
+            return *first;
+        }
+    }
+    return {};
+}
+
+// Per state of a knot.
+struct Advance {
+    std::vector<double> cost_s = std::vector<double>(kStates, kInfinity);  // at best
+    std::vector<std::uint16_t> from = std::vector<std::uint16_t>(kStates, 0);
+};
+
+// The times at which the states of a knot are reached at best, and from which states.
+Advance advance(const StepCosts& costs, const std::vector<double>& cost_s) {
+    Advance next;
+    const double latest = latest_s(costs, cost_s);
+    const std::size_t first = costs.kept() ? kGiven : 0;
+    parallel_for(kStates - first, kChunk, [&](std::size_t begin, std::size_t end) {
+        std::vector<Arrival> steps;
+        for (std::size_t s = first + begin; s < first + end; ++s) {
+            if (!in_reach(s, cost_s) || !costs.is_clear(s)) {
+                continue;
+            }
+            const double stay_here_s = costs.stay_s(s);
+            const Arrival best = best_arrival(
+                costs, s, cost_s, s == kGiven ? kInfinity : latest - stay_here_s, steps);
+            if (best.cost_s < kInfinity) {
+                next.from[s] = static_cast<std::uint16_t>(best.state);
+                next.cost_s[s] = best.cost_s + stay_here_s;
+            }
+        }
+    });
+    return next;
+}
+
+// The choices that lead to the state that is reached first.
+// \param from per knot, of each state
+std::vector<KnotChoice> trace_back(const MotionKnots& knots, const std::vector<double>& cost_s,
+                                   const std::vector<std::vector<std::uint16_t>>& from) {
+    const std::size_t n = knots.size();
+    std::vector<KnotChoice> way(n);
+    std::size_t s =
+        static_cast<std::size_t>(std::min_element(cost_s.begin(), cost_s.end()) - cost_s.begin());
+    for (std::size_t k = n; k-- > 0;) {
+        way[k] = choice_of(knots, k, s);
+        s = k > 0 ? from[k][s] : 0;
+    }
+    // Turns were compared but for whole ones.
+    for (std::size_t k = 1; k < n; ++k) {
+        way[k].turn_rad =
+            way[k - 1].turn_rad + std::remainder(way[k].turn_rad - way[k - 1].turn_rad, 2.0 * kPi);
+    }
+    return way;
+}
 
 }  // namespace
 
+// Empty where no way leads through.
 std::vector<KnotChoice> choose_on_grid(const MotionKnots& knots) {
-    return Grid(knots).choose();
+    const std::size_t n = knots.size();
+    const GridAxes axes = grid_axes(knots);
+    std::vector<std::vector<std::uint16_t>> from(n);
+    Columns columns;
+    fill(knots, 0, columns.now, columns.now);
+    fill(knots, 1, columns.now, columns.after);
+    std::vector<double> cost_s(kStates, kInfinity);
+    for (std::size_t s = 0; s < kStates; ++s) {
+        cost_s[s] = is_clear(knots, 0, s, columns.now) ? 0.0 : kInfinity;
+    }
+    for (std::size_t k = 1; k < n; ++k) {
+        std::swap(columns.before, columns.now);
+        std::swap(columns.now, columns.after);
+        if (k + 1 < n) {
+            fill(knots, k + 1, columns.now, columns.after);
+        }
+        Advance next = advance(StepCosts(knots, axes, k, columns), cost_s);
+        from[k] = std::move(next.from);
+        const double least = *std::min_element(next.cost_s.begin(), next.cost_s.end());
+        if (least == kInfinity) {
+            return {};
+        }
+        for (std::size_t s = 0; s < kStates; ++s) {
+            cost_s[s] =
+                s == kGiven || next.cost_s[s] <= least + kBeam_s ? next.cost_s[s] : kInfinity;
+        }
+    }
+    return trace_back(knots, cost_s, from);
 }
 
 }  // namespace meshwind
