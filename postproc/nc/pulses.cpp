@@ -47,7 +47,7 @@ bool is_even(std::int64_t sum, std::int64_t steps, std::int64_t tick, std::int64
            std::abs(2 * (beyond * ticks - steps % ticks * tick)) <= ticks;
 }
 
-// The words of a line up to where its comment begins.
+// Replaces words by those of a line up to where its comment begins.
 void split_until(std::string_view text, std::size_t end, std::vector<std::string_view>& words) {
     words.clear();
     for (std::size_t i = 0; i < end;) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "core/interrupt.h"
 
@@ -140,188 +141,219 @@ private:
     std::unordered_map<std::size_t, std::pair<std::size_t, std::size_t>> equal_;  // by length
 };
 
-class Folder {
-public:
-    Folder(const BlockList& planned, const RepeatTolerance& tolerance) : planned_(planned) {
-        result_.list = planned;
-        result_.layout.drift_nano.assign(planned.axes.size(), 0);
-        for (const BlockAxis& axis : planned.axes) {
-            const double given =
-                axis.type == AxisType::Rotary ? tolerance.rotary_deg : tolerance.linear_mm;
-            tolerance_nano_.push_back(
-                std::max(std::llround(given * static_cast<double>(kNanoPerUnit)),
-                         static_cast<long long>(axis.resolution_nano)));
-        }
-    }
-
-    // False when the circuits of the run are not as equal as their blocks; then it stays as it is.
-    bool fold(Run run) {
-        close_circuit(run);
-        if (ends_list(run) && !ends_exactly(run)) {
-            --run.count;  // the last circuit is written out
-        }
-        std::vector<std::size_t> groups;  // circuits that begin at their planned place
-        std::vector<std::int64_t> base;
-        std::vector<std::int64_t> rows;
-        for (std::size_t k = 0; k < run.count; ++k) {
-            const bool last = k + 1 == run.count && ends_list(run);
-            if (k == 0 || !within(run, k, base) || (last && base != begin_of_last(run))) {
-                // Right behind another run the first circuit begins where that one has led.
-                const BlockList& from = k == 0 ? result_.list : planned_;
-                const auto place = from.row(run.start + k * run.length);
-                base.assign(place.begin(), place.end());
-                if (last) {
-                    base = begin_of_last(run);
-                }
-                groups.push_back(k);
-                if (!within(run, k, base)) {
-                    return false;
-                }
-            }
-            for (std::size_t j = 1; j <= run.length; ++j) {
-                for (std::size_t a = 0; a < base.size(); ++a) {
-                    rows.push_back(base[a] + offset(j, a));
-                }
-            }
-            base.assign(rows.end() - static_cast<std::ptrdiff_t>(base.size()), rows.end());
-        }
-        take(run, rows);
-        lay_out(run, groups);
-        return true;
-    }
-
-    FoldedProgram result() && {
-        blocks(written_ + 1, planned_.blocks.size() - 1, result_.layout.main);
-        return std::move(result_);
-    }
-
-private:
-    [[nodiscard]] std::int64_t offset(std::size_t j, std::size_t axis) const {
-        return offset_[(j - 1) * planned_.axes.size() + axis];
-    }
-
-    // Offsets from the circuit's start: the mean over all circuits, in whole steps.
-    void close_circuit(const Run& run) {
-        offset_.clear();
-        for (std::size_t j = 1; j <= run.length; ++j) {
-            for (std::size_t a = 0; a < planned_.axes.size(); ++a) {
-                const auto at = [&](std::size_t k) {
-                    const std::size_t begin = run.start + k * run.length;
-                    return planned_.row(begin + j)[a] - planned_.row(begin)[a];
-                };
-                std::int64_t more = 0;  // than the first circuit, in steps
-                for (std::size_t k = 1; k < run.count; ++k) {
-                    more += (at(k) - at(0)) / planned_.axes[a].resolution_nano;
-                }
-                offset_.push_back(at(0) + std::llround(static_cast<double>(more) /
-                                                       static_cast<double>(run.count)) *
-                                              planned_.axes[a].resolution_nano);
-            }
-        }
-    }
-
-    // Whether circuit k, begun at `base`, stays within the tolerance.
-    [[nodiscard]] bool within(const Run& run, std::size_t k,
-                              const std::vector<std::int64_t>& base) const {
-        for (std::size_t j = 1; j <= run.length; ++j) {
-            const auto planned = planned_.row(run.start + k * run.length + j);
-            for (std::size_t a = 0; a < base.size(); ++a) {
-                if (std::abs(base[a] + offset(j, a) - planned[a]) > tolerance_nano_[a]) {
-                    return false;
-                }
-            }
-        }
-        return true;
-    }
-
-    // Behind a run that ends the program no block leads back to the plan.
-    [[nodiscard]] bool ends_list(const Run& run) const {
-        return run.start + run.count * run.length + 1 == planned_.blocks.size();
-    }
-
-    // Where the last circuit must begin for the program to end exactly where it is planned to.
-    [[nodiscard]] std::vector<std::int64_t> begin_of_last(const Run& run) const {
-        const auto end = planned_.row(planned_.blocks.size() - 1);
-        std::vector<std::int64_t> begin(end.begin(), end.end());
-        for (std::size_t a = 0; a < begin.size(); ++a) {
-            begin[a] -= offset(run.length, a);
-        }
-        return begin;
-    }
-
-    [[nodiscard]] bool ends_exactly(const Run& run) const {
-        return within(run, run.count - 1, begin_of_last(run));
-    }
-
-    void take(const Run& run, const std::vector<std::int64_t>& rows) {
-        const std::size_t axes = planned_.axes.size();
-        const std::size_t begin = (run.start + 1) * axes;
-        std::copy(rows.begin(), rows.end(),
-                  result_.list.nano.begin() + static_cast<std::ptrdiff_t>(begin));
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            std::int64_t& drift = result_.layout.drift_nano[i % axes];
-            drift = std::max(drift, std::abs(rows[i] - planned_.nano[begin + i]));
-        }
-        for (std::size_t i = 0; i < run.count * run.length; ++i) {
-            result_.list.blocks[run.start + 1 + i].duration_s =
-                planned_.blocks[run.start + 1 + i % run.length].duration_s;
-        }
-    }
-
-    static void blocks(std::size_t first, std::size_t last, std::vector<ProgramPart>& to) {
-        if (first <= last) {
-            to.push_back({.kind = ProgramPart::Kind::Blocks, .first = first, .last = last});
-        }
-    }
-
-    static void call(std::size_t subprogram, std::size_t times, std::size_t first,
-                     std::vector<ProgramPart>& to) {
-        if (times > 0) {
-            to.push_back({.kind = ProgramPart::Kind::Call,
-                          .first = first,
-                          .subprogram = subprogram,
-                          .times = static_cast<std::int64_t>(times)});
-        }
-    }
-
-    void lay_out(const Run& run, const std::vector<std::size_t>& groups) {
-        std::vector<ProgramPart>& main = result_.layout.main;
-        auto& subprograms = result_.layout.subprograms;
-        const std::size_t circuit = subprograms.size();
-        const std::size_t rest = circuit + 1;
-        blocks(written_ + 1, run.start, main);
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            const std::size_t first = run.start + groups[g] * run.length + 1;
-            const std::size_t end = g + 1 < groups.size() ? groups[g + 1] : run.count;
-            if (g == 0) {
-                call(circuit, end, first, main);
-            } else {
-                blocks(first, first, main);
-                call(rest, 1, first + 1, main);
-                call(circuit, end - groups[g] - 1, first + run.length, main);
-            }
-        }
-        std::vector<ProgramPart> body;
-        if (groups.size() == 1) {
-            blocks(run.start + 1, run.start + run.length, body);
-            subprograms.push_back(body);
-        } else {
-            blocks(run.start + 1, run.start + 1, body);
-            call(rest, 1, run.start + 2, body);
-            subprograms.push_back(body);
-            body.clear();
-            blocks(run.start + 2, run.start + run.length, body);
-            subprograms.push_back(body);
-        }
-        written_ = run.start + run.count * run.length;
-    }
-
-    const BlockList& planned_;
-    std::vector<std::int64_t> tolerance_nano_;
-    FoldedProgram result_;
-    std::vector<std::int64_t> offset_;  // of the run at hand: circuit's blocks x axes
-    std::size_t written_ = 0;           // last block that is laid out
+// The blocks as they are planned, and how far repetition may take each axis from them.
+struct PlannedBlocks {
+    const BlockList& list;
+    std::vector<std::int64_t> tolerance_nano{};
 };
+
+PlannedBlocks planned_blocks(const BlockList& list, const RepeatTolerance& tolerance) {
+    PlannedBlocks planned{list};
+    for (const BlockAxis& axis : list.axes) {
+        const double given =
+            axis.type == AxisType::Rotary ? tolerance.rotary_deg : tolerance.linear_mm;
+        planned.tolerance_nano.push_back(
+            std::max(std::llround(given * static_cast<double>(kNanoPerUnit)),
+                     static_cast<long long>(axis.resolution_nano)));
+    }
+    return planned;
+}
+
+// Offsets from the circuit's start: the mean over all circuits, in whole steps.
+struct ClosedCircuit {
+    std::size_t length = 0;  // in blocks
+    std::size_t axes = 0;
+    std::vector<std::int64_t> offset_nano{};  // blocks x axes
+
+    // \param j block of the circuit, from 1
+    [[nodiscard]] std::int64_t offset(std::size_t j, std::size_t axis) const {
+        return offset_nano[(j - 1) * axes + axis];
+    }
+};
+
+ClosedCircuit close_circuit(const BlockList& planned, const Run& run) {
+    ClosedCircuit circuit{run.length, planned.axes.size()};
+    for (std::size_t j = 1; j <= run.length; ++j) {
+        for (std::size_t a = 0; a < planned.axes.size(); ++a) {
+            const auto at = [&](std::size_t k) {
+                const std::size_t begin = run.start + k * run.length;
+                return planned.row(begin + j)[a] - planned.row(begin)[a];
+            };
+            std::int64_t more = 0;  // than the first circuit, in steps
+            for (std::size_t k = 1; k < run.count; ++k) {
+                more += (at(k) - at(0)) / planned.axes[a].resolution_nano;
+            }
+            circuit.offset_nano.push_back(
+                at(0) + std::llround(static_cast<double>(more) / static_cast<double>(run.count)) *
+                            planned.axes[a].resolution_nano);
+        }
+    }
+    return circuit;
+}
+
+// Whether the circuit behind block `start`, begun at `base`, stays within the tolerance.
+bool within(const PlannedBlocks& planned, const ClosedCircuit& circuit, std::size_t start,
+            const std::vector<std::int64_t>& base) {
+    for (std::size_t j = 1; j <= circuit.length; ++j) {
+        const auto row = planned.list.row(start + j);
+        for (std::size_t a = 0; a < base.size(); ++a) {
+            if (std::abs(base[a] + circuit.offset(j, a) - row[a]) > planned.tolerance_nano[a]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// Behind a run that ends the program no block leads back to the plan.
+bool ends_list(const BlockList& planned, const Run& run) {
+    return run.start + run.count * run.length + 1 == planned.blocks.size();
+}
+
+// Where the last circuit must begin for the program to end exactly where it is planned to.
+std::vector<std::int64_t> begin_of_last(const BlockList& planned, const ClosedCircuit& circuit) {
+    const auto end = planned.row(planned.blocks.size() - 1);
+    std::vector<std::int64_t> begin(end.begin(), end.end());
+    for (std::size_t a = 0; a < begin.size(); ++a) {
+        begin[a] -= circuit.offset(circuit.length, a);
+    }
+    return begin;
+}
+
+// A run of circuits that are the same each time.
+struct FoldedRun {
+    Run run;
+    std::vector<std::size_t> groups;  // circuits that begin at their planned place
+    std::vector<std::int64_t> rows;   // positions of its blocks: blocks x axes
+};
+
+// None when the circuits of the run are not as equal as their blocks; then it stays as it is.
+// \param written the blocks as they are with the runs before
+std::optional<FoldedRun> fold_run(const PlannedBlocks& planned, Run run, const BlockList& written) {
+    const ClosedCircuit circuit = close_circuit(planned.list, run);
+    const auto start_of = [&](std::size_t k) { return run.start + k * run.length; };
+    if (ends_list(planned.list, run) &&
+        !within(planned, circuit, start_of(run.count - 1), begin_of_last(planned.list, circuit))) {
+        --run.count;  // the last circuit is written out
+    }
+    FoldedRun folded{run, {}, {}};
+    std::vector<std::int64_t> base;
+    for (std::size_t k = 0; k < run.count; ++k) {
+        const bool last = k + 1 == run.count && ends_list(planned.list, run);
+        if (k == 0 || !within(planned, circuit, start_of(k), base) ||
+            (last && base != begin_of_last(planned.list, circuit))) {
+            // Right behind another run the first circuit begins where that one has led.
+            const BlockList& from = k == 0 ? written : planned.list;
+            const auto place = from.row(start_of(k));
+            base.assign(place.begin(), place.end());
+            if (last) {
+                base = begin_of_last(planned.list, circuit);
+            }
+            folded.groups.push_back(k);
+            if (!within(planned, circuit, start_of(k), base)) {
+                return {};
+            }
+        }
+        for (std::size_t j = 1; j <= run.length; ++j) {
+            for (std::size_t a = 0; a < base.size(); ++a) {
+                folded.rows.push_back(base[a] + circuit.offset(j, a));
+            }
+        }
+        base.assign(folded.rows.end() - static_cast<std::ptrdiff_t>(base.size()),
+                    folded.rows.end());
+    }
+    return folded;
+}
+
+// Puts the run's positions and durations into the list.
+void take(const BlockList& planned, const FoldedRun& folded, FoldedProgram& program) {
+    const Run& run = folded.run;
+    const std::vector<std::int64_t>& rows = folded.rows;
+    const std::size_t axes = planned.axes.size();
+    const std::size_t begin = (run.start + 1) * axes;
+    std::copy(rows.begin(), rows.end(),
+              program.list.nano.begin() + static_cast<std::ptrdiff_t>(begin));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        std::int64_t& drift = program.layout.drift_nano[i % axes];
+        drift = std::max(drift, std::abs(rows[i] - planned.nano[begin + i]));
+    }
+    for (std::size_t i = 0; i < run.count * run.length; ++i) {
+        program.list.blocks[run.start + 1 + i].duration_s =
+            planned.blocks[run.start + 1 + i % run.length].duration_s;
+    }
+}
+
+void add_blocks(std::size_t first, std::size_t last, std::vector<ProgramPart>& to) {
+    if (first <= last) {
+        to.push_back({.kind = ProgramPart::Kind::Blocks, .first = first, .last = last});
+    }
+}
+
+void add_call(std::size_t subprogram, std::size_t times, std::size_t first,
+              std::vector<ProgramPart>& to) {
+    if (times > 0) {
+        to.push_back({.kind = ProgramPart::Kind::Call,
+                      .first = first,
+                      .subprogram = subprogram,
+                      .times = static_cast<std::int64_t>(times)});
+    }
+}
+
+// \param written last block that is laid out before the run
+void lay_out(const FoldedRun& folded, std::size_t written, ProgramLayout& layout) {
+    const Run& run = folded.run;
+    const std::vector<std::size_t>& groups = folded.groups;
+    const std::size_t circuit = layout.subprograms.size();
+    const std::size_t rest = circuit + 1;
+    add_blocks(written + 1, run.start, layout.main);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const std::size_t first = run.start + groups[g] * run.length + 1;
+        const std::size_t end = g + 1 < groups.size() ? groups[g + 1] : run.count;
+        if (g == 0) {
+            add_call(circuit, end, first, layout.main);
+        } else {
+            add_blocks(first, first, layout.main);
+            add_call(rest, 1, first + 1, layout.main);
+            add_call(circuit, end - groups[g] - 1, first + run.length, layout.main);
+        }
+    }
+    std::vector<ProgramPart> body;
+    if (groups.size() == 1) {
+        add_blocks(run.start + 1, run.start + run.length, body);
+        layout.subprograms.push_back(body);
+    } else {
+        add_blocks(run.start + 1, run.start + 1, body);
+        add_call(rest, 1, run.start + 2, body);
+        layout.subprograms.push_back(body);
+        body.clear();
+        add_blocks(run.start + 2, run.start + run.length, body);
+        layout.subprograms.push_back(body);
+    }
+}
+
+// Folds all runs of a list.
+FoldedProgram fold_runs(const BlockList& list, const RepeatTolerance& tolerance) {
+    Finder finder(list);
+    const PlannedBlocks planned = planned_blocks(list, tolerance);
+    FoldedProgram program{list, {}};
+    program.layout.drift_nano.assign(list.axes.size(), 0);
+    std::size_t written = 0;  // last block that is laid out
+    for (std::size_t start = 0; start + 1 < list.blocks.size();) {
+        check_interrupt();
+        const std::optional<Run> run = finder.run_at(start);
+        const std::optional<FoldedRun> folded =
+            run ? fold_run(planned, *run, program.list) : std::nullopt;
+        if (folded) {
+            take(list, *folded, program);
+            lay_out(*folded, written, program.layout);
+            written = folded->run.start + folded->run.count * folded->run.length;
+        }
+        // A run that cannot be folded is left behind as well: its later circuits are no better.
+        start += run ? run->count * run->length : 1;
+    }
+    add_blocks(written + 1, list.blocks.size() - 1, program.layout.main);
+    return program;
+}
 
 std::size_t lines_of(const std::vector<ProgramPart>& parts) {
     std::size_t lines = 0;
@@ -362,18 +394,7 @@ std::size_t ProgramLayout::calls() const {
 
 FoldedProgram fold_repeats(BlockList list, const RepeatTolerance& tolerance) {
     if (list.blocks.size() > kLeastCircuits) {
-        Finder finder(list);
-        Folder folder(list, tolerance);
-        for (std::size_t start = 0; start + 1 < list.blocks.size();) {
-            check_interrupt();
-            const std::optional<Run> run = finder.run_at(start);
-            if (run) {
-                folder.fold(*run);
-            }
-            // A run that cannot be folded is left behind as well: its later circuits are no better.
-            start += run ? run->count * run->length : 1;
-        }
-        FoldedProgram folded = std::move(folder).result();
+        FoldedProgram folded = fold_runs(list, tolerance);
         if (pays(folded)) {
             return folded;
         }
