@@ -76,6 +76,7 @@ struct FirstMotion {
 struct LeastTime {
     std::optional<Improvement> at_hand;         // the program is made of its motion
     std::optional<Improvement> aside;           // of many stations: its motion is hardly faster
+    bool was_put_off = false;                   // it has been aside
     std::optional<PieceProgram> hardly_faster;  // than the first motion
     double first_s = std::numeric_limits<double>::infinity();  // duration of the first motion
     std::size_t wrong_pieces = std::numeric_limits<std::size_t>::max();  // of the program before
@@ -363,26 +364,28 @@ bool saves_hardly(const LeastTime& least, const PieceProgram& program) {
 
 // Of many stations what is hardly faster is put off before it is wound again: true where it is.
 bool put_off(const PieceProgram& program, LeastTime& least) {
-    if (!saves_hardly(least, program) || !least.at_hand->repeated || least.aside) {
+    if (!saves_hardly(least, program) || !least.at_hand->repeated || least.was_put_off) {
         return false;
     }
     least.aside.emplace(std::move(*least.at_hand));
     least.at_hand.reset();
+    least.was_put_off = true;
     return true;
 }
 
-// What was put off is taken after all, where it is clear.
+// What was put off is taken after all; where it cannot be made clear nothing is at hand, and the
+// program is to be begun anew with the first motion. Returns false where nothing was put off.
 bool take_put_off(const ProgramTask& task, LeastTime& least, Motion& motion,
                   PieceProgram& program) {
-    if (least.at_hand || !least.aside || least.aside->improver.path().empty()) {
+    if (least.at_hand || !least.aside) {
         return false;
     }
     least.at_hand.emplace(std::move(*least.aside));
-    if (make_clear(task, *least.at_hand, motion, program)) {
-        return true;
+    least.aside.reset();
+    if (!make_clear(task, *least.at_hand, motion, program)) {
+        least.at_hand.reset();
     }
-    least.at_hand.reset();
-    return false;
+    return true;
 }
 
 // Puts the first motion back about what the program lays wrong: all of it, where that does not
