@@ -61,6 +61,11 @@ Vector3d carried(const Vector3d& tangent, const Vector3d& from, const Vector3d& 
     return tangent - (from + to) * (1.0 / (1.0 + c)) * tangent.dot(to);
 }
 
+struct FaceExit {
+    double length_mm;
+    std::size_t opposite;  // corner whose barycentric coordinate becomes zero
+};
+
 // A face that is walked over. Corners are counted from the edge by which it was entered: that edge
 // runs from corner 0 to corner 1, and corner 2 lies ahead. In the first face they are the face's
 // own.
@@ -110,6 +115,26 @@ struct WalkedFace {
     // Back over the edge by which the face was entered.
     [[nodiscard]] bool points_back(const Vector3d& rate) const {
         return entered && rate[2] < kGrazingSine * gradient[2].norm();
+    }
+
+    // Of a path from `bary`, which changes by `rate` per mm.
+    [[nodiscard]] FaceExit find_exit(const Vector3d& bary, const Vector3d& rate) const {
+        FaceExit exit{std::numeric_limits<double>::infinity(), 0};
+        if (entered) {
+            const std::size_t i = rate[0] * bary[1] < rate[1] * bary[0] ? 0 : 1;
+            const auto k = static_cast<Index>(i);
+            return rate[k] < 0.0 ? FaceExit{bary[k] / -rate[k], i} : exit;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto k = static_cast<Index>(i);
+            if (rate[k] < 0.0) {
+                const double length = std::max(0.0, bary[k]) / -rate[k];
+                if (length < exit.length_mm) {
+                    exit = {length, i};
+                }
+            }
+        }
+        return exit;
     }
 };
 
@@ -185,31 +210,6 @@ struct WalkPlace {
     }
 };
 
-struct FaceExit {
-    double length_mm;
-    std::size_t opposite;  // corner whose barycentric coordinate becomes zero
-};
-
-// \param bary the place from which it changes by `rate` per mm
-FaceExit find_exit(const Vector3d& bary, const Vector3d& rate, bool entered) {
-    FaceExit exit{std::numeric_limits<double>::infinity(), 0};
-    if (entered) {
-        const std::size_t i = rate[0] * bary[1] < rate[1] * bary[0] ? 0 : 1;
-        const auto k = static_cast<Index>(i);
-        return rate[k] < 0.0 ? FaceExit{bary[k] / -rate[k], i} : exit;
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto k = static_cast<Index>(i);
-        if (rate[k] < 0.0) {
-            const double length = std::max(0.0, bary[k]) / -rate[k];
-            if (length < exit.length_mm) {
-                exit = {length, i};
-            }
-        }
-    }
-    return exit;
-}
-
 // A path that is walked from face to face.
 class Walker {
 public:
@@ -255,13 +255,13 @@ private:
         if (face_.points_back(rate)) {
             return slide_along_entry(d);
         }
-        FaceExit exit = find_exit(here_.bary, rate, face_.entered);
+        FaceExit exit = face_.find_exit(here_.bary, rate);
         if (here_.kg_per_mm != 0.0 && std::isfinite(exit.length_mm)) {
             // The chord of a steered path is turned by half of what the tangent turns over it.
             const Turn turn = turn_by(0.5 * here_.kg_per_mm * exit.length_mm);
             const Vector3d turned_rate =
                 turn.cosine * rate + turn.sine * face_.rates(face_.normal.cross(d));
-            const FaceExit turned_exit = find_exit(here_.bary, turned_rate, face_.entered);
+            const FaceExit turned_exit = face_.find_exit(here_.bary, turned_rate);
             if (!face_.points_back(turned_rate) && std::isfinite(turned_exit.length_mm)) {
                 rate = turned_rate;
                 exit = turned_exit;
