@@ -35,7 +35,7 @@ double seconds(std::chrono::steady_clock::duration duration) {
 
 void lay_on_ellipsoid(benchmark::State& state) {
     const Machine machine = read_machine(MESHWIND_SOURCE_DIR "/machines/six_axis.json");
-    const LaydownWall wall(ellipsoid(static_cast<double>(state.range(0))));
+    const LaydownSurface wall(ellipsoid(static_cast<double>(state.range(0))));
     const Surface& surface = wall.surface();
     const EyePath path = test::on_ellipsoid(kLine, 4'000);
     const JointPath joints = solve_joints(machine, path, RedundancyPolicy::CentralAngle);

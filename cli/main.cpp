@@ -35,7 +35,7 @@ namespace {
 constexpr const char* kEvery = "Options of every command";
 
 // More than any machine has cores.
-constexpr std::uint64_t kMostThreads = 1024;
+constexpr std::uint64_t kMaxThreads = 1024;
 
 CommandWords command_words(const CLI::App& app) {
     CommandWords words{app.get_name(), {}, {}};
@@ -73,7 +73,7 @@ void add_common(CLI::App& app, Common& common) {
     app.add_option("--threads", common.threads, "threads to use; 0: one per core")
         ->group(kEvery)
         ->type_name("N")
-        ->check(whole_number(kMostThreads))
+        ->check(whole_number(kMaxThreads))
         ->capture_default_str();
     app.add_option("--seed", common.seed,
                    "seed of every random draw; the same seed gives the same files")

@@ -1,4 +1,4 @@
-/// How far a run is, for whoever waits for it: a bar on a terminal, plain lines elsewhere.
+/// Progress display of a run: a bar on a terminal, plain lines elsewhere.
 #pragma once
 
 #include <condition_variable>

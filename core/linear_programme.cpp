@@ -24,7 +24,7 @@ namespace {
 
 // The simplex method goes round in a circle now and then, where many bases are one corner. Then
 // rows may lack so much, of their bound.
-constexpr double kMostLack = 1e-4;
+constexpr double kMaxLack = 1e-4;
 
 // GLPK counts rows and columns from 1.
 int kind_of(double least, double most) {
@@ -49,7 +49,7 @@ void LinearProgramme::tell_apart(Model& model) {
         const Row& row = model.rows[i];
         const double share = 0.5 * (1.0 + random_unit(0, i));
         if (row.least < row.most && std::isfinite(row.least)) {
-            const double least = row.least - kMostLack * share * std::max(1.0, std::abs(row.least));
+            const double least = row.least - kMaxLack * share * std::max(1.0, std::abs(row.least));
             glp_set_row_bnds(model.glp, static_cast<int>(i) + 1, kind_of(least, row.most), least,
                              row.most);
         }

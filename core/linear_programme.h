@@ -50,11 +50,11 @@ public:
     /// The first call from nothing, each further one from where the last ended. Where the method
     /// goes round in a circle it goes on with rows that may lack up to 1e-4 of their bounds.
     /// \param most_steps after which it is taken to go round
-    [[nodiscard]] Solution solve(int most_steps = kMostSteps);
+    [[nodiscard]] Solution solve(int most_steps = kMaxSteps);
 
 private:
     // Columns by the hundred beside eight hundred rows take two thousand.
-    static constexpr int kMostSteps = 20'000;
+    static constexpr int kMaxSteps = 20'000;
 
     struct Model;
     static void tell_apart(Model& model);

@@ -44,9 +44,9 @@ inline constexpr double kCandidates_mm = 0.3;
 /// Share of the head's spare clearance that blocks may use: between two points it may be less.
 inline constexpr double kBlocksOfRoom = 0.5;
 /// Blocks cut the corner by so much at most, however much room there is,
-inline constexpr double kMostBetweenBlocks_mm = 2.0;
+inline constexpr double kMaxBetweenBlocks_mm = 2.0;
 /// and are not made shorter for less than this: the plan is refused.
-inline constexpr double kLeastBetweenBlocks_mm = 0.1;
+inline constexpr double kMinBetweenBlocks_mm = 0.1;
 /// Further room in the first motion of least time: what is clear is looked up at points a few mm
 /// apart. Less makes more places to mend, more a longer way round; on tees both cost time.
 inline constexpr double kFirstMotion_mm = 2.0;

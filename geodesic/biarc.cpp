@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kSlopeStep = 1e-4;
 
 // A step of Newton's method changes the direction of a stretch by no more than this.
-constexpr double kMostTurn_rad = 0.7;
+constexpr double kMaxTurn_rad = 0.7;
 
 // And it is halved so many times where it does not lead nearer.
 constexpr int kHalvings = 12;
@@ -52,7 +52,7 @@ public:
             if (!step.allFinite()) {
                 break;
             }
-            step *= std::min(1.0, kMostTurn_rad / step.cwiseAbs().maxCoeff());
+            step *= std::min(1.0, kMaxTurn_rad / step.cwiseAbs().maxCoeff());
             if (!advance(x, residual, step)) {
                 break;
             }

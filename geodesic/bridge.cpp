@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 
 namespace meshwind {
 namespace {
@@ -211,7 +211,7 @@ private:
                 worst = std::max(worst, string.gap_mm[end]);
             }
             for (std::size_t i = first - std::min(first, kStationsBefore);
-                 worst >= kLeastBridge_mm && i < end; ++i) {
+                 worst >= kMinBridge_mm && i < end; ++i) {
                 if (auto bridge = bridge_at(rest[i])) {
                     Leaving leaving{begin + i, rest[i], std::move(*bridge)};
                     if (i > 0) {

@@ -41,12 +41,12 @@ struct Bridge {
 /// trace() by TraceMethod::Patches of the path that a taut fibre takes: where its tangent meets the
 /// wall further on it leaves the wall, runs straight, and goes on from there in the direction in
 /// which it arrives. Stations under such bridges lie on the wall, their tangents are those of the
-/// straight fibre over it. Bridges of less than kLeastBridge_mm are left as the path over the wall.
+/// straight fibre over it. Bridges of less than kMinBridge_mm are left as the path over the wall.
 [[nodiscard]] TraceResult trace_taut(const Surface& surface, const SurfacePoint& start,
                                      const Eigen::Vector3d& direction, const Steering& steering,
                                      const TraceOptions& options,
                                      const LiftedWall* lifted = nullptr);
 
-inline constexpr double kLeastBridge_mm = 0.002;
+inline constexpr double kMinBridge_mm = 0.002;
 
 }  // namespace meshwind

@@ -56,11 +56,11 @@ constexpr double kCutShare = 0.1;
 constexpr double kGoodStep = 0.5;
 
 // Where so small a share of Newton's step does not help, none does.
-constexpr double kLeastDamping = 1e-6;
+constexpr double kMinDamping = 1e-6;
 
 // Going to the target by stages: the least stage as a share of the way, the tolerance as a share
 // of an edge and the iterations for a stage that is worth following.
-constexpr double kLeastStage = 1.0 / 64.0;
+constexpr double kMinStage = 1.0 / 64.0;
 constexpr double kStageTolerance = 1e-3;
 constexpr int kStageIterations = 20;
 
@@ -296,7 +296,7 @@ ConnectResult shoot_nearer(const ConnectTask& task, Shot best) {
             share < 1.0 ? std::min(1.0, 2.0 * stepping.damping) : 0.5 * stepping.damping;
         if (share < 1.0) {
             best = std::move(shot);
-        } else if (stepping.damping < kLeastDamping) {
+        } else if (stepping.damping < kMinDamping) {
             break;
         }
     }
@@ -360,7 +360,7 @@ ConnectResult by_stages(const Surface& surface, const SurfacePoint& from, const 
     int iterations = 0;
     double done = 0.0;       // share of the way to which a path was found
     double length_mm = 0.0;  // of that path
-    for (double stage = 1.0; stage >= kLeastStage;) {
+    for (double stage = 1.0; stage >= kMinStage;) {
         const double next = std::min(1.0, done + stage);
         const bool whole = next == 1.0;
         guess.length_mm = length_mm + (next - done) * way.length_mm;

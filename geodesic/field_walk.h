@@ -1,4 +1,4 @@
-/// Walks over the curved patches along a direction that the place itself tells.
+/// Integrates a direction field over the curved patches.
 #pragma once
 
 #include <functional>

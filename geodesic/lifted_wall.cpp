@@ -28,7 +28,7 @@ constexpr double kSingle = 1e-6;
 
 // Where an edge is so sharp that its facets are lifted by less of the way of its vertices, no ray
 // tells anything.
-constexpr double kLeastShare = 0.2;
+constexpr double kMinShare = 0.2;
 
 // The facets are over the wall by what they are lifted, and by what patches are under them.
 constexpr double kOver = 2.0;
@@ -91,11 +91,11 @@ Lifted lift(const Surface& surface) {
     }
     Lifted lifted;
     for (std::size_t i = 0; i < normal.size(); ++i) {
-        const double way_mm = needed_mm[i] / std::max(share[i], kLeastShare);
+        const double way_mm = needed_mm[i] / std::max(share[i], kMinShare);
         lifted.position_mm.push_back(surface.position_mm[i] + way_mm * normal[i]);
         lifted.highest_mm =
             std::max(lifted.highest_mm,
-                     share[i] < kLeastShare ? std::numeric_limits<double>::infinity() : way_mm);
+                     share[i] < kMinShare ? std::numeric_limits<double>::infinity() : way_mm);
     }
     return lifted;
 }

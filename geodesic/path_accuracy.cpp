@@ -18,10 +18,10 @@ namespace {
 using Eigen::Vector3d;
 
 // In mean edges: longer paths cost more than half a second on fine meshes and tell no more.
-constexpr double kMostEdges = 500.0;
+constexpr double kMaxEdges = 500.0;
 
 // In mean edges: a path cut shorter by rims has no drift to speak of.
-constexpr double kLeastEdges = 3.0;
+constexpr double kMinEdges = 3.0;
 
 // Rings of the wider fits, and how far paths on them are from paths on the usual ones, in errors
 // that the usual fits cause: twice to seven times was measured on tori and cylinders.
@@ -40,9 +40,9 @@ constexpr double kShortStep = 0.15;
 // Faces across so many edges from a path get wider fits too, as paths on them go elsewhere.
 constexpr int kMarginFaces = 2;
 
-// Steps of a path: three times what one of kMostEdges takes by short steps. Over triangles that are
+// Steps of a path: three times what one of kMaxEdges takes by short steps. Over triangles that are
 // far smaller than the mean one a path ends after these, and is as long as it came.
-constexpr int kMostSteps = 10'000;
+constexpr int kMaxSteps = 10'000;
 
 struct Start {
     SurfacePoint at;
@@ -198,7 +198,7 @@ Sum drifts(const BestPaths& best, const Surface& other_surface, const TraceOptio
         TraceOptions same = options;
         same.max_length_mm = a.s_mm;
         const PathPoint b = end_of(other_surface, best.starts[i], same);
-        if (b.s_mm < kLeastEdges * best.surface.mean_edge_mm) {
+        if (b.s_mm < kMinEdges * best.surface.mean_edge_mm) {
             return;
         }
         if (b.s_mm < a.s_mm) {  // the other met a rim first
@@ -232,12 +232,12 @@ PathAccuracy estimate_path_accuracy(const Surface& surface, int count) {
         return accuracy;
     }
     accuracy.length_mm =
-        std::min(diagonal_mm(surface.position_mm), kMostEdges * surface.mean_edge_mm);
+        std::min(diagonal_mm(surface.position_mm), kMaxEdges * surface.mean_edge_mm);
     const TraceOptions patches{.max_length_mm = accuracy.length_mm,
-                               .max_faces = kMostSteps,
+                               .max_faces = kMaxSteps,
                                .method = TraceMethod::Patches};
     const BestPaths best = best_paths(surface, count, patches);
-    const Sum walk = drifts(best, surface, {.max_faces = kMostSteps, .method = TraceMethod::Walk});
+    const Sum walk = drifts(best, surface, {.max_faces = kMaxSteps, .method = TraceMethod::Walk});
     std::vector<std::int32_t> fitted = corners_near(surface, best.traced);
     const auto known = std::stable_partition(
         fitted.begin(), fitted.end(),

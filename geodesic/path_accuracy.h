@@ -1,4 +1,4 @@
-/// How far paths on a mesh are from those on the surface it stands for, told from the mesh alone.
+/// Estimates the error of paths on a mesh without knowing the surface that it stands for.
 #pragma once
 
 #include "mesh/surface.h"

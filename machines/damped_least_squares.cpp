@@ -13,8 +13,8 @@ namespace {
 // and shrinks where one helps, and starts lower where little is left to do. At the least one, steps
 // are those of Newton's method but for a direction in which the residuals hardly change.
 constexpr double kFirstDamping = 1e-3;
-constexpr double kLeastDamping = 1e-14;
-constexpr double kMostDamping = 1e6;
+constexpr double kMinDamping = 1e-14;
+constexpr double kMaxDamping = 1e6;
 constexpr double kHarder = 10.0;
 constexpr double kSofter = 0.05;
 // A step shorter than this share of the unknowns' size is rounding.
@@ -39,8 +39,8 @@ public:
 
     LeastSquaresResult run(double goal, int most_iterations) {
         int iteration = 0;
-        double damping = std::clamp(norm_, kLeastDamping, kFirstDamping);
-        while (norm_ > goal && iteration < most_iterations && damping < kMostDamping) {
+        double damping = std::clamp(norm_, kMinDamping, kFirstDamping);
+        while (norm_ > goal && iteration < most_iterations && damping < kMaxDamping) {
             ++iteration;
             const std::vector<double> step = step_with(damping);
             std::vector<double> tried = x_;
@@ -58,7 +58,7 @@ public:
                 norm_ = norm;
                 residuals_.swap(tried_residuals_);
                 jacobian_.swap(tried_jacobian_);
-                damping = std::max(kSofter * damping, kLeastDamping);
+                damping = std::max(kSofter * damping, kMinDamping);
             } else {
                 damping *= kHarder;
             }

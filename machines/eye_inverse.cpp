@@ -26,20 +26,20 @@ constexpr double kGoal_mm = 1e-11;
 constexpr double kGoal_rad = 1e-11;
 constexpr double kReached_mm = 1e-9;
 constexpr double kReached_rad = 1e-9;
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 // Further starts where the previous joints lead to no solution.
 constexpr int kStarts = 12;
 constexpr double kDrawn_mm = 1000.0;
 constexpr double kStep_rad = 0.5;
 constexpr double kStep_mm = 500.0;
-constexpr double kLeastLength_mm = 100.0;
+constexpr double kMinLength_mm = 100.0;
 constexpr double kParallel = 1e-9;
 constexpr double kPointTolerance_mm = 1e-9;
 constexpr double kFlip_rad = 0.5 * kPi;
 constexpr std::size_t kConstraints = 6;  // place, and the roller's three components
 
 double length_of(const Machine& machine) {
-    double length = kLeastLength_mm;
+    double length = kMinLength_mm;
     for (std::size_t j = 0; j < machine.axis_count(); ++j) {
         const Axis& axis = machine.axis(j);
         if (axis.type == AxisType::Rotary) {
@@ -269,7 +269,7 @@ NumericEyeInverse::Found NumericEyeInverse::search(const Task& task, std::vector
     const double goal = std::min(kGoal_mm / length_mm_, kGoal_rad);
     const LeastSquaresResult result = damped_least_squares(
         problem, {joints.begin() + static_cast<std::ptrdiff_t>(first_free_), joints.end()}, goal,
-        kMostIterations);
+        kMaxIterations);
     std::copy(result.x.begin(), result.x.end(),
               joints.begin() + static_cast<std::ptrdiff_t>(first_free_));
     turn_near(machine_, first_free_, task.previous, joints);

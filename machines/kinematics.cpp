@@ -17,7 +17,7 @@ namespace {
 // are meant to be parallel to X, Y or Z are exactly so.
 constexpr double kParallel = 1e-9;
 // Determinant of the three linear directions below which they do not span space in practice.
-constexpr double kLeastVolume = 1e-3;
+constexpr double kMinVolume = 1e-3;
 constexpr double kPointTolerance_mm = 1e-9;
 
 Eigen::Isometry3d pose_of(const MandrelMount& mount) {
@@ -222,14 +222,14 @@ void SpindleWristInverse::recognise_linear(const Machine& machine) {
         machine_from_linear_.col(static_cast<Eigen::Index>(i)) = machine.eye_chain[i].direction;
     }
     if (count == 3) {
-        if (std::abs(machine_from_linear_.determinant()) < kLeastVolume) {
+        if (std::abs(machine_from_linear_.determinant()) < kMinVolume) {
             unsupported(machine, "the three linear axes lie in one plane");
         }
         linear_from_machine_ = machine_from_linear_.inverse();
         return;
     }
     if (count == 2 &&
-        machine_from_linear_.col(0).cross(machine_from_linear_.col(1)).norm() < kLeastVolume) {
+        machine_from_linear_.col(0).cross(machine_from_linear_.col(1)).norm() < kMinVolume) {
         unsupported(machine, "the two linear axes are parallel");
     }
     Eigen::Matrix3d products = machine_from_linear_.transpose() * machine_from_linear_;

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 // Iterations end a hundred times nearer than what counts as reached.
 constexpr double kGoalShare = 0.01;
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 // Further starts when the previous joints lead nowhere.
 constexpr int kStarts = 40;
 // Largest step of one iteration, so that a search from the previous joints stays on its side.
@@ -29,7 +29,7 @@ constexpr double kStep_mm = 500.0;
 constexpr double kDrawn_mm = 2000.0;
 // Rotations count at least like this far from their centre, so that a chain of linear axes alone
 // has a length.
-constexpr double kLeastLength_mm = 100.0;
+constexpr double kMinLength_mm = 100.0;
 // What rounding near a singular pose may leave; what is off by more is out of reach.
 constexpr double kRounding_mm = 1e-3;
 constexpr double kRounding_rad = 1e-6;
@@ -55,7 +55,7 @@ Vector3d rotation_between(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to
 double length_of(const Machine& machine) {
     const std::vector<double> zero(machine.axis_count(), 0.0);
     const Vector3d origin = base_from_mandrel(machine, zero).translation();
-    double length = kLeastLength_mm;
+    double length = kMinLength_mm;
     for (const Axis& axis : machine.mandrel_chain) {
         if (axis.type == AxisType::Rotary) {
             length = std::max(length, (origin - axis.point_mm).cross(axis.direction).norm());
@@ -145,7 +145,7 @@ PoseInverse::Choice PoseInverse::refined(const Isometry3d& pose, std::span<const
     };
     const double goal = kGoalShare * std::min(kPoseReached_mm / length_mm_, kPoseReached_rad);
     const LeastSquaresResult found =
-        damped_least_squares(problem, std::move(start), goal, kMostIterations);
+        damped_least_squares(problem, std::move(start), goal, kMaxIterations);
     std::copy(found.x.begin(), found.x.end(), joints.begin());
 
     Choice choice;

@@ -1,4 +1,4 @@
-/// Who meets whom across an edge: the flat topology that import works on before a mesh is manifold.
+/// Face adjacency across edges, in flat arrays: what import works on before a mesh is manifold.
 #pragma once
 
 #include <array>

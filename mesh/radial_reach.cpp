@@ -13,7 +13,7 @@ namespace {
 constexpr std::ptrdiff_t kBins = 1024;
 
 // Below this a mandrel has no height worth bins.
-constexpr double kLeastHeight_mm = 1e-3;
+constexpr double kMinHeight_mm = 1e-3;
 
 // What rounding may take from a distance, as a share of it and of the place's radius.
 constexpr double kRounding = 1e-12;
@@ -36,7 +36,7 @@ RadialReach::RadialReach(std::span<const TriangleSoup> parts) {
     }
     low_mm_ = low;
     bins_ = kBins;
-    bin_mm_ = std::max(high - low, kLeastHeight_mm) / static_cast<double>(kBins - 1);
+    bin_mm_ = std::max(high - low, kMinHeight_mm) / static_cast<double>(kBins - 1);
     std::vector<double> largest(at(bins_), -kInfinity);
     for (const TriangleSoup& part : parts) {
         for (const auto& face : part.faces) {

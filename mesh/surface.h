@@ -63,8 +63,8 @@ struct Surface {
     std::vector<std::uint8_t> exact;  ///< per corner index: 1 where it is not fitted but known
     std::vector<KnownCylinder> cylinder;
     std::vector<std::int32_t> cylinder_of;  ///< per face: index in `cylinder`, -1: none; or empty
-    std::vector<WalkFace> walk_face;        ///< per face: the above once more
-    std::vector<WalkCorner> walk_corner;    ///< per corner index: the above once more
+    std::vector<WalkFace> walk_face;        ///< per face: a packed copy for the walk
+    std::vector<WalkCorner> walk_corner;    ///< per corner index: a packed copy for the walk
     double mean_edge_mm = 0.0;
     FitReport fit;
 };

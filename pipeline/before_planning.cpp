@@ -30,13 +30,13 @@ namespace {
 using Eigen::Vector3d;
 
 // A fibre that is heavier than any creel: 1000 km.
-constexpr double kMostFibre_mm = 1e9;
+constexpr double kMaxFibre_mm = 1e9;
 
 // Share of the girth that a tow takes at most. One circuit of a pattern takes w / cos(angle) of it,
-// and bands overlap by a quarter at most (pattern_wish.h); layers without an angle are tried from
-// 45 deg on, where that is 0.88. From a third on the unit is asked after.
-constexpr double kMostOfGirth = 1.25;
-constexpr double kMostOfGirthWithoutAngle = 0.9;
+// and bands overlap by a quarter at most (pattern_constraints.h); layers without an angle are tried
+// from 45 deg on, where that is 0.88. From a third on the unit is asked after.
+constexpr double kMaxOfGirth = 1.25;
+constexpr double kMaxOfGirthWithoutAngle = 0.9;
 constexpr double kMuchOfGirth = 1.0 / 3.0;
 
 // About an axis further off its own a body of revolution is wound as another shape.
@@ -150,7 +150,7 @@ void check_tow(const PlannedTask& task) {
         const bool by_angle =
             kind == LayerKind::Helical || kind == LayerKind::Polar || is_any(kind);
         const bool counts = free_angle || (by_angle && !layer.pattern);
-        const double most = free_angle ? kMostOfGirthWithoutAngle : kMostOfGirth;
+        const double most = free_angle ? kMaxOfGirthWithoutAngle : kMaxOfGirth;
         if (counts && tow_of_girth(task) > most) {
             throw InputError("plan.tow_width", job_place(task, "/tow/width"), tow_words(task));
         }
@@ -343,11 +343,11 @@ void check_amount(const PlannedTask& task) {
     const double tow_mm = task.job.tow.width_mm;
     const double mm2 = area_mm2({surface.position_mm, surface.face}) * kCoveredShare * 0.5;
     const double fibre_mm = mm2 / tow_mm;
-    if (fibre_mm > kMostFibre_mm) {
+    if (fibre_mm > kMaxFibre_mm) {
         throw InputError("plan.amount", job_place(task, "/tow/width"),
                          "half of the wall alone takes " + fixed(fibre_mm / 1e6, 0) +
                              " km of a tow of " + fixed(tow_mm, 3) + " mm, more than " +
-                             fixed(kMostFibre_mm / 1e6, 0) + unit_question(task.mandrel));
+                             fixed(kMaxFibre_mm / 1e6, 0) + unit_question(task.mandrel));
     }
 }
 

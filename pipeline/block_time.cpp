@@ -11,16 +11,16 @@
 namespace meshwind {
 namespace {
 
-// Whether a pin takes hold of the fibre turns on tenths of a mm at the pin (kLeastPinRoom_mm), and
+// Whether a pin takes hold of the fibre turns on tenths of a mm at the pin (kMinPinRoom_mm), and
 // what the eye is off it is off there by less: by its share of the free length.
-constexpr double kMostInPinTurns_mm = 0.4;
+constexpr double kMaxInPinTurns_mm = 0.4;
 
 // Turns of less than this per mm (radius 100 m) are none.
 constexpr double kStraight_per_mm = 1e-5;
 
 // Where a controller spends more than this share of the time on corners, finer blocks are tried. On
 // a pipe of the hobby winder they save 12 %; yet finer ones save nothing more.
-constexpr double kMostCorners = 0.02;
+constexpr double kMaxCorners = 0.02;
 constexpr double kFinerForCorners = 0.25;
 
 // Finer blocks are taken where they take less than this share of the time.
@@ -112,7 +112,7 @@ BlockTolerance block_tolerance(const Job& job, double most_mm, double finer) {
     BlockTolerance tolerance;
     tolerance.sideways_mm = share * job.tolerance.laydown_mm;
     tolerance.angle_rad = share * rad_from_deg(job.tolerance.laydown_angle_deg);
-    tolerance.eye_mm = margin::kMostBetweenBlocks_mm;
+    tolerance.eye_mm = margin::kMaxBetweenBlocks_mm;
     tolerance.most_mm = most_mm;
     return tolerance;
 }
@@ -127,11 +127,11 @@ std::vector<double> room_of_clearance_mm(const Setup& setup, std::span<const Pie
     std::vector<double> room_mm = std::move(clearance_mm);
     for (double& room : room_mm) {
         room = std::clamp(margin::kBlocksOfRoom * (room - setup.rule.clearance_mm),
-                          margin::kLeastBetweenBlocks_mm, margin::kMostBetweenBlocks_mm);
+                          margin::kMinBetweenBlocks_mm, margin::kMaxBetweenBlocks_mm);
     }
     for (std::size_t i = 0; i < room_mm.size(); ++i) {
         if (!pieces[static_cast<std::size_t>(path[i].piece)].free_start.empty()) {
-            room_mm[i] = std::min(room_mm[i], kMostInPinTurns_mm);
+            room_mm[i] = std::min(room_mm[i], kMaxInPinTurns_mm);
         }
     }
     return room_mm;
@@ -149,7 +149,7 @@ ProgramBlocks program_blocks(const Setup& setup, std::span<const Piece> pieces,
     ProgramBlocks whole =
         blocks_within(setup, task, bounds.longer, block_tolerance(setup.job, bounds.most_mm));
     if (setup.dialect->has_junction_deviation() &&
-        whole.corner_s > kMostCorners * whole.duration_s) {
+        whole.corner_s > kMaxCorners * whole.duration_s) {
         ProgramBlocks finer =
             blocks_within(setup, task, bounds.longer,
                           block_tolerance(setup.job, bounds.most_mm, kFinerForCorners));

@@ -9,7 +9,7 @@
 #include "core/units.h"
 #include "geodesic/biarc.h"
 #include "geodesic/field_walk.h"
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "postproc/tables/landing_circuits.h"
 #include "postproc/tables/landing_path.h"
 #include "winding/laminate/measure_plan.h"

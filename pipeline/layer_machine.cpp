@@ -11,13 +11,13 @@
 namespace meshwind {
 namespace {
 
-Rejection first_of(const std::map<std::size_t, Rejection>& refused) {
-    return refused.empty() ? Rejection::None : refused.begin()->second;
+CourseFault first_of(const std::map<std::size_t, CourseFault>& refused) {
+    return refused.empty() ? CourseFault::None : refused.begin()->second;
 }
 
 // The commonest reason, and what the first check that failed says.
 std::string why_refused(std::span<const FibreProgram> programs) {
-    std::map<Rejection, int> count;
+    std::map<CourseFault, int> count;
     std::string words;
     for (const FibreProgram& program : programs) {
         for (const auto& [piece, reason] : program.made.refused) {
@@ -35,15 +35,15 @@ std::string why_refused(std::span<const FibreProgram> programs) {
 
 }  // namespace
 
-Rejection LayerMachine::follow(std::span<const Piece> pieces) const {
+CourseFault LayerMachine::follow(std::span<const Piece> pieces) const {
     return first_of(refused_by_machine(setup_, pieces));
 }
 
-Rejection LayerMachine::wind_alone(std::span<const Piece> pieces) const {
+CourseFault LayerMachine::wind_alone(std::span<const Piece> pieces) const {
     return first_of(program_of(setup_, pieces).refused);
 }
 
-Rejection LayerMachine::wind_circuits(std::span<const Piece> pieces) const {
+CourseFault LayerMachine::wind_circuits(std::span<const Piece> pieces) const {
     PieceProgramOptions options;
     options.lengths = LengthSearch::All;
     return first_of(program_of(setup_, pieces, options).refused);
@@ -63,7 +63,8 @@ std::unique_ptr<TrialWinding> LayerMachine::wind_all(const Plan& plan) const {
     return all;
 }
 
-std::unique_ptr<LayerPrograms> LayerMachine::programs_of(const Plan& plan, bool in_spite) const {
+std::unique_ptr<LayerPrograms> LayerMachine::programs_of(const Plan& plan,
+                                                         bool ignore_limits) const {
     done("plan");
     auto all = std::make_unique<LayerPrograms>();
     std::size_t before = 0;  // pieces
@@ -72,7 +73,7 @@ std::unique_ptr<LayerPrograms> LayerMachine::programs_of(const Plan& plan, bool 
         FibreProgram& program = all->programs.emplace_back();
         program.file =
             "program" + options_.suffix + fibre_suffix(number) + setup_.dialect->extension();
-        wind_fibre(fibre, plan.goes_on && number == 0, in_spite, program);
+        wind_fibre(fibre, plan.continues_fibre && number == 0, ignore_limits, program);
         for (const auto& [piece, reason] : program.made.refused) {
             all->refused.push_back(before + piece);
         }
@@ -82,18 +83,18 @@ std::unique_ptr<LayerPrograms> LayerMachine::programs_of(const Plan& plan, bool 
     return all;
 }
 
-void LayerMachine::wind_fibre(std::span<const Piece> pieces, bool goes_on, bool in_spite,
-                              FibreProgram& program) const {
+void LayerMachine::wind_fibre(std::span<const Piece> pieces, bool continues_fibre,
+                              bool ignore_limits, FibreProgram& program) const {
     PieceProgramOptions options;
-    options.in_spite = in_spite;
+    options.ignore_limits = ignore_limits;
     options.lengths = LengthSearch::All;
     options.optimal = wants_least_time(setup_);
-    options.through_text = [&](const PieceProgram& made) {
-        return setup_.dialect->read(text_of(made, goes_on), program.file, setup_.machine);
+    options.round_trip = [&](const PieceProgram& made) {
+        return setup_.dialect->read(text_of(made, continues_fibre), program.file, setup_.machine);
     };
     options.context = options_.context;
     options.stage_done = [this](const char* stage) { done(stage); };
-    if (goes_on) {
+    if (continues_fibre) {
         const BlockList& blocks = options_.before->made.blocks;
         const std::size_t spindle = setup_.machine.mandrel_chain.size() - 1;
         options.spindle_rad = joints_at(blocks, blocks.blocks.size() - 1)[spindle];
@@ -105,10 +106,10 @@ void LayerMachine::wind_fibre(std::span<const Piece> pieces, bool goes_on, bool 
     }
 }
 
-std::string LayerMachine::text_of(const PieceProgram& made, bool goes_on,
+std::string LayerMachine::text_of(const PieceProgram& made, bool continues_fibre,
                                   const std::vector<std::string>& notes) const {
     ProgramHeader header = options_.header;
-    if (goes_on) {
+    if (continues_fibre) {
         header.goes_on_from = options_.before->file;
     }
     header.fibre_length_mm = made.eyes.path.back().s_mm;

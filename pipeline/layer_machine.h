@@ -45,21 +45,22 @@ public:
     LayerMachine(const Setup& setup, const LayerMachineOptions& options)
         : setup_(setup), options_(options) {}
 
-    [[nodiscard]] Rejection follow(std::span<const Piece> pieces) const override;
-    [[nodiscard]] Rejection wind_alone(std::span<const Piece> pieces) const override;
-    [[nodiscard]] Rejection wind_circuits(std::span<const Piece> pieces) const override;
+    [[nodiscard]] CourseFault follow(std::span<const Piece> pieces) const override;
+    [[nodiscard]] CourseFault wind_alone(std::span<const Piece> pieces) const override;
+    [[nodiscard]] CourseFault wind_circuits(std::span<const Piece> pieces) const override;
     [[nodiscard]] std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const override;
 
     /// The way from a plan to its programs, and back: each is read from its text and wound again.
-    /// \param in_spite make programs even of what cannot be wound
-    [[nodiscard]] std::unique_ptr<LayerPrograms> programs_of(const Plan& plan, bool in_spite) const;
+    /// \param ignore_limits make programs even of what cannot be wound
+    [[nodiscard]] std::unique_ptr<LayerPrograms> programs_of(const Plan& plan,
+                                                             bool ignore_limits) const;
 
     /// \param notes lines for its head
-    [[nodiscard]] std::string text_of(const PieceProgram& made, bool goes_on,
+    [[nodiscard]] std::string text_of(const PieceProgram& made, bool continues_fibre,
                                       const std::vector<std::string>& notes = {}) const;
 
 private:
-    void wind_fibre(std::span<const Piece> pieces, bool goes_on, bool in_spite,
+    void wind_fibre(std::span<const Piece> pieces, bool continues_fibre, bool ignore_limits,
                     FibreProgram& program) const;
     void done(const char* stage) const;
 

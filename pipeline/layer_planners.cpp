@@ -32,7 +32,7 @@ constexpr double kFlatter_deg = 2.5;
 constexpr double kHardlyMore = 1.3;
 
 // Patterns that the machine refuses although it winds circuits of them: each takes a whole winding.
-constexpr int kMostRefused = 3;
+constexpr int kMaxRefused = 3;
 
 // Polar windings and flat helices leave necks and poles bare: where these cover less than this,
 // others are looked for.
@@ -42,7 +42,7 @@ constexpr double kPolarCovers = 0.95;
 constexpr double kWholeWall = 0.99;
 
 // Radii at which the circuits of a stage of a wall are tried to turn back.
-constexpr int kMostTurnsTried = 4;
+constexpr int kMaxTurnsTried = 4;
 
 // A whole number of layers is meant, not one more.
 constexpr double kSameLayers = 1e-9;
@@ -75,8 +75,8 @@ double covers_of(double target_layers) {
     return std::max(1.0, std::ceil(0.5 * target_layers - kSameLayers));
 }
 
-PatternWish wish_of(const PatternJob& job) {
-    PatternWish wish;
+PatternConstraints wish_of(const PatternJob& job) {
+    PatternConstraints wish;
     wish.circuits = job.circuits;
     wish.starts = job.starts;
     wish.order = job.lead;
@@ -188,7 +188,7 @@ TriedPlan wound(const LayerTask& task, Plan plan) {
 }
 
 // How the machine is asked for the first circuits of a pattern.
-using Asked = Rejection (Windability::*)(std::span<const Piece>) const;
+using Asked = CourseFault (Windability::*)(std::span<const Piece>) const;
 
 // Of `auto`: it covers, and the machine winds the first circuits of it.
 Plan pattern_at(const LayerTask& task, PatternKind kind, double angle_rad,
@@ -304,7 +304,7 @@ TriedPlan plan_from_rim_to_rim(const LayerTask& task) {
     };
     const bool narrow = has_narrow_end(task);
     for (double angle_deg = kFirstAngle_deg;
-         !narrow && !can_be_laid(best) && refused < kMostRefused && angle_deg <= kLastAngle_deg;
+         !narrow && !can_be_laid(best) && refused < kMaxRefused && angle_deg <= kLastAngle_deg;
          angle_deg += kAngleStep_deg) {
         try_one(pattern_at(task, PatternKind::Helical, rad_from_deg(angle_deg)));
     }
@@ -314,7 +314,7 @@ TriedPlan plan_from_rim_to_rim(const LayerTask& task) {
     const double steepest_deg = narrow ? kLastAngle_deg : kFirstAngle_deg - kAngleStep_deg;
     for (Plan& plan : helical_patterns(task, steepest_deg)) {
         const bool better = !can_be_laid(best) || covered_share(plan) > covered_share(best.plan);
-        if (!better || refused >= kMostRefused || try_one(std::move(plan))) {
+        if (!better || refused >= kMaxRefused || try_one(std::move(plan))) {
             break;
         }
     }
@@ -335,7 +335,7 @@ TriedPlan plan_stage_in_patterns(const LayerTask& task) {
     }
     double turn_mm = first_wanting_mm(mandrel.surface, *task.options.stage);
     TriedPlan tried;
-    for (int tries = 0; tries < kMostTurnsTried && (tries == 0 || turn_mm <= widest_mm); ++tries) {
+    for (int tries = 0; tries < kMaxTurnsTried && (tries == 0 || turn_mm <= widest_mm); ++tries) {
         const bool at_rim = turn_mm < beyond_rims_mm;
         const double sine = std::min(turn_mm / widest_mm, std::sin(rad_from_deg(kLastAngle_deg)));
         tried = at_rim ? plan_from_rim_to_rim(task)
@@ -403,7 +403,7 @@ TriedPlan plan_elbow_layer(const LayerTask& task) {
     elbow.on_layers = task.options.bare != nullptr;
     Plan plan = plan_elbow(task.setup.mandrel, *task.tube().tube, elbow);
     if (task.options.before != nullptr) {
-        plan.cut_because = "the lines of an elbow are not led on from another layer";
+        plan.cut_reason = "the lines of an elbow are not led on from another layer";
     }
     return untried(layer.kind == LayerKind::Auto ? covering(std::move(plan)) : std::move(plan));
 }

@@ -28,11 +28,11 @@ constexpr double kSameRadius_mm = 1e-3;
 
 // Courses on a body between two plain rims reach all of it, and less than kCoveredShare of what
 // they reach is refused in the end: so much of the wall may be out of reach.
-constexpr double kMostBareBetweenRims = 0.15;
+constexpr double kMaxBareBetweenRims = 0.15;
 
 // Elsewhere nothing is planned where courses reach less than half of the wall
 // (winding/cover/cover.cpp).
-constexpr double kMostBare = 1.0 - kCoveredShare * 0.5;
+constexpr double kMaxBare = 1.0 - kCoveredShare * 0.5;
 
 double radius_of(const Vector3d& point) {
     return point.head<2>().norm();
@@ -202,7 +202,7 @@ bool courses_fit(const PartReach& part) {
     const bool any_rim =
         std::any_of(rims.begin(), rims.end(), [&](const Rim& rim) { return reaches(part, rim); });
     const bool between_rims = part.body && !has_cap(*part.body, 0) && !has_cap(*part.body, 1);
-    return any_rim && bare_share(part) <= (between_rims ? kMostBareBetweenRims : kMostBare);
+    return any_rim && bare_share(part) <= (between_rims ? kMaxBareBetweenRims : kMaxBare);
 }
 
 bool hoops_fit(const PartReach& part) {

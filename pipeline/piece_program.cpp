@@ -44,9 +44,9 @@ constexpr double kFirstMotionShare = 0.3;
 constexpr double kChosenShare = 0.7;
 
 // A motion of least time uses the axes to the full, so its blocks follow it at least that closely.
-constexpr double kMostFastBlock_mm = 2.0 * kKnot_mm;
+constexpr double kMaxFastBlock_mm = 2.0 * kKnot_mm;
 
-using RefusedPieces = std::map<std::size_t, Rejection>;
+using RefusedPieces = std::map<std::size_t, CourseFault>;
 
 // Pieces to be wound, and how; nothing of it changes.
 struct ProgramTask {
@@ -92,7 +92,7 @@ void tell_done(const PieceProgramOptions& options, const char* stage) {
     }
 }
 
-void refuse(const EyePoint& point, Rejection reason, RefusedPieces& refused) {
+void refuse(const EyePoint& point, CourseFault reason, RefusedPieces& refused) {
     refused.emplace(static_cast<std::size_t>(point.piece), reason);
 }
 
@@ -133,22 +133,22 @@ RedundancyPolicy first_policy(RedundancyRule rule) {
 
 void refuse_beyond_travel(const AxisPath& axes, RefusedPieces& refused) {
     for (const LimitViolation& violation : axes.joints.violations) {
-        refuse(axes.path[violation.point], Rejection::AxisTravel, refused);
+        refuse(axes.path[violation.point], CourseFault::AxisTravel, refused);
     }
     for (const JointNote& note : axes.joints.notes) {
         if (note.kind == JointNoteKind::EyeOutOfReach) {
-            refuse(axes.path[note.first], Rejection::AxisTravel, refused);
+            refuse(axes.path[note.first], CourseFault::AxisTravel, refused);
         }
     }
 }
 
 void refuse_hits(const CollisionReport& report, const EyePath& path, RefusedPieces& refused) {
     for (const std::size_t point : report.fibre_hits) {
-        refuse(path[point], Rejection::FibreHit, refused);
+        refuse(path[point], CourseFault::FibreHit, refused);
     }
     for (const auto* const hits : {&report.head_hits, &report.body_hits}) {
         for (const std::size_t point : *hits) {
-            refuse(path[point], Rejection::HeadHit, refused);
+            refuse(path[point], CourseFault::HeadHit, refused);
         }
     }
 }
@@ -168,18 +168,18 @@ FirstMotion motion_with(const ProgramTask& task, std::span<const double> more_cl
     motion.policy = first_policy(setup.job.redundancy);
     motion.axes = axes_through(task, motion.eyes.path, motion.policy);
     for (const std::size_t point : motion.eyes.blocked) {
-        refuse(motion.eyes.path[point], Rejection::FreeLength, motion.refused);
+        refuse(motion.eyes.path[point], CourseFault::FreeLength, motion.refused);
     }
     refuse_beyond_travel(motion.axes, motion.refused);
     return motion;
 }
 
 // The clearance is measured if the free lengths and the axes allow the motion, or in spite of them.
-FirstMotion first_motion(const ProgramTask& task, bool in_spite) {
+FirstMotion first_motion(const ProgramTask& task, bool ignore_limits) {
     std::vector<double> more_mm(task.pieces.size(), 0.0);
     for (int round = 0;; ++round) {
         FirstMotion motion = motion_with(task, more_mm);
-        if (!motion.refused.empty() && !in_spite) {
+        if (!motion.refused.empty() && !ignore_limits) {
             return motion;
         }
         const std::size_t refused = motion.refused.size();
@@ -286,7 +286,7 @@ RefusedPieces pieces_laid_wrong(const PieceProgram& program) {
     RefusedPieces wrong;
     for (const std::size_t block : program.verification.wrong_blocks) {
         wrong.emplace(static_cast<std::size_t>(program.blocks.blocks[block].piece),
-                      Rejection::Laydown);
+                      CourseFault::Laydown);
     }
     return wrong;
 }
@@ -303,7 +303,7 @@ RefusedPieces wind_again(const ProgramTask& task, int rounds_in_vain, BlockBound
         if (many) {
             motion.axes = AxisPath();  // as much memory as the plan; it can be had again
         }
-        program.read = options.through_text ? options.through_text(program) : as_run(program);
+        program.read = options.round_trip ? options.round_trip(program) : as_run(program);
         program.verification = verify_program(task.setup, program.read, planned_fibre(task.pieces));
         RefusedPieces now = pieces_laid_wrong(program);
         const bool in_vain = round > rounds_in_vain && now == wrong;
@@ -425,13 +425,13 @@ PieceProgram wound_program(const ProgramTask& task, LeastTime least, Motion moti
         if (options.optimal && !least.at_hand) {
             program.eyes = EyePathResult();  // of a long fibre both are as large as the plan
             motion = Motion();
-            motion = begin_program(task, first_motion(task, options.in_spite), program);
+            motion = begin_program(task, first_motion(task, options.ignore_limits), program);
         }
-        if (!program.refused.empty() && !options.in_spite) {
+        if (!program.refused.empty() && !options.ignore_limits) {
             return program;
         }
         BlockBounds bounds = whole_tolerance(
-            motion, least.at_hand ? kMostFastBlock_mm : std::numeric_limits<double>::infinity());
+            motion, least.at_hand ? kMaxFastBlock_mm : std::numeric_limits<double>::infinity());
         put_blocks(task, motion, bounds, program);
         tell(options, "post", 1.0);
         tell_done(options, "post");
@@ -458,11 +458,11 @@ PieceProgram wound_program(const ProgramTask& task, LeastTime least, Motion moti
 
 }  // namespace
 
-std::map<std::size_t, Rejection> refused_by_machine(const Setup& setup,
-                                                    std::span<const Piece> pieces) {
+std::map<std::size_t, CourseFault> refused_by_machine(const Setup& setup,
+                                                      std::span<const Piece> pieces) {
     const PieceProgramOptions options;
     CollisionRule rule = setup.rule;
-    rule.told_mm = rule.clearance_mm;
+    rule.report_within_mm = rule.clearance_mm;
     const ProgramTask task{setup, pieces, options, rule};
     return first_motion(task, false).refused;
 }
@@ -471,11 +471,12 @@ PieceProgram program_of(const Setup& setup, std::span<const Piece> pieces,
                         const PieceProgramOptions& options) {
     tell(options, "post", 0.0);
     CollisionRule rule = setup.rule;
-    rule.told_mm = rule.clearance_mm + margin::kMostBetweenBlocks_mm / margin::kBlocksOfRoom;
+    rule.report_within_mm =
+        rule.clearance_mm + margin::kMaxBetweenBlocks_mm / margin::kBlocksOfRoom;
     const ProgramTask task{setup, pieces, options, rule};
     PieceProgram program;
     Motion motion =
-        begin_program(task, first_motion(task, options.in_spite || options.optimal), program);
+        begin_program(task, first_motion(task, options.ignore_limits || options.optimal), program);
     LeastTime least = least_time(task, motion, program);
     return wound_program(task, std::move(least), std::move(motion), std::move(program));
 }

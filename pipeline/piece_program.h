@@ -20,7 +20,7 @@
 
 namespace meshwind {
 
-/// What comes of pieces.
+/// Program and checks of a run of pieces.
 struct PieceProgram {
     EyePathResult eyes;           ///< at the stations
     std::size_t path_points = 0;  ///< points that blocks were chosen from
@@ -37,12 +37,12 @@ struct PieceProgram {
     Verification verification;  ///< of these
     /// Pieces that the machine cannot wind, or that the blocks do not lay as they are planned, each
     /// with the first reason.
-    std::map<std::size_t, Rejection> refused;
+    std::map<std::size_t, CourseFault> refused;
 };
 
 struct PieceProgramOptions {
     /// Make a program even of what the machine cannot wind.
-    bool in_spite = false;
+    bool ignore_limits = false;
     /// All: seconds where no near free length is clear.
     LengthSearch lengths = LengthSearch::Near;
     /// Free lengths and turns of the mandrel for the least time.
@@ -51,7 +51,7 @@ struct PieceProgramOptions {
     /// nearest whole turn, where it turns without end.
     std::optional<double> spindle_rad{};
     /// From the blocks to their text and back. Empty: they are wound as they are.
-    std::function<BlockList(const PieceProgram&)> through_text;
+    std::function<BlockList(const PieceProgram&)> round_trip;
     RunContext context{};
     std::function<void(const char* stage)> stage_done;  ///< "post", "verify"
 };
@@ -59,12 +59,12 @@ struct PieceProgramOptions {
 /// Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason: no
 /// free length, beyond an axis' travel, or hitting something. Of a run of pieces that all lead
 /// beyond one axis' travel the worst one is named. Empty: all can be wound. Thread-safe.
-[[nodiscard]] std::map<std::size_t, Rejection> refused_by_machine(const Setup& setup,
-                                                                  std::span<const Piece> pieces);
+[[nodiscard]] std::map<std::size_t, CourseFault> refused_by_machine(const Setup& setup,
+                                                                    std::span<const Piece> pieces);
 
 /// Eye, axes, blocks and time law of the pieces; then the blocks are wound again, and where that
 /// shows them too coarse they are made finer, a few times. Without blocks where the machine cannot
-/// wind the pieces, unless `in_spite`. Thread-safe. \pre there are pieces, all of one fibre
+/// wind the pieces, unless `ignore_limits`. Thread-safe. \pre there are pieces, all of one fibre
 [[nodiscard]] PieceProgram program_of(const Setup& setup, std::span<const Piece> pieces,
                                       const PieceProgramOptions& options = {});
 

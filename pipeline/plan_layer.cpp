@@ -47,7 +47,7 @@ PlannedLayer cover_instead(const LayerTask& task, const LayerPlanner& cover,
     const Surface& surface = task.setup.mandrel.surface;
     const double tow_mm = task.setup.job.tow.width_mm;
     const double wall_mm2 = area_mm2({surface.position_mm, surface.face});
-    if (wall_mm2 > kMostTowSquares * tow_mm * tow_mm) {
+    if (wall_mm2 > kMaxTowSquares * tow_mm * tow_mm) {
         return failed(Planner::Pattern,
                       "no pattern is laid: " + why + "; a wall of " + fixed(wall_mm2 / 1e6, 3) +
                           " m2 is too large to be covered by single courses of a tow of " +

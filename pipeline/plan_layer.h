@@ -32,7 +32,7 @@ struct LayerPlanOptions {
 /// A cover of a body that has patterns is planned on a job's own account only where the wall is no
 /// larger than so many squares of the tow's width: ten times a tee of 0.19 m^2 with a tow of 6 mm,
 /// which takes half a minute. The time grows faster than that number.
-inline constexpr double kMostTowSquares = 5e4;
+inline constexpr double kMaxTowSquares = 5e4;
 
 struct PlannedLayer {
     Plan plan;
@@ -43,7 +43,7 @@ struct PlannedLayer {
 /// A plan of the layer on the setup's mandrel, by the planners of layer_planners.h. `auto` takes a
 /// pattern where the part has one that covers kCoveredShare of it and that the machine winds, else
 /// courses that cover it; where the part has patterns and none is taken the context is told why,
-/// and a wall of more than kMostTowSquares is not covered. A stage of a wall is a pattern, as of
+/// and a wall of more than kMaxTowSquares is not covered. A stage of a wall is a pattern, as of
 /// `auto`, while most of the wall asks for more, else a cover. \pre the layer is not imported
 [[nodiscard]] PlannedLayer plan_layer(const Setup& setup, const LayerJob& layer,
                                       const Windability& machine,

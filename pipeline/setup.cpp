@@ -101,7 +101,7 @@ void check_free_length(const FreeFibreRule& free, double length_mm, const std::s
 CollisionRule collision_rule(const Setup& setup, const fs::path& job_file) {
     CollisionRule rule;
     rule.clearance_mm = setup.job.tolerance.clearance_mm;
-    rule.told_mm = rule.clearance_mm + kToldClearance_mm;
+    rule.report_within_mm = rule.clearance_mm + kToldClearance_mm;
     FreeFibreRule& free = rule.free_fibre;
     free.min_mm = setup.machine.fibre.min_free_length_mm;
     free.max_mm = setup.machine.fibre.max_free_length_mm;
@@ -173,7 +173,7 @@ void complete(Setup& setup, const fs::path& job_file) {
         obstacles_of(setup.machine, setup.mandrel, setup.job.mandrel.extension_mm, {});
     Surface wall = extended_surface(setup.mandrel, setup.job.mandrel.extension_mm);
     const double reach_mm = bridge_reach_mm(setup.mandrel.surface);
-    setup.wall = std::make_unique<LaydownWall>(std::move(wall), reach_mm);
+    setup.wall = std::make_unique<LaydownSurface>(std::move(wall), reach_mm);
 }
 
 }  // namespace
@@ -273,7 +273,7 @@ void put_pins(Setup& setup, std::span<const PinRing> rings) {
     }
     setup.obstacles = obstacles_of(setup.machine, setup.mandrel, job.extension_mm, pins);
     setup.pins.assign(rings.begin(), rings.end());
-    setup.wall = std::make_unique<LaydownWall>(
+    setup.wall = std::make_unique<LaydownSurface>(
         shortens ? extended_surface(setup.mandrel, job.extension_mm) : setup.wall->surface(),
         setup.wall->bridge_reach_mm(), std::move(pins));
 }

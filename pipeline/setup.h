@@ -37,9 +37,9 @@ struct Setup {
     std::unique_ptr<Dialect> dialect;
     HeadEnvelope envelope;
     CollisionRule rule;
-    std::unique_ptr<RayQuery> obstacles;  ///< mandrel, extensions and bodies that turn with them
-    std::unique_ptr<LaydownWall> wall;    ///< the surface with its extensions
-    std::vector<PinRing> pins{};          ///< that stand on the extensions
+    std::unique_ptr<RayQuery> obstacles;   ///< mandrel, extensions and bodies that turn with them
+    std::unique_ptr<LaydownSurface> wall;  ///< the surface with its extensions
+    std::vector<PinRing> pins{};           ///< that stand on the extensions
 };
 
 /// How a job asks for its mandrel to be read.

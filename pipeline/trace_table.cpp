@@ -8,7 +8,7 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "geodesic/connect.h"
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "geodesic/trace.h"
 #include "mesh/ray_query.h"
 #include "mesh/smooth/patch.h"

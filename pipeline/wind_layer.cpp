@@ -71,9 +71,9 @@ void take_plan(PlannedLayer& planned, const WindLayerOptions& options, WoundLaye
     if (!plan.pins.empty() && layer.setup.pins.empty()) {
         put_pins(layer.setup, plan.pins);
     }
-    if (options.before != nullptr && !plan.goes_on && plan.cut_because.empty()) {
-        plan.cut_because = std::string("plans of the kind \"") + name_of(plan.planner) +
-                           "\" are not led on from another layer";
+    if (options.before != nullptr && !plan.continues_fibre && plan.cut_reason.empty()) {
+        plan.cut_reason = std::string("plans of the kind \"") + name_of(plan.planner) +
+                          "\" are not led on from another layer";
     }
 }
 
@@ -263,7 +263,8 @@ void write_programs(const LayerMachine& machine, WoundLayer& layer) {
     const std::vector<std::string> notes = notes_of(layer.checks);
     for (std::size_t fibre = 0; fibre < layer.programs.size(); ++fibre) {
         FibreProgram& program = layer.programs[fibre];
-        program.text = machine.text_of(program.made, layer.plan.goes_on && fibre == 0, notes);
+        program.text =
+            machine.text_of(program.made, layer.plan.continues_fibre && fibre == 0, notes);
         forget_laid(program.made);
     }
 }

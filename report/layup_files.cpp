@@ -26,7 +26,7 @@ constexpr double kParts_per_layer = 1e6;   // numbers of layers
 
 // Plies whose directions layup.vtu has: on most of a wall more than lie there, and each is an
 // array.
-constexpr std::size_t kMostDirections = 12;
+constexpr std::size_t kMaxDirections = 12;
 
 // \param of "" for all layers, "_of_layer_2" for one
 void add_cells(const LayupArrays& arrays, const std::string& of, std::vector<CellArray>& cells) {
@@ -109,7 +109,7 @@ private:
         std::vector<std::vector<Vector3d>> directions;
         for (std::size_t f = 0; f < surface_.face.size(); ++f) {
             const std::vector<LayupPly> plies = layup_.plies(f);
-            const std::size_t told = std::min(plies.size(), kMostDirections);
+            const std::size_t told = std::min(plies.size(), kMaxDirections);
             while (directions.size() < told) {
                 directions.emplace_back(surface_.face.size(), Vector3d::Zero());
             }

@@ -26,7 +26,7 @@ using nlohmann::json;
 
 json what_if_report(const Plan& plan) {
     json all = json::array();
-    for (const WhatIf& what_if : plan.what_if) {
+    for (const RelaxedRule& what_if : plan.what_if) {
         all.push_back({{"rule", name_of(what_if.rule)},
                        {"factor", what_if.factor},
                        {"reachable", report_number(what_if.reachable)}});
@@ -175,12 +175,12 @@ json plan_coverage_report(const Coverage& coverage) {
 // Candidates and courses that did not come into the plan, by their reasons.
 json library_report(const PlanEffort& effort) {
     json refusals = json::object();
-    for (std::size_t r = 0; r < kRefusals; ++r) {
-        refusals[name_of(static_cast<Refusal>(r))] = effort.refusals[r];
+    for (std::size_t r = 0; r < kCandidateFaults; ++r) {
+        refusals[name_of(static_cast<CandidateFault>(r))] = effort.refusals[r];
     }
     json rejections = json::object();
     for (std::size_t r = 1; r < kRejections; ++r) {
-        rejections[name_of(static_cast<Rejection>(r))] = effort.rejections[r];
+        rejections[name_of(static_cast<CourseFault>(r))] = effort.rejections[r];
     }
     return {{"candidates", effort.candidates},
             {"outcomes", refusals},

@@ -214,15 +214,15 @@ FibreUse use_of_fibre(const WoundLayer& layer) {
                      area_mm2({surface.position_mm, surface.face}), layer.job.target_layers);
 }
 
-const char* name_of(WhatIf::Rule rule) {
+const char* name_of(RelaxedRule::Rule rule) {
     switch (rule) {
-        case WhatIf::Rule::Friction:
+        case RelaxedRule::Rule::Friction:
             return "friction";
-        case WhatIf::Rule::Bridging:
+        case RelaxedRule::Rule::Bridging:
             return "bridging tolerance";
-        case WhatIf::Rule::Extension:
+        case RelaxedRule::Rule::Extension:
             return "extension";
-        case WhatIf::Rule::Pins:
+        case RelaxedRule::Rule::Pins:
             return "pins";
     }
     return "";
@@ -290,7 +290,7 @@ void add_laminate_report(json& report, const Run& run) {
         const WoundLayer& layer = run.layers[i];
         courses += layer.plan.courses;
         transitions += layer.plan.pieces.size() - static_cast<std::size_t>(layer.plan.courses);
-        fibres += layer.plan.fibres - (layer.plan.goes_on ? 1 : 0);
+        fibres += layer.plan.fibres - (layer.plan.continues_fibre ? 1 : 0);
         for (const FibreProgram& program : layer.programs) {
             blocks += program.made.blocks.moves();
             files.push_back(program.file);
@@ -298,9 +298,9 @@ void add_laminate_report(json& report, const Run& run) {
         json row = {{"layer", i + 1},
                     {"kind", name_of(layer.job.kind)},
                     {"mandrel", i == 0 ? layer.setup.mandrel.file : grown_mandrel_name(i)},
-                    {"goes_on", layer.plan.goes_on}};
-        if (!layer.plan.cut_because.empty()) {
-            row["cut_because"] = layer.plan.cut_because;
+                    {"goes_on", layer.plan.continues_fibre}};
+        if (!layer.plan.cut_reason.empty()) {
+            row["cut_because"] = layer.plan.cut_reason;
         }
         row.update(figures_report(figures_of(layer)));
         layers.push_back(std::move(row));
@@ -335,7 +335,7 @@ void print_laminate(std::ostream& out, const Run& run) {
     }
     print_row(out, "all", "", figures_of_all(run));
     for (std::size_t i = 1; i < run.layers.size(); ++i) {
-        const std::string& why = run.layers[i].plan.cut_because;
+        const std::string& why = run.layers[i].plan.cut_reason;
         if (!why.empty()) {
             out << "  layer " << i + 1 << " begins with a new fibre: " << why << '\n';
         }

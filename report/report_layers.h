@@ -38,7 +38,7 @@ struct LayerFigures {
 [[nodiscard]] FibreUse use_of_fibre(const WoundLayer& layer);
 
 /// "friction", ...
-[[nodiscard]] const char* name_of(WhatIf::Rule rule);
+[[nodiscard]] const char* name_of(RelaxedRule::Rule rule);
 
 /// "leading" or "lagging".
 [[nodiscard]] const char* word_of(BandOrder order);

@@ -95,20 +95,20 @@ void print_elbow(std::ostream& out, const LaidElbow& laid, const LayerJob& job, 
 }
 
 // "with a friction of 0.30 instead of 0.20"
-std::string words_of(const WhatIf& what_if, const WoundLayer& layer) {
+std::string words_of(const RelaxedRule& what_if, const WoundLayer& layer) {
     const Job& job = layer.setup.job;
     const auto looser = [&](const char* a, double now, const char* unit) {
         return std::string("with ") + a + " " + name_of(what_if.rule) + " of " +
                fixed(what_if.factor * now, 2) + unit + " instead of " + fixed(now, 2) + unit;
     };
     switch (what_if.rule) {
-        case WhatIf::Rule::Friction:
+        case RelaxedRule::Rule::Friction:
             return looser("a", layer.setup.friction.holds(), "");
-        case WhatIf::Rule::Bridging:
+        case RelaxedRule::Rule::Bridging:
             return looser("a", job.tow.bridging_tolerance_mm, " mm");
-        case WhatIf::Rule::Extension:
+        case RelaxedRule::Rule::Extension:
             return looser("an", job.mandrel.extension_mm, " mm");
-        case WhatIf::Rule::Pins:
+        case RelaxedRule::Rule::Pins:
             return "with turns on pins (\"turn\": \"pins\", which do with shorter extensions)";
     }
     return {};
@@ -138,7 +138,7 @@ void print_bare_wall(std::ostream& out, const WoundLayer& layer, Detail detail) 
             << '\n';
     }
     constexpr double kMuch = 0.02;  // of the wall
-    for (const WhatIf& what_if : layer.plan.what_if) {
+    for (const RelaxedRule& what_if : layer.plan.what_if) {
         if (detail == Detail::Brief && what_if.reachable < layer.plan.coverage.reachable + kMuch) {
             return;
         }

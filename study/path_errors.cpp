@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/small_linear.h"
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 
 namespace meshwind {
 namespace {
@@ -24,7 +24,7 @@ constexpr double kTrustedSlip = 0.05;
 
 // In mean edges: landing points nearer to each other (a corner just cut, the path's end) are no
 // three points to take a direction from.
-constexpr double kLeastSpacingEdges = 1e-3;
+constexpr double kMinSpacingEdges = 1e-3;
 
 Vector3d turned_between(const Vector3d& vector, const Vector3d& from, const Vector3d& to) {
     return shortest_turn(from, to) * vector;
@@ -103,7 +103,7 @@ PathErrors path_errors(const Surface& surface, const SurfacePath& path, const Re
     PathErrors errors;
     const auto beyond = std::find_if(
         path.begin(), path.end(), [&](const PathPoint& p) { return p.s_mm > exact.length_mm(); });
-    const double least_mm = kLeastSpacingEdges * surface.mean_edge_mm;
+    const double least_mm = kMinSpacingEdges * surface.mean_edge_mm;
     const auto count = static_cast<std::size_t>(beyond - path.begin());
     for (std::size_t i = 1; i < count; ++i) {
         const CurveState at = exact.at(path[i].s_mm);

@@ -31,8 +31,8 @@ constexpr double kCylinderLengthMm = 400.0;
 constexpr double kSampleShare = 0.2;
 
 // Edge lengths within a tenth of the file's own mean stand for its mesh as given.
-constexpr double kLeastShare = 0.9;
-constexpr double kLeastCoarsening = 1.1;
+constexpr double kMinShare = 0.9;
+constexpr double kMinCoarsening = 1.1;
 
 // Edges that stand for a CAD part's exact faces, of the shortest that are looked at.
 constexpr double kReferenceShare = 1.0 / 3.0;
@@ -114,13 +114,13 @@ StudyMandrel file_study(Mandrel mandrel) {
     study.samples = {given.position_mm, given.face};
     study.reference = mesh_reference(*study.refined, {.method = TraceMethod::Patches});
     study.mesh = [&given, name = study.name](const StudyMeshOptions& options) {
-        if (!(options.edge_mm >= kLeastShare * given.mean_edge_mm)) {
+        if (!(options.edge_mm >= kMinShare * given.mean_edge_mm)) {
             throw InputError("study.edge", name,
                              "its own edges are " + fixed(given.mean_edge_mm, 2) +
                                  " mm; a study of it takes no shorter ones");
         }
         TriangleSoup soup{given.position_mm, given.face};
-        return frozen_surface(options.edge_mm < kLeastCoarsening * given.mean_edge_mm
+        return frozen_surface(options.edge_mm < kMinCoarsening * given.mean_edge_mm
                                   ? soup
                                   : coarsened(soup, options.edge_mm));
     };

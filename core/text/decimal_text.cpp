@@ -46,16 +46,16 @@ void append_nano(std::string& text, std::int64_t nano, int decimals) {
 }
 
 void append_significant(std::string& text, double value) {
-    constexpr double kLeastScaled = 1e5;  // six digits
-    constexpr double kMostScaled = 1e15;  // still exact in a double
+    constexpr double kMinScaled = 1e5;   // six digits
+    constexpr double kMaxScaled = 1e15;  // still exact in a double
     assert(value > 0.0 && std::isfinite(value));
     int decimals = 0;
     double scaled = value;
-    while (scaled < kLeastScaled && decimals < kNanoDecimals) {
+    while (scaled < kMinScaled && decimals < kNanoDecimals) {
         scaled *= 10.0;
         ++decimals;
     }
-    if (scaled < kLeastScaled || scaled > kMostScaled) {  // rare: beyond nine decimals or huge
+    if (scaled < kMinScaled || scaled > kMaxScaled) {  // rare: beyond nine decimals or huge
         const int digits = 6 - static_cast<int>(std::floor(std::log10(value)));
         append_fixed(text, value, digits > 0 ? digits : 0);
         return;

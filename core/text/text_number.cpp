@@ -41,11 +41,11 @@ std::string fixed(double value, int decimals) {
 }
 
 FixedPair fixed_apart(double value, double limit, int decimals) {
-    constexpr int kMostDecimals = 17;  // doubles of a size around 1 differ before that
+    constexpr int kMaxDecimals = 17;  // doubles of a size around 1 differ before that
     FixedPair pair{fixed(value, decimals), fixed(limit, decimals)};
     for (int more = decimals + 1; pair.value == pair.limit && value != limit; ++more) {
         pair = {fixed(value, more), fixed(limit, more)};
-        if (more >= kMostDecimals) {
+        if (more >= kMaxDecimals) {
             pair = {{}, {}};
             append_shortest(pair.value, value);
             append_shortest(pair.limit, limit);

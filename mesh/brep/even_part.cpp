@@ -25,11 +25,11 @@ using Eigen::Vector3d;
 
 // A vertex is moved onto its face by less than this share of its shortest edge; what is farther off
 // was led astray on its way, and stays.
-constexpr double kMostSnap = 0.2;
+constexpr double kMaxSnap = 0.2;
 
 // The middle of an edge is off the middle of its chord by less than this share of the chord: on the
 // way about half a cylinder. What is farther off is another place.
-constexpr double kMostLift = 0.5;
+constexpr double kMaxLift = 0.5;
 
 // Short edges of narrow triangles, and what vertices that are left out may be off the triangles
 // that stay, by the part's size: of the first mesh, which has points where edges are bent.
@@ -38,14 +38,14 @@ constexpr double kLeftOut = 1e-5;
 
 // Rounded lips and the like take few triangles: two along a quarter of a turn. What is wound of
 // them is known exactly all the same.
-constexpr double kMostTurn_rad = 0.7;
+constexpr double kMaxTurn_rad = 0.7;
 constexpr double kGrading = 0.35;
 
 // A part of more triangles than this, and than so many times those of its longest edge, has
 // roundings far smaller than itself. Their edges are made longer by a factor, from a share of the
 // least edge on, until it has no more.
-constexpr double kMostTriangles = 60000.0;
-constexpr double kMostRefined = 2.0;
+constexpr double kMaxTriangles = 60000.0;
+constexpr double kMaxRefined = 2.0;
 constexpr double kLonger = 1.4;
 constexpr double kShortest = 0.02;
 
@@ -116,7 +116,7 @@ private:
         const auto [other, here] = std::minmax({label(edge, 0), label(edge, 1)});
         const auto found =
             here == other ? exact_.on_face(here, chord) : exact_.on_border(here, other, chord);
-        return found && (*found - chord).norm() < kMostLift * work_.length(edge) ? *found : chord;
+        return found && (*found - chord).norm() < kMaxLift * work_.length(edge) ? *found : chord;
     }
 
     WorkMesh work_;
@@ -149,7 +149,7 @@ Surface exact_wall(const LabelledMesh& part, const std::vector<char>& all, Exact
 // The shortest edges that the part can afford, 0 where it can afford any.
 double affordable_edge_mm(const Surface& wall, EvenMeshOptions options) {
     options.shortest_mm = options.longest_mm;
-    const double most = std::max(kMostTriangles, kMostRefined * wanted_triangles(wall, options));
+    const double most = std::max(kMaxTriangles, kMaxRefined * wanted_triangles(wall, options));
     options.shortest_mm = 0.0;
     while (wanted_triangles(wall, options) > most) {
         options.shortest_mm = std::max(kLonger * options.shortest_mm, kShortest * options.least_mm);
@@ -196,7 +196,7 @@ void snap(LabelledMesh& part, const std::vector<Meeting>& at_vertex, ExactFaces&
         } else if (meeting.faces.size() == 2 && !meeting.open) {
             target = exact.on_border(*meeting.faces.begin(), *meeting.faces.rbegin(), p);
         }
-        if (target && (*target - p).norm() <= kMostSnap * meeting.shortest_mm) {
+        if (target && (*target - p).norm() <= kMaxSnap * meeting.shortest_mm) {
             p = *target;
         }
     }
@@ -230,7 +230,7 @@ CadMesh even_part(const TriangleSoup& start, std::span<const std::int32_t> face,
     const std::vector<char> all(at(faces), 1);
     const double size = size_mm(part, all);
     EvenMeshOptions options = even_options(size);
-    options.most_turn = kMostTurn_rad;
+    options.most_turn = kMaxTurn_rad;
     options.grading = kGrading;
     if (edge_mm > 0.0) {
         options.longest_mm = edge_mm;

@@ -29,10 +29,10 @@ using Eigen::Vector3d;
 constexpr double kEdge = 0.3;
 
 // Shortest edges, as a share of the part's size: fillets are narrower than what parts have else.
-constexpr double kLeastEdge = 0.01;
+constexpr double kMinEdge = 0.01;
 
 // Share of the wall in uneven triangles that a blended wall may have.
-constexpr double kMostNarrow = 5e-3;
+constexpr double kMaxNarrow = 5e-3;
 
 // Faces of the part that are wall, in their order: the faces of its frozen wall.
 std::vector<std::int32_t> wall_faces(const LabelledMesh& part, const std::vector<char>& kept) {
@@ -48,7 +48,7 @@ std::vector<std::int32_t> wall_faces(const LabelledMesh& part, const std::vector
 EvenMeshOptions options_for(const LabelledMesh& part, const std::vector<char>& kept) {
     const double size = size_mm(part, kept);
     EvenMeshOptions options = even_options(size);
-    options.least_mm = kLeastEdge * size;
+    options.least_mm = kMinEdge * size;
     return options;
 }
 
@@ -201,13 +201,13 @@ Blend blend_wall(const LabelledMesh& part, const std::vector<char>& kept, double
     check_interrupt();
     Surface smooth = frozen_wall(fine, kept);
     const EvenMeshOptions options = options_for(fine, kept);
-    if (wanted_triangles(smooth, options) > kMostEvenTriangles) {
+    if (wanted_triangles(smooth, options) > kMaxEvenTriangles) {
         result.why_not = "it would take too many triangles; blend by a larger radius";
         return result;
     }
     LabelledMesh even = even_mesh(fine, kept, std::move(smooth), options);
     const double narrow = share_below(even, kept, kUnevenQuality);
-    if (narrow > kMostNarrow) {
+    if (narrow > kMaxNarrow) {
         result.why_not = "its triangles do not come out even";
         return result;
     }

@@ -31,7 +31,7 @@ using Eigen::Vector3d;
 constexpr double kDetailShare = 0.05;
 
 // More places out of reach than this are a rough wall, not lettering.
-constexpr std::size_t kMostPlaces = 2000;
+constexpr std::size_t kMaxPlaces = 2000;
 
 // A detail stands on the wall by flanks: this share of its area at least is turned by more than
 // this from the wall that goes on under it. The two sides of a crotch are not.
@@ -44,7 +44,7 @@ constexpr int kRings = 3;
 // The wall lies on that within this share of what counts as a detail; what does not is left out in
 // so many fits at most.
 constexpr double kGroundShare = 0.1;
-constexpr int kMostFits = 6;
+constexpr int kMaxFits = 6;
 
 // What is taken off, in mm (without_details).
 struct DetailSizes {
@@ -182,7 +182,7 @@ std::optional<Ground> ground_of(const StruckPart& part, const Hole& hole,
                                 const std::set<std::int32_t>& gone, double least_mm) {
     const std::set<std::int32_t> around = faces_around(part, hole, gone);
     std::set<std::int32_t> off;
-    for (int fit = 0; fit < kMostFits; ++fit) {
+    for (int fit = 0; fit < kMaxFits; ++fit) {
         const std::optional<RuledShape> shape = shape_of(part, around, off);
         if (!shape) {
             return std::nullopt;
@@ -402,7 +402,7 @@ Details without_details(const LabelledMesh& part, const std::vector<char>& kept,
     for (const WallSide side : {WallSide::Inside, WallSide::Outside}) {
         check_interrupt();
         const auto places =
-            enclosed_places(wall, out_of_reach(wall, ball_mm, side), kDetailShare, kMostPlaces);
+            enclosed_places(wall, out_of_reach(wall, ball_mm, side), kDetailShare, kMaxPlaces);
         for (const std::vector<std::int32_t>& place : places) {
             check_interrupt();
             std::set<std::int32_t> gone;

@@ -37,8 +37,8 @@ constexpr double kCosineGain = 1e-6;
 constexpr double kEquilateral = 0.433;
 
 // More faces than so many times what is wanted: the sweeps do not settle.
-constexpr double kMostGrowth = 3.0;
-constexpr double kMostGrowthFaces = 1000.0;
+constexpr double kMaxGrowth = 3.0;
+constexpr double kMaxGrowthFaces = 1000.0;
 
 constexpr std::size_t kProjectChunk = 256;
 
@@ -316,9 +316,9 @@ void polish(const Target& target, const EvenMeshOptions& options, PlacedMesh& pl
 
 EvenMeshOptions even_options(double size_mm) {
     constexpr double kLongestEdge = 0.15;
-    constexpr double kLeastEdge = 0.02;
+    constexpr double kMinEdge = 0.02;
     EvenMeshOptions options;
-    options.least_mm = kLeastEdge * size_mm;
+    options.least_mm = kMinEdge * size_mm;
     options.longest_mm = kLongestEdge * size_mm;
     return options;
 }
@@ -337,7 +337,7 @@ LabelledMesh even_mesh(const LabelledMesh& part, const std::vector<char>& kept, 
     set_wanted_sizes(target, placed);
     const double wanted =
         static_cast<double>(placed.work.mesh.n_faces()) + triangles_of(surface, size_mm);
-    sweep_even(target, options, kMostGrowth * wanted + kMostGrowthFaces, placed);
+    sweep_even(target, options, kMaxGrowth * wanted + kMaxGrowthFaces, placed);
     polish(target, options, placed);
     return placed.work.part();
 }

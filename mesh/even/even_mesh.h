@@ -23,7 +23,7 @@ struct EvenMeshOptions {
 
 /// Even triangles are no more than this. A pipe 100 times as long as wide takes 10,000; beyond,
 /// vertices stand for no surface, and nobody waits for what comes of them.
-inline constexpr double kMostEvenTriangles = 200000.0;
+inline constexpr double kMaxEvenTriangles = 200000.0;
 
 /// Edges of a part of this size.
 [[nodiscard]] EvenMeshOptions even_options(double size_mm);

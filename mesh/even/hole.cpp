@@ -19,7 +19,7 @@ constexpr double kOneRegion = 0.8;
 constexpr double kAroundCosine = 0.34;
 
 // Faces are added around vertices where an outline touches itself so many times at most.
-constexpr int kMostMends = 4;
+constexpr int kMaxMends = 4;
 
 std::vector<BorderEdge> border_of(const StruckPart& part, const std::set<std::int32_t>& gone) {
     std::vector<BorderEdge> border;
@@ -42,7 +42,7 @@ bool is_standing_wall(const StruckPart& part, std::int32_t face) {
 // Adds the faces around vertices that the outline passes twice. False where that goes on, or
 // the outline comes to what is no wall or struck out.
 bool make_simple(const StruckPart& part, std::set<std::int32_t>& gone) {
-    for (int round = 0; round <= kMostMends; ++round) {
+    for (int round = 0; round <= kMaxMends; ++round) {
         std::map<std::size_t, int> passes;
         const std::vector<BorderEdge> border = border_of(part, gone);
         for (const BorderEdge& e : border) {

@@ -39,7 +39,7 @@ constexpr double kWidest = 0.6;
 // Facets with a vertex that is off by more than this share of the worst are left out of a row, as
 // long as so much of the row is left.
 constexpr double kFarOff = 0.5;
-constexpr double kLeastShare = 0.7;
+constexpr double kMinShare = 0.7;
 
 // The middle of an edge is nearer to its shape than this share of the edge, so that halves are
 // shorter than the whole; beside the tip of a cone it may not be.
@@ -50,12 +50,12 @@ constexpr double kStraight = 1e-5;
 
 // The longest edges lose at least a quarter of their length in every round: enough for facets of
 // 10,000 edges.
-constexpr int kMostRounds = 40;
+constexpr int kMaxRounds = 40;
 
 // Halves are no more than this, nor than so many for each of the part's triangles: a pipe 100 times
 // as long as wide takes 150 for each. More come of facets with hardly an area.
-constexpr double kMostHalves = 300000.0;
-constexpr double kMostHalvesEach = 200.0;
+constexpr double kMaxHalves = 300000.0;
+constexpr double kMaxHalvesEach = 200.0;
 constexpr double kFewHalves = 20000.0;
 
 // Triangles turned afterwards stay within 20 degrees.
@@ -159,7 +159,7 @@ double add_shape(std::vector<Face> row, const std::vector<Facet>& facets, Shaped
     WorkMesh& work = mesh.work;
     const std::size_t whole = row.size();
     while (row.size() >= kFewFacets &&
-           static_cast<double>(row.size()) >= kLeastShare * static_cast<double>(whole)) {
+           static_cast<double>(row.size()) >= kMinShare * static_cast<double>(whole)) {
         const RowFit fit = fit_row(work, facets, row);
         if (!fit.shape) {
             return 0.0;
@@ -309,7 +309,7 @@ int halve_once(ShapedMesh& mesh, double edge_mm) {
 // In rounds, until no edge is too long. \return how many
 int halve_long(ShapedMesh& mesh, double edge_mm) {
     int count = 0;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
         const int halved = halve_once(mesh, edge_mm);
         if (halved == 0) {
             break;
@@ -346,7 +346,7 @@ LongFacets halve_long_facets(const LabelledMesh& part, const std::vector<char>& 
     found.residual_mm = residual_mm(mesh);
     found.residual_mm = std::max(found.residual_mm, add_shapes(facets, edge_mm, mesh));
     const double most =
-        std::clamp(kMostHalvesEach * static_cast<double>(facets.size()), kFewHalves, kMostHalves);
+        std::clamp(kMaxHalvesEach * static_cast<double>(facets.size()), kFewHalves, kMaxHalves);
     if (halves(mesh, edge_mm) <= most) {
         found.halved = halve_long(mesh, edge_mm);
     }

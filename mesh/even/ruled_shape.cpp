@@ -16,7 +16,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Mean square of what the normals turn by, square to their mean plane's axis: 2 degrees.
-constexpr double kLeastTurn = 1e-3;
+constexpr double kMinTurn = 1e-3;
 
 constexpr int kRounds = 12;
 constexpr double kRidge = 1e-12;  // of the diagonal: what the points do not tell stays as it is
@@ -52,7 +52,7 @@ std::optional<RuledShape> first_guess(std::span<const Vector3d> points,
         spread += facet.area_mm2 / area * off * off.transpose();
     }
     const PrincipalAxes<3> axes = principal_axes(spread);
-    if (!(axes.values[1] > kLeastTurn * kLeastTurn) || !(axes.values[2] > kLeastTurn)) {
+    if (!(axes.values[1] > kMinTurn * kMinTurn) || !(axes.values[2] > kMinTurn)) {
         return std::nullopt;
     }
     RuledShape shape;

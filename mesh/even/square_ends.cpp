@@ -34,8 +34,8 @@ constexpr double kFarOff = 3.0;
 constexpr double kLeaves = 5.0;
 
 // An end loses this share of its radius at most, and a rim with less beyond its circle is one.
-constexpr double kMostDepth = 0.25;
-constexpr double kLeastDepth = 2e-3;
+constexpr double kMaxDepth = 0.25;
+constexpr double kMinDepth = 2e-3;
 
 // Facets seen from the leg's axis leave no wider gap than this between them.
 constexpr double kWidestGap_rad = 2.1;
@@ -304,13 +304,13 @@ std::optional<Cut> cut_where_it_ends(const WallFaces& wall, const Rim& rim, Leg 
             stack.push_back(v);
         }
     }
-    if (stack.empty() && rim.circularity_mm <= kLeastDepth * radius) {
+    if (stack.empty() && rim.circularity_mm <= kMinDepth * radius) {
         return std::nullopt;
     }
     // From the rim along what lies inside the leg, to the first vertices that lie on it, but
     // for so much.
     double off_mm = leg.shape.residual_mm;
-    while (!stack.empty() && farthest - nearest <= kMostDepth * radius) {
+    while (!stack.empty() && farthest - nearest <= kMaxDepth * radius) {
         const std::int32_t v = stack.back();
         stack.pop_back();
         for (const std::int32_t f : wall.faces_at[at(v)]) {
@@ -334,7 +334,7 @@ std::optional<Cut> cut_where_it_ends(const WallFaces& wall, const Rim& rim, Leg 
     // A round lip goes on that far beyond its last vertex, and there its normals still lean.
     nearest -= std::sqrt(2.0 * off_mm * (farthest - nearest));
     const double depth = farthest - nearest;
-    if (!(depth > kLeastDepth * radius && depth <= kMostDepth * radius)) {
+    if (!(depth > kMinDepth * radius && depth <= kMaxDepth * radius)) {
         return std::nullopt;
     }
     return Cut{std::move(leg), nearest, depth};

@@ -34,7 +34,7 @@ constexpr double kTellsNormalShare = 4e-4;
 // along the rulings.
 constexpr double kAlong = 0.5;
 constexpr std::size_t kGroup = 16;
-constexpr std::size_t kLeastGroup = 6;
+constexpr std::size_t kMinGroup = 6;
 
 // So few short facets turn too little to tell a shape; then so many are looked at, those first that
 // turn least. They have vertices inside: one row of a curved surface has none, and lies on a cone.
@@ -46,13 +46,13 @@ constexpr std::size_t kManyInVain = 256;
 
 // A shape's own normals turn by less than this over a facet (46 degrees), and the facet's is among
 // them within this (3 degrees).
-constexpr double kMostTurnRad = 0.8;
+constexpr double kMaxTurnRad = 0.8;
 constexpr double kNormalRad = 0.05;
 
 // Fewer facets than this lie in a plane by chance: a row of facets has two in each.
 // A strip is one facet of a round wall in pieces; a disc has 0.08, a strip of 1 : 10 has 0.02 of
 // its outline's square as area.
-constexpr std::size_t kLeastInPlane = 6;
+constexpr std::size_t kMinInPlane = 6;
 constexpr double kCompact = 0.02;
 
 // Planes below this share of the part's size squared have no long facets.
@@ -63,10 +63,10 @@ constexpr double kRoundest = 2e-3;
 
 // A ball has vertices within, away from its outline. Flatter than this times the part's size it is
 // no ball, nor a cylinder.
-constexpr int kLeastInside = 3;
+constexpr int kMinInside = 3;
 constexpr double kFlattest = 10.0;
 
-constexpr int kMostGrowths = 4;
+constexpr int kMaxGrowths = 4;
 
 // A row of facets turns, across its rulings, into its neighbours by more than this (0.6 degrees),
 // to one side along this share of its outline, and is shorter than so many times the longer of
@@ -219,7 +219,7 @@ bool lies_on(const WallFacets& wall, const WallShape& shape, std::int32_t f) {
     }
     const double turn = std::max({angle_rad(normal[0], normal[1]), angle_rad(normal[1], normal[2]),
                                   angle_rad(normal[2], normal[0])});
-    if (turn > kMostTurnRad) {
+    if (turn > kMaxTurnRad) {
         return false;
     }
     const Vector3d& own = wall.facets[at(f)].normal;
@@ -383,12 +383,12 @@ bool is_of_a_curve(const WallFacets& wall, const RuledShape& shape, const Faces&
 // \param faces that it takes
 bool is_certain(const WallFacets& wall, const WallShape& shape, const Faces& faces, FaceSet& seen) {
     if (shape.kind == WallShape::Kind::Plane) {
-        return faces.size() >= kLeastInPlane && is_compact(wall, faces, seen);
+        return faces.size() >= kMinInPlane && is_compact(wall, faces, seen);
     }
     if (shape.kind == WallShape::Kind::Ball) {
-        return faces.size() >= kGroup && vertices_inside(wall, faces, seen) >= kLeastInside;
+        return faces.size() >= kGroup && vertices_inside(wall, faces, seen) >= kMinInside;
     }
-    return faces.size() >= kLeastGroup && !is_of_a_curve(wall, shape.ruled, faces, seen);
+    return faces.size() >= kMinGroup && !is_of_a_curve(wall, shape.ruled, faces, seen);
 }
 
 // A shape, and the faces that it takes.
@@ -401,7 +401,7 @@ struct GrownShape {
 GrownShape grown_shape(const WallFacets& wall, WallShape::Kind kind, const Faces& group,
                        ShapeSearch& search) {
     GrownShape result{fit(wall, kind, group), {}};
-    for (int i = 0; result.shape && i < kMostGrowths; ++i) {
+    for (int i = 0; result.shape && i < kMaxGrowths; ++i) {
         Faces more = grown(wall, *result.shape, group, search);
         if (more.size() <= result.faces.size()) {
             break;
@@ -421,7 +421,7 @@ bool take(const WallFacets& wall, WallShape::Kind kind, const Faces& group, bool
           ShapeSearch& search) {
     const auto [shape, faces] = grown_shape(wall, kind, group, search);
     if (!shape || !is_certain(wall, *shape, faces, search.seen) ||
-        (wide && vertices_inside(wall, faces, search.seen) < kLeastInside)) {
+        (wide && vertices_inside(wall, faces, search.seen) < kMinInside)) {
         if (faces.size() >= kManyInVain) {
             for (const std::int32_t f : faces) {
                 search.tried[at(f)] = 1;
@@ -439,7 +439,7 @@ bool take(const WallFacets& wall, WallShape::Kind kind, const Faces& group, bool
 void try_curved(const WallFacets& wall, std::int32_t seed, ShapeSearch& search) {
     for (const bool wide : {false, true}) {
         const Faces group = group_around(wall, search.found.of_face, seed, wide);
-        if (group.size() >= (wide ? kGroup : kLeastGroup) &&
+        if (group.size() >= (wide ? kGroup : kMinGroup) &&
             (take(wall, WallShape::Kind::Ruled, group, wide, search) ||
              take(wall, WallShape::Kind::Ball, group, wide, search))) {
             return;

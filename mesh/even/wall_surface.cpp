@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 // A patch lifts a point of a facet by less than this share of the facet's height over its longest
 // edge, or it has gone astray on a poor fit.
-constexpr double kMostLift = 0.3;
+constexpr double kMaxLift = 0.3;
 
 double largest_curvature(const Eigen::Matrix3d& shape_operator_per_mm) {
     const double mean = 0.5 * shape_operator_per_mm.trace();
@@ -96,7 +96,7 @@ WallProjection::Foot WallProjection::nearest(const Vector3d& point, std::int32_t
     foot.bary = closest.bary;
     foot.position_mm = closest.position_mm;
     const Vector3d lifted = shape_.point_at(foot.face, Vector2d(foot.bary[1], foot.bary[2]));
-    if ((lifted - foot.position_mm).norm() <= kMostLift * height_mm(surface_, foot.face)) {
+    if ((lifted - foot.position_mm).norm() <= kMaxLift * height_mm(surface_, foot.face)) {
         foot.position_mm = lifted;
     }
     return foot;

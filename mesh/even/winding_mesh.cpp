@@ -32,12 +32,12 @@ constexpr double kLeftOut = 1e-4;
 constexpr double kFacetEdge = 0.1;
 
 // Share of the wall's area in narrow triangles that may be left: between creases that nearly meet.
-constexpr double kMostNarrow = 1e-3;
+constexpr double kMaxNarrow = 1e-3;
 
 // More corners than this where no surface can be fitted, and the mesh has failed. Of the file's own
 // vertices even more: their triangles may still be long.
-constexpr double kMostAveraged = 0.1;
-constexpr double kMostAveragedInFile = 0.5;
+constexpr double kMaxAveraged = 0.1;
+constexpr double kMaxAveragedInFile = 0.5;
 
 // Lettering stands out by 1 mm at most, mm, whatever the part's size, and the wall under it is
 // known to a quarter of that; on small parts it stands out by less than a share of their size.
@@ -140,7 +140,7 @@ void shorten_edges(const std::vector<OffVertex>& off, double most_off_mm, const 
 LabelledMesh even_triangles(const LabelledMesh& file, const Details& left,
                             const std::vector<char>& kept, WindingMeshReport& report) {
     const Surface wall = frozen_wall(left.part, kept);
-    report.why_not = no_surface(wall, kMostAveragedInFile);
+    report.why_not = no_surface(wall, kMaxAveragedInFile);
     if (!report.why_not.empty()) {
         return {};
     }
@@ -155,7 +155,7 @@ LabelledMesh even_triangles(const LabelledMesh& file, const Details& left,
             shorten_edges(off, kShortenFrom * most_mm, wall, options);
         }
         const double wanted = wanted_triangles(wall, options);
-        if (!(wanted <= kMostEvenTriangles)) {
+        if (!(wanted <= kMaxEvenTriangles)) {
             report.why_not = "even triangles would be too many, " + fixed(wanted, 0);
             break;
         }
@@ -165,7 +165,7 @@ LabelledMesh even_triangles(const LabelledMesh& file, const Details& left,
         report.triangles = surface.face.size();
         report.deviation_mm = std::max_element(off.begin(), off.end(), is_nearer)->off_mm;
         if (report.deviation_mm <= most_mm) {
-            report.why_not = no_surface(surface, kMostAveraged);
+            report.why_not = no_surface(surface, kMaxAveraged);
             break;
         }
         report.why_not = "even triangles would be up to " + fixed(report.deviation_mm, 3) +
@@ -207,7 +207,7 @@ WindingMesh winding_mesh(const LabelledMesh& part, const std::vector<char>& kept
     LabelledMesh own = even_triangles(part, details, kept, report);
     if (report.why_not.empty()) {
         const double narrow = share_below(own, kept, kUnevenQuality);
-        if (narrow > kMostNarrow) {
+        if (narrow > kMaxNarrow) {
             report.why_not = "its narrow triangles cannot be taken out: " + percent(narrow, 1) +
                              " of the wall would still lie in such";
         }

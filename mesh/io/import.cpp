@@ -17,7 +17,7 @@ constexpr std::size_t kHeadBytes = 4096;  // far beyond any header that states a
 
 // Indices have 32 bits, and no format has a point or polygon in less than 4 bytes but PLY, which
 // counts its own.
-constexpr std::size_t kMostBytes = std::size_t{1} << 33;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 33;
 constexpr std::size_t kPieceBytes = std::size_t{1} << 24;  // between two cancellation points
 
 std::string lower(std::string_view text) {
@@ -51,7 +51,7 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t limit) {
     if (!stream || error) {
         throw IoError("mesh.unreadable", file.string(), "cannot be opened, check its permissions");
     }
-    if (size > kMostBytes) {
+    if (size > kMaxBytes) {
         throw InputError("mesh.too_large", file.string(),
                          "is larger than 8 GB, export the part with fewer triangles");
     }

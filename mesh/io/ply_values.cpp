@@ -14,7 +14,7 @@
 namespace meshwind {
 namespace {
 
-constexpr std::size_t kMostHeaderLines = 1000;
+constexpr std::size_t kMaxHeaderLines = 1000;
 
 struct TypeName {
     std::string_view name;
@@ -85,7 +85,7 @@ private:
 
     // \return false behind the last line
     bool read_line() {
-        if (!text_.next_line() || text_.line() > static_cast<std::int64_t>(kMostHeaderLines)) {
+        if (!text_.next_line() || text_.line() > static_cast<std::int64_t>(kMaxHeaderLines)) {
             refuse("its header has no line 'end_header'");
         }
         const std::string_view keyword = text_.word();

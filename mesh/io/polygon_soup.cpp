@@ -120,7 +120,7 @@ void split(const std::vector<Eigen::Vector3d>& points, std::span<const std::int3
 std::string large_polygon_words() {
     // Not in one expression: GCC 12 sees a copy of too many bytes in that, and is wrong.
     std::string words = "a polygon has more than ";
-    words += std::to_string(kMostCorners);
+    words += std::to_string(kMaxCorners);
     return words + " corners, which is not read; export the part as triangles";
 }
 

@@ -13,7 +13,7 @@ namespace meshwind {
 
 /// A polygon with more corners is refused: no surface of a part has one, and to split it takes the
 /// square of their number.
-constexpr std::size_t kMostCorners = 1000;
+constexpr std::size_t kMaxCorners = 1000;
 
 struct PolygonSoup {
     std::vector<Eigen::Vector3d> points;  ///< n x 3, file units
@@ -32,7 +32,7 @@ struct PolygonSoup {
 /// not convex are split by cutting off ears in the plane of their mean normal; one that crosses
 /// itself is covered somehow. Polygons of one or two corners have no surface and give none.
 /// Cost: the square of a polygon's corners.
-/// \pre corners name points; polygons have at most kMostCorners corners \throws Interrupted
+/// \pre corners name points; polygons have at most kMaxCorners corners \throws Interrupted
 [[nodiscard]] TriangleSoup triangles_of(PolygonSoup&& polygons);
 
 }  // namespace meshwind

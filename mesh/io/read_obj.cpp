@@ -55,7 +55,7 @@ private:
         const std::size_t begin = soup_.corners.size();
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
             soup_.corners.push_back(corner_of(word));
-            if (soup_.corners.size() - begin > kMostCorners) {
+            if (soup_.corners.size() - begin > kMaxCorners) {
                 text_.refuse("mesh.large_polygon", large_polygon_words());
             }
         }

@@ -87,7 +87,7 @@ private:
     // Behind the corners there may be a colour.
     void read_face() {
         const std::int64_t count = text_.integer("the number of a polygon's corners");
-        if (count < 0 || count > static_cast<std::int64_t>(kMostCorners)) {
+        if (count < 0 || count > static_cast<std::int64_t>(kMaxCorners)) {
             text_.refuse("mesh.large_polygon", large_polygon_words());
         }
         for (std::int64_t i = 0; i < count; ++i) {

@@ -97,7 +97,7 @@ std::int32_t checked_corner(std::int64_t index, std::size_t points, const PlyVal
 void read_polygon(const PlyProperty& property, std::size_t points, PlyValues& values,
                   PolygonSoup& soup) {
     const std::int64_t count = length_of(property, values);
-    if (count > static_cast<std::int64_t>(kMostCorners)) {
+    if (count > static_cast<std::int64_t>(kMaxCorners)) {
         values.refuse("mesh.large_polygon", large_polygon_words());
     }
     for (std::int64_t i = 0; i < count; ++i) {

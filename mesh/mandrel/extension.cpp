@@ -17,7 +17,7 @@ using Index = std::int32_t;
 
 // Vertices around an extension: h = R / 15, where patches are within 1e-5 mm of a cylinder of R =
 // 100 mm.
-constexpr int kLeastAround = 96;
+constexpr int kMinAround = 96;
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -102,7 +102,7 @@ public:
         const Circle circle(rim);
         const Loop loop = rising_loop(circle, rim, wall_);
         circle_.push_back(circle);
-        const int around = std::max(kLeastAround, static_cast<int>(loop.vertex.size()));
+        const int around = std::max(kMinAround, static_cast<int>(loop.vertex.size()));
         const double edge = 2.0 * kPi * circle.radius_mm / around;
         const int rows = std::max(3, static_cast<int>(std::ceil(length_mm / edge)));
         const auto first = static_cast<Index>(soup_.points_mm.size());

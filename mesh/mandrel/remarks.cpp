@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 // Nearer places than this share of the part's diagonal are one.
 constexpr double kApartShare = 0.15;
 // Of a remark; more of them say no more.
-constexpr std::size_t kMostPlaces = 8;
+constexpr std::size_t kMaxPlaces = 8;
 
 std::vector<Vector3d> middles_of_faces(const TriangleSoup& soup) {
     std::vector<Vector3d> middles;
@@ -139,7 +139,7 @@ void add_mesh_remarks(Mandrel& mandrel) {
 void add_remark(Mandrel& mandrel, std::string words, std::span<const Vector3d> places_mm) {
     const double near_mm = kApartShare * diagonal_mm(mandrel.whole);
     const std::vector<Vector3d> middles = middles_of_groups(places_mm, near_mm);
-    for (std::size_t i = 0; i < std::min(kMostPlaces, middles.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(kMaxPlaces, middles.size()); ++i) {
         mandrel.places.push_back({mandrel.remarks.size(), middles[i]});
     }
     mandrel.remarks.push_back(std::move(words));

@@ -33,9 +33,9 @@ std::string off_circle_words(const Mandrel& mandrel, const Rim& rim) {
     // An end that was cut askew is a plane loop, and off its circle by less than half its radius:
     // an oblique one is then 60 deg off square.
     constexpr double kFlatShare = 0.5;  // of what it is off
-    constexpr double kMostOfAnEnd = 0.5;
+    constexpr double kMaxOfAnEnd = 0.5;
     const Eigen::Vector3d& p = rim.centre_mm;
-    const bool is_end = rim.circularity_mm < kMostOfAnEnd * rim.radius_mm &&
+    const bool is_end = rim.circularity_mm < kMaxOfAnEnd * rim.radius_mm &&
                         off_plane_mm(mandrel, rim) < kFlatShare * rim.circularity_mm;
     return "rim " + std::to_string(rim.id) + " around (" + fixed(p.x(), 1) + ", " +
            fixed(p.y(), 1) + ", " + fixed(p.z(), 1) + ") is no circle: up to " +

@@ -10,13 +10,13 @@ namespace meshwind {
 /// How far a rim may be off its circle, as a share of its radius, before the main job refuses it.
 /// Ends that are cut where their legs end stay below 0.01; an oblique one reaches 0.05 when it is
 /// 25 deg off square, 0.5 (1 / cos - 1).
-inline constexpr double kMostOffCircle = 0.05;
+inline constexpr double kMaxOffCircle = 0.05;
 
 /// The rim that is farthest off its circle by that measure; null where all are round.
 [[nodiscard]] const Rim* worst_off_circle(const Mandrel& mandrel);
 
 [[nodiscard]] inline bool is_round(const Rim& rim) {
-    return rim.circularity_mm <= kMostOffCircle * rim.radius_mm;
+    return rim.circularity_mm <= kMaxOffCircle * rim.radius_mm;
 }
 
 /// Which rim, where, how far off, what may be the cause and what mends it. \pre rim of the mandrel

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 // Normals of the sides of a vertex that point apart by more than this cosine (84 degrees from their
 // mean) have no common way out.
-constexpr double kLeastCosine = 0.1;
+constexpr double kMinCosine = 0.1;
 
 // Of a face, before and after: more turned is folded.
 constexpr double kFolded = 0.0;
@@ -61,7 +61,7 @@ std::vector<Vector3d> ways_out(const Mandrel& mandrel) {
         for (const auto& [corner, normal] : sides[v]) {
             cosine = std::min(cosine, mean.dot(normal));
         }
-        sum[v] = mean / std::max(cosine, kLeastCosine);
+        sum[v] = mean / std::max(cosine, kMinCosine);
     }
     return sum;
 }

@@ -1,4 +1,4 @@
-/// A mandrel with something on it: its wall moved outward by what lies there.
+/// Offsets the winding surface by the layers laid on it.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@ namespace meshwind {
 
 /// Moves the vertices of the winding surface along their normals; what else the file holds (caps,
 /// bores) keeps its place but for the points it shares with the wall. At a feature edge a vertex
-/// moves so that each side is moved by its thickness. The grown mesh is looked at as if it came
-/// from a file: repairs, regions, rims; spindle and mandrel frame stay.
+/// moves so that each side is moved by its thickness. The offset mesh is imported again:
+/// repaired, segmented, its rims found; spindle and mandrel frame stay.
 ///
 /// Accuracy: on a smooth wall the normals are of fourth order in the edge length, so vertices of a
 /// cylinder or sphere lie on the grown one to T dn^2 / 2 for a thickness T and an error dn;

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 
 // They are put in order by trying each with each.
-constexpr std::size_t kMostPieces = 10'000;
+constexpr std::size_t kMaxPieces = 10'000;
 
 // An arc between two points whose bulge is the tangent of a quarter of its angle.
 DrawnPiece bulged(const Vector2d& from, const Vector2d& to, double bulge) {
@@ -125,7 +125,7 @@ bool read_pairs(DxfText& text, Entity& entity) {
         if ((code >= 10 && code < 60) || code == 67 || code == 70) {
             entity.number.emplace(code, text.number());
         }
-        if (entity.corner.size() > kMostPieces) {
+        if (entity.corner.size() > kMaxPieces) {
             text.refuse("profile.points", "has more than 10,000 corners; give fewer");
         }
     }
@@ -141,7 +141,7 @@ void add(const DrawnPiece& piece, const DxfText& text, std::vector<DrawnPiece>& 
     if (piece.from == piece.to && piece.is_line()) {
         return;
     }
-    if (pieces.size() == kMostPieces) {
+    if (pieces.size() == kMaxPieces) {
         text.refuse("profile.points", "has more than 10,000 pieces; give fewer");
     }
     pieces.push_back(piece);

@@ -20,7 +20,7 @@ using Eigen::Vector2d;
 constexpr CsvErrors kErrors = {"profile.column", "profile.number",
                                "write columns x and r, or x_mm and r_mm, in the first line"};
 
-constexpr std::size_t kMostPoints = 100'000;
+constexpr std::size_t kMaxPoints = 100'000;
 
 // Where the outline turns by more at one point, it is no smooth curve.
 constexpr double kCreaseTurn_rad = 30.0 * kPi / 180.0;
@@ -106,7 +106,7 @@ private:
         if (points_.empty()) {
             return;
         }
-        if (points_.size() == kMostPoints) {
+        if (points_.size() == kMaxPoints) {
             table_.fail("profile.points", "is the point after 100,000; give fewer");
         }
         if (point.at == points_.back().at) {
@@ -152,9 +152,9 @@ private:
         for (std::size_t i = 0; i < chords; ++i) {
             const double before = i > 0 ? chord(i - 1).norm() : 0.0;
             const double behind = i + 1 < chords ? chord(i + 1).norm() : 0.0;
-            const bool goes_on = (i > 0 && turn_rad(i) < kSameLine_rad) ||
-                                 (i + 1 < chords && turn_rad(i + 1) < kSameLine_rad);
-            points_[i].line = points_[i].line || goes_on ||
+            const bool continues_fibre = (i > 0 && turn_rad(i) < kSameLine_rad) ||
+                                         (i + 1 < chords && turn_rad(i + 1) < kSameLine_rad);
+            points_[i].line = points_[i].line || continues_fibre ||
                               chord(i).norm() > kLongChord * std::max(before, behind);
         }
     }

@@ -12,7 +12,7 @@ namespace {
 
 // A curve is at most so many times as long as its chord from one point to the next: an arc of 150
 // degrees is 1.4 times.
-constexpr double kMostSwing = 1.5;
+constexpr double kMaxSwing = 1.5;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ ProfileFile read_profile(const std::filesystem::path& file) {
 TriangleSoup swept_profile(const ProfileFile& profile, const std::string& file) {
     const Meridian meridian(profile.nodes);
     for (const MeridianPiece& piece : meridian.pieces()) {
-        if (!(piece.length_mm <= kMostSwing * (piece.to_mm - piece.from_mm).norm())) {
+        if (!(piece.length_mm <= kMaxSwing * (piece.to_mm - piece.from_mm).norm())) {
             throw InputError(
                 "profile.smooth", file,
                 "goes through no smooth curve from x = " + fixed(piece.from_mm.y(), 4) +

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 // Smaller kinks are as good as none: rounded over two edges they turn the fibre by a third of a
 // degree at most, what a laid fibre may be off.
-constexpr double kLeastKink_rad = rad_from_deg(1.0);
+constexpr double kMinKink_rad = rad_from_deg(1.0);
 
 // Vertices on a crease are beside it by what lines are beside their vertices, times this: lines
 // that meet at a flat angle meet with as much more error. And by rounding of text files.
@@ -48,7 +48,7 @@ bool mark_crease_rings(const BodyOfRevolution& body, const TriangleSoup& soup,
     const double within_mm = kResidualTimes * body.residual_mm + kRounding_mm;
     bool marked = false;
     for (const double crease_mm : body.meridian.creases_mm()) {
-        if (kink_rad(body.meridian, crease_mm) < kLeastKink_rad) {
+        if (kink_rad(body.meridian, crease_mm) < kMinKink_rad) {
             continue;
         }
         const MeridianPlace place = body.meridian.at(crease_mm);

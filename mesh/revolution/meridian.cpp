@@ -211,9 +211,9 @@ double parameter_at(const MeridianPiece& piece, double arc) {
     if (piece.straight) {
         return u;
     }
-    constexpr int kMostSteps = 8;  // two do: the parameter is nearly the arc length
+    constexpr int kMaxSteps = 8;  // two do: the parameter is nearly the arc length
     constexpr double kDone = 1e-14;
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMaxSteps; ++i) {
         const double speed = local(piece, u).first.norm();
         const double miss = length_to(piece, u) - arc;
         if (!(speed > 0.0) || std::abs(miss) <= kDone * piece.length_mm) {

@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Points = std::span<const ProfilePoint>;
 using Places = std::span<const ProfilePlace>;
 
-constexpr int kMostTerms = 5;
+constexpr int kMaxTerms = 5;
 
 struct Weighted {
     Vector2d at;
@@ -152,9 +152,9 @@ Joint joint_of_rings(Places places, bool at_start, const ProfileLine& line) {
     const double kink = std::abs(std::remainder(place.slope_rad - slope_of(line), 2.0 * kPi));
     // A curve that leaves the line between two rings seems kinked by half of what it turns there.
     constexpr double kOfTurn = 0.75;
-    constexpr double kLeastRad = 2e-3;
+    constexpr double kMinRad = 2e-3;
     const double turn = std::abs(place.curvature_per_mm) * std::abs(beside.arc_mm - last.arc_mm);
-    return {line.along_mm(last.at_mm), kink > kOfTurn * turn + kLeastRad, place.slope_rad};
+    return {line.along_mm(last.at_mm), kink > kOfTurn * turn + kMinRad, place.slope_rad};
 }
 
 // A zero near x by Newton's method, at most `within` away.
@@ -194,10 +194,10 @@ Joint joint_of_scatter(Points points, bool at_start, const ProfileLine& line, do
                 near.push_back({p.at_mm, 1.0});
             }
         }
-        if (near.size() < 4U * kMostTerms) {
+        if (near.size() < 4U * kMaxTerms) {
             return joint;
         }
-        const ProfilePolynomial curve = fit(near, frame, kMostTerms, kReach * spacing);
+        const ProfilePolynomial curve = fit(near, frame, kMaxTerms, kReach * spacing);
         const auto parallel = zero_near(
             0.0, kWithin * spacing, [&](double u) { return curve.slope(u); },
             [&](double u) { return curve.bend_per_mm(u); });
@@ -332,12 +332,11 @@ double ProfilePolynomial::slope_rad(double x) const {
 ProfilePolynomial polynomial_near(Points points, double arc_mm) {
     constexpr double kEdges = 2.5;  // to both sides, at least
     constexpr double kWiden = 1.3;
-    constexpr int kMostWidenings = 24;
+    constexpr int kMaxWidenings = 24;
     double reach = kEdges * spacing_near(points, arc_mm);
     Points near = between(points, arc_mm - reach, arc_mm + reach);
     const auto parts = [&] { return filled_parts(near, arc_mm - reach, arc_mm + reach); };
-    for (int i = 0; i < kMostWidenings && parts() < kMostTerms && near.size() < points.size();
-         ++i) {
+    for (int i = 0; i < kMaxWidenings && parts() < kMaxTerms && near.size() < points.size(); ++i) {
         reach *= kWiden;
         near = between(points, arc_mm - reach, arc_mm + reach);
     }
@@ -361,7 +360,7 @@ ProfilePolynomial polynomial_near(Points points, double arc_mm) {
     if (line.along_mm(near.back().at_mm) < line.along_mm(near.front().at_mm)) {
         line.way = -line.way;
     }
-    return fit(weighted, line, std::clamp(parts(), 2, kMostTerms), reach);
+    return fit(weighted, line, std::clamp(parts(), 2, kMaxTerms), reach);
 }
 
 std::vector<MeridianNode> curve_nodes(Points points, Places places,

@@ -241,8 +241,8 @@ std::vector<FeatureEdge> feature_edges_about(const Surface& surface, const std::
 
 std::vector<ProfileCrease> creases_of(const Surface& surface, const std::vector<double>& arc,
                                       const std::vector<FeatureEdge>& edges) {
-    constexpr double kApart = 0.25;  // of an edge: farther along the meridian is another circle
-    constexpr double kMostOfTurn = 0.75;  // of a circle that there must be: the rest was too flat
+    constexpr double kApart = 0.25;      // of an edge: farther along the meridian is another circle
+    constexpr double kMaxOfTurn = 0.75;  // of a circle that there must be: the rest was too flat
     std::vector<ProfileCrease> creases;
     for (std::size_t first = 0; first < edges.size();) {
         std::size_t last = first;
@@ -258,7 +258,7 @@ std::vector<ProfileCrease> creases_of(const Surface& surface, const std::vector<
                 crease.high_mm = std::max(crease.high_mm, arc[at(v)]);
             }
         }
-        if (turn > kMostOfTurn * 2.0 * kPi) {
+        if (turn > kMaxOfTurn * 2.0 * kPi) {
             crease.at_mm /= 2.0 * static_cast<double>(last - first);
             creases.push_back(crease);
         }

@@ -132,7 +132,7 @@ std::vector<Place> rings_of(const Meridian& meridian, double size_mm) {
         return at->steps;
     };
     std::vector<Place> rings;
-    if (!(places.back().steps * kFewest <= kMostEvenTriangles)) {
+    if (!(places.back().steps * kFewest <= kMaxEvenTriangles)) {
         return rings;
     }
     for (std::size_t b = 0; b + 1 < bounds.size(); ++b) {
@@ -179,7 +179,7 @@ public:
             crossed += crease ? 1 : 0;
             on_crease = crease;
             before = ring;
-            if (static_cast<double>(mesh_.soup.faces.size()) > kMostEvenTriangles) {
+            if (static_cast<double>(mesh_.soup.faces.size()) > kMaxEvenTriangles) {
                 return {};
             }
         }

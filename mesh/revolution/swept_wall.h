@@ -13,7 +13,7 @@ namespace meshwind {
 /// end, or a vertex at a pole, and in between as far apart as edges of an even mesh are there
 /// (even_options()), but at least three rows of triangles over what is curved, however short.
 /// Outside is in front. \return regions number the stretches between creases, from 0; empty where
-/// there would be more than kMostEvenTriangles
+/// there would be more than kMaxEvenTriangles
 [[nodiscard]] LabelledMesh swept_wall(const Meridian& meridian, double size_mm);
 
 }  // namespace meshwind

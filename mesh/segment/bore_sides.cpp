@@ -105,7 +105,7 @@ Mouth sides_seen(const MeasuredFaces& part, const RegionFacts& region,
                 (part.soup.points_mm[at(a)] + part.soup.points_mm[at(b)] +
                  part.soup.points_mm[at(c)]) /
                 3.0;
-            if (visibility.escapes(centre, part.normals[f], kMostDirections)) {
+            if (visibility.escapes(centre, part.normals[f], kMaxDirections)) {
                 side[i] = 1;
             } else if (!visibility.escapes(centre, part.normals[f], kBlindShare)) {
                 side[i] = 2;

@@ -15,7 +15,7 @@ namespace meshwind {
 
 /// A point sees the outside when most directions escape. The wall of a long bore never does: even
 /// at its very mouth half of the directions meet the opposite wall.
-inline constexpr double kMostDirections = 0.5;
+inline constexpr double kMaxDirections = 0.5;
 
 /// Share of its area from which a blind region may see.
 inline constexpr double kBlindShare = 0.05;

@@ -29,7 +29,7 @@ const double kPlaneCosine = std::cos(rad_from_deg(3.0));
 
 // Share of the part's area that an end face has at least: that of a pipe of 300 radii length with a
 // wall of a tenth of its radius.
-constexpr double kLeastAreaShare = 1e-4;
+constexpr double kMinAreaShare = 1e-4;
 
 // An outline is round when so much of its length is so near to its circle, as a share of the
 // radius, and it encloses so much of its area. Tabs may break the rest of it. Twelve facets stand
@@ -385,7 +385,7 @@ std::vector<std::int32_t> flat_ends(const TriangleSoup& soup,
                                     const std::vector<Eigen::Vector3d>& normals,
                                     const std::vector<double>& face_area) {
     const MeasuredFaces part{soup, neighbours, normals, face_area, kPlaneShare * diagonal_mm(soup)};
-    const double least = kLeastAreaShare * std::accumulate(face_area.begin(), face_area.end(), 0.0);
+    const double least = kMinAreaShare * std::accumulate(face_area.begin(), face_area.end(), 0.0);
     FaceMarks marks{std::vector<int>(soup.faces.size(), 0)};
     std::vector<std::int32_t> end(soup.faces.size(), -1);
     std::vector<char> taken(soup.faces.size(), 0);

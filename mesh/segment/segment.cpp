@@ -98,7 +98,7 @@ void look_around(const TriangleSoup& soup, const std::vector<Eigen::Vector3d>& n
                                           samples[i].bary[1] * soup.points_mm[at(b)] +
                                           samples[i].bary[2] * soup.points_mm[at(c)];
             sees[i] = static_cast<char>(
-                visibility.escapes(point, normals[at(samples[i].face)], kMostDirections));
+                visibility.escapes(point, normals[at(samples[i].face)], kMaxDirections));
         }
     });
     std::vector<int> asked(regions.size(), 0);
@@ -178,10 +178,10 @@ void classify(Segmentation& s, const std::vector<RegionFacts>& facts) {
             }
             continue;
         }
-        const bool blind = view_of(piece, s.regions) < kMostDirections;
+        const bool blind = view_of(piece, s.regions) < kMaxDirections;
         for (const std::int32_t id : piece) {
             Region& r = s.regions[at(id)];
-            if (blind && r.visible_fraction < kMostDirections) {
+            if (blind && r.visible_fraction < kMaxDirections) {
                 r.kind = RegionKind::Bore;
             }
         }

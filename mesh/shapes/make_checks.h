@@ -1,4 +1,4 @@
-/// Refusal of impossible dimensions, one wording for all shapes.
+/// CandidateFault of impossible dimensions, one wording for all shapes.
 #pragma once
 
 namespace meshwind {

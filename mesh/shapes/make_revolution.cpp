@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 // Fewer would fold a polar cap; also the least around a small polar opening.
-constexpr std::int32_t kLeastAround = 5;
+constexpr std::int32_t kMinAround = 5;
 
 // Rings that follow each other around z, each turned against the last by half a step.
 class Rings {
@@ -25,7 +25,7 @@ public:
             soup_.points_mm.emplace_back(0.0, 0.0, radius_z.y());
             return row;
         }
-        const std::int32_t count = steps_of(2.0 * kPi * radius_z.x(), edge_mm_, kLeastAround);
+        const std::int32_t count = steps_of(2.0 * kPi * radius_z.x(), edge_mm_, kMinAround);
         const double step = 2.0 * kPi / count;
         for (std::int32_t i = 0; i < count; ++i) {
             const double phi = turn_ + step * i;
@@ -88,7 +88,7 @@ struct BendEnds {
 };
 
 BendEnds add_bend(TriangleSoup& soup, const BendFrame& frame, double angle, double edge_mm) {
-    const std::int32_t around = steps_of(2.0 * kPi * frame.pipe_radius_mm, edge_mm, kLeastAround);
+    const std::int32_t around = steps_of(2.0 * kPi * frame.pipe_radius_mm, edge_mm, kMinAround);
     std::vector<VertexRow> strips;
     BendEnds ends;
     for (std::int32_t i = 0; i < around; ++i) {

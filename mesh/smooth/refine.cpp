@@ -106,7 +106,7 @@ void split(const Piece& piece, const std::array<Index, 3>& middle,
 [[noreturn]] void refuse(double edge_mm) {
     throw InputError("refine.too_many", "--refine",
                      "edges of at most " + fixed(edge_mm, 3) + " mm would make more than " +
-                         std::to_string(kMostRefinedFaces / 1'000'000) +
+                         std::to_string(kMaxRefinedFaces / 1'000'000) +
                          " million triangles; ask for longer edges");
 }
 
@@ -134,7 +134,7 @@ public:
         for (const auto& m : middle) {
             count += static_cast<std::size_t>(3 - std::count(m.begin(), m.end(), kWhole));
         }
-        if (count > kMostRefinedFaces) {
+        if (count > kMaxRefinedFaces) {
             refuse(edge_mm_);
         }
         std::vector<Piece> parts;
@@ -227,7 +227,7 @@ RefinedMesh refined(const Surface& surface, double edge_mm) {
     // No triangle is larger than the equilateral one.
     const double largest_mm2 = std::sqrt(3.0) / 4.0 * edge_mm * edge_mm;
     const double area = area_mm2({surface.position_mm, surface.face});
-    if (!(area <= largest_mm2 * static_cast<double>(kMostRefinedFaces))) {
+    if (!(area <= largest_mm2 * static_cast<double>(kMaxRefinedFaces))) {
         refuse(edge_mm);
     }
     Refiner refiner(surface, edge_mm);

@@ -11,7 +11,7 @@
 namespace meshwind {
 
 /// More triangles than this are not made: a file of 500 MB.
-inline constexpr std::size_t kMostRefinedFaces = 10'000'000;
+inline constexpr std::size_t kMaxRefinedFaces = 10'000'000;
 
 /// A mesh with what belongs to its faces, as `freeze_surface` takes it. Mandrel frame.
 struct RefinedMesh {
@@ -30,7 +30,7 @@ struct RefinedMesh {
 /// rims and regions stay what they are. The same surface gives the same mesh. Accuracy: new
 /// vertices on smooth surfaces are off by the fourth order in the edge length or better
 /// (tests/mesh/smooth/refine_test.cpp). \throws InputError refine.not_positive; refine.too_many
-/// above kMostRefinedFaces triangles
+/// above kMaxRefinedFaces triangles
 [[nodiscard]] RefinedMesh refined(const Surface& surface, double edge_mm);
 
 }  // namespace meshwind

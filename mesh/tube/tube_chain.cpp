@@ -23,20 +23,20 @@ constexpr double kChordShare = 0.3;
 
 // Readings for each arc of the line at most. Along an arc curvature is constant, so more tell
 // nothing; a tube that begins with a point would ask for millions.
-constexpr double kMostPerArc = 100.0;
+constexpr double kMaxPerArc = 100.0;
 
 // A stretch that bends with a radius above 50 tube radii is taken for straight first; and a jump of
 // the curvature by less is none.
-constexpr double kLeastCurvature = 0.02;  // times the tube's radius
-constexpr double kLeastJump = 0.3;        // of the curvature beside it
-constexpr double kLeastBow = 1e-3;        // of the tube's radius, of a bend over its chord
+constexpr double kMinCurvature = 0.02;  // times the tube's radius
+constexpr double kMinJump = 0.3;        // of the curvature beside it
+constexpr double kMinBow = 1e-3;        // of the tube's radius, of a bend over its chord
 
 // Vertices that the chain is fitted to, evenly picked: it has a dozen unknowns.
 constexpr std::size_t kFitVertices = 3000;
 
 constexpr int kRounds = 40;
 constexpr double kFirstDamping = 1e-6;
-constexpr double kMostDamping = 1e6;
+constexpr double kMaxDamping = 1e6;
 
 // Differences for derivatives: lengths in mm, angles in rad, curvature times the radius.
 constexpr double kLengthStep_mm = 1e-4;
@@ -61,7 +61,7 @@ Readings curvature_along(const CentreLine& line, double radius_mm) {
     const double step = 0.5 * kChordShare * radius_mm;
     const auto count =
         static_cast<std::size_t>(std::clamp(std::ceil(line.length_mm() / step), 4.0,
-                                            kMostPerArc * static_cast<double>(line.arcs().size())));
+                                            kMaxPerArc * static_cast<double>(line.arcs().size())));
     readings.chord = 2;
     const double spacing = line.length_mm() / static_cast<double>(count);
     const double chord = 2.0 * spacing;
@@ -100,7 +100,7 @@ std::vector<std::size_t> jumps_of(const Readings& readings, double radius_mm) {
                                               jump.begin() + static_cast<std::ptrdiff_t>(high) + 1);
         const double beside = std::max(before(i).norm(), after(i).norm());
         if (highest - jump.begin() == static_cast<std::ptrdiff_t>(i) &&
-            jump[i] > std::max(kLeastCurvature / radius_mm, kLeastJump * beside)) {
+            jump[i] > std::max(kMinCurvature / radius_mm, kMinJump * beside)) {
             cuts.push_back(i);
         }
     }
@@ -114,14 +114,14 @@ std::vector<Stretch> stretches_of(const Readings& readings, double radius_mm) {
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
         const double length = readings.arc_mm[cuts[i + 1]] - readings.arc_mm[cuts[i]];
         const Vector2d curvature = readings.curvature_per_mm[(cuts[i] + cuts[i + 1]) / 2];
-        const bool straight = curvature.norm() * radius_mm < kLeastCurvature;
+        const bool straight = curvature.norm() * radius_mm < kMinCurvature;
         stretches.push_back({length, straight ? Vector2d::Zero() : curvature});
         if (stretches.size() > 1) {
             Stretch& before = stretches[stretches.size() - 2];
             const double most =
                 std::max(before.curvature_per_mm.norm(), stretches.back().curvature_per_mm.norm());
             if ((before.curvature_per_mm - stretches.back().curvature_per_mm).norm() <=
-                kLeastJump * most) {
+                kMinJump * most) {
                 before.length_mm += length;
                 stretches.pop_back();
             }
@@ -228,7 +228,7 @@ VectorXd fitted(const Chain& chain, std::span<const Vector3d> points) {
     VectorXd x = chain.first();
     VectorXd off = chain.off(x, points);
     double damping = kFirstDamping;
-    for (int round = 0; round < kRounds && damping < kMostDamping; ++round) {
+    for (int round = 0; round < kRounds && damping < kMaxDamping; ++round) {
         Eigen::MatrixXd slope(off.size(), x.size());
         parallel_for(static_cast<std::size_t>(x.size()), 1,
                      [&](std::size_t begin, std::size_t end) {
@@ -268,7 +268,7 @@ bool straighten(const CentreLine& line, double radius_mm, std::vector<Stretch>& 
     for (std::size_t i = 0; i < stretches.size(); ++i) {
         const CentreArc& arc = line.arcs()[i];
         const double bow_mm = arc.curvature_per_mm.norm() * arc.length_mm * arc.length_mm / 8.0;
-        if (!stretches[i].curvature_per_mm.isZero() && bow_mm <= kLeastBow * radius_mm) {
+        if (!stretches[i].curvature_per_mm.isZero() && bow_mm <= kMinBow * radius_mm) {
             stretches[i].curvature_per_mm.setZero();
             any = true;
         }

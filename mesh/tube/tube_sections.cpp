@@ -29,23 +29,23 @@ constexpr int kCoarseRounds = 6;
 constexpr int kFineRounds = 4;
 
 // A fit reads vertices within so many spacings along the line, or more where there are fewer than
-// kLeastVertices.
+// kMinVertices.
 constexpr double kReach = 2.5;
-constexpr std::size_t kLeastVertices = 36;
+constexpr std::size_t kMinVertices = 36;
 constexpr double kFarthest_mm = 1e6;
 
 // A section moves by no more than this share of the radius at a time: what is no tube shall not
 // throw the line far away.
-constexpr double kMostMove = 0.5;
+constexpr double kMaxMove = 0.5;
 
 // Nor does the line of a tube grow so much longer than that of its first guess.
-constexpr double kMostLonger = 3.0;
+constexpr double kMaxLonger = 3.0;
 
 // Keeps fits solvable where vertices do not tell; of the diagonal.
 constexpr double kRidge = 1e-9;
 
-constexpr std::size_t kLeastSections = 5;
-constexpr std::size_t kMostSections = 1000;
+constexpr std::size_t kMinSections = 5;
+constexpr std::size_t kMaxSections = 1000;
 constexpr std::size_t kChunk = 8;
 
 // Shortest ways over the edges from a rim.
@@ -109,7 +109,7 @@ std::vector<Vector3d> first_centres(const Mandrel& mandrel) {
     const double spacing =
         std::max(kFirstSpacing * mandrel.rims[0].radius_mm, 2.0 * surface.mean_edge_mm);
     const auto slices = static_cast<std::size_t>(
-        std::clamp(length / spacing, static_cast<double>(kLeastSections), 1e3));
+        std::clamp(length / spacing, static_cast<double>(kMinSections), 1e3));
     std::vector<Eigen::Matrix3d> sum(slices, Eigen::Matrix3d::Zero());
     std::vector<Vector3d> right(slices, Vector3d::Zero());
     std::vector<std::size_t> count(slices, 0);
@@ -129,7 +129,7 @@ std::vector<Vector3d> first_centres(const Mandrel& mandrel) {
     }
     std::vector<Vector3d> centres{mandrel.rims[0].centre_mm};
     for (std::size_t i = 0; i < slices; ++i) {
-        if (count[i] >= kLeastSections) {
+        if (count[i] >= kMinSections) {
             const Vector3d centre = sum[i].ldlt().solve(right[i]);
             if ((centre - centres.back()).norm() > 0.25 * spacing &&
                 (centre - mandrel.rims[1].centre_mm).norm() > 0.25 * spacing) {
@@ -180,7 +180,7 @@ Fit fit_section(std::span<const Seen> seen, double arc_mm, double reach_mm) {
             std::upper_bound(low, seen.end(), arc_mm + reach_mm,
                              [](double arc, const Seen& s) { return arc < s.arc_mm; });
         near = {low, high};
-        if (near.size() >= std::min(kLeastVertices, seen.size()) || !(reach_mm < kFarthest_mm)) {
+        if (near.size() >= std::min(kMinVertices, seen.size()) || !(reach_mm < kFarthest_mm)) {
             break;
         }
     }
@@ -202,7 +202,7 @@ Fit fit_section(std::span<const Seen> seen, double arc_mm, double reach_mm) {
     }
     const Eigen::Matrix<double, 9, 1> found = normal.ldlt().solve(right);
     Eigen::Vector2d off(found[1], found[2]);
-    off *= std::min(1.0, kMostMove * std::abs(found[0]) /
+    off *= std::min(1.0, kMaxMove * std::abs(found[0]) /
                              std::max(off.norm(), std::numeric_limits<double>::min()));
     return {off, found[0]};
 }
@@ -215,8 +215,8 @@ std::vector<TubeSection> sections_along(const CentreLine& line, const Mandrel& m
         return {};
     }
     const auto intervals = static_cast<std::size_t>(
-        std::clamp(std::ceil(length / spacing_mm), static_cast<double>(kLeastSections - 1),
-                   static_cast<double>(kMostSections)));
+        std::clamp(std::ceil(length / spacing_mm), static_cast<double>(kMinSections - 1),
+                   static_cast<double>(kMaxSections)));
     const std::vector<Seen> seen = seen_from(line, mandrel.surface);
     const double step = length / static_cast<double>(intervals);
     const double reach = kReach * std::max(step, mandrel.surface.mean_edge_mm);
@@ -251,7 +251,7 @@ CentreLine line_of(const std::vector<TubeSection>& sections) {
 std::vector<TubeSection> tube_sections(const Mandrel& mandrel, double spacing_mm) {
     CentreLine line = line_through(first_centres(mandrel));
     const double coarse = std::max(spacing_mm, kFirstSpacing * mandrel.rims[0].radius_mm);
-    const double most = kMostLonger * line.length_mm();
+    const double most = kMaxLonger * line.length_mm();
     std::vector<TubeSection> sections;
     for (int round = 0; round < kCoarseRounds + kFineRounds; ++round) {
         sections = sections_along(line, mandrel, round < kCoarseRounds ? coarse : spacing_mm, most);

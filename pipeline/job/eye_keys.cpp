@@ -22,9 +22,9 @@ std::vector<std::string_view> eye_words() {
 const KeyTable<LengthPiece>& length_keys() {
     static const KeyTable<LengthPiece> kTable = {
         {
-            {"course", "number in the column course of path.csv", count_schema(0, kMostId),
+            {"course", "number in the column course of path.csv", count_schema(0, kMaxId),
              [](const JsonValue& value, LengthPiece& piece) {
-                 piece.piece = static_cast<std::int32_t>(value.integer(0, kMostId));
+                 piece.piece = static_cast<std::int32_t>(value.integer(0, kMaxId));
              },
              [](const LengthPiece& piece) {
                  return piece.piece ? std::to_string(*piece.piece) : std::string();

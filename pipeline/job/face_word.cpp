@@ -30,7 +30,7 @@ std::string all_kinds(const std::string& between) {
 
 std::string read_face_word(const JsonValue& value) {
     if (!value.is_string()) {
-        return std::to_string(value.integer(1, kMostId));
+        return std::to_string(value.integer(1, kMaxId));
     }
     std::string word = value.string();
     if (is_colour(word)) {
@@ -48,7 +48,7 @@ std::string read_face_word(const JsonValue& value) {
 
 SchemaJson face_word_schema() {
     return {{"oneOf",
-             SchemaJson::array({count_schema(1, kMostId),
+             SchemaJson::array({count_schema(1, kMaxId),
                                 {{"type", "string"},
                                  {"pattern", "^(" + all_kinds("|") + "|#[0-9A-Fa-f]{6})$"}}})}};
 }

@@ -15,7 +15,7 @@
 #include "pipeline/job/turn_kinds.h"
 #include "postproc/eye/eye_rules.h"
 #include "winding/plan/figures.h"
-#include "winding/revolution/pattern_wish.h"
+#include "winding/revolution/pattern_constraints.h"
 #include "winding/turn/pin_turn.h"
 
 namespace meshwind {
@@ -30,7 +30,7 @@ enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice, Wal
 enum class RedundancyRule { CentralAngle, Hold, Oscillate, Optimal };
 
 /// What the pattern of a layer is to be; what is left out is free
-/// (winding/revolution/pattern_wish.h).
+/// (winding/revolution/pattern_constraints.h).
 struct PatternJob {
     std::int64_t circuits = 0;  ///< > 0: so many; not of lattices
     std::int64_t starts = 0;    ///< > 0: the pattern number
@@ -78,15 +78,15 @@ struct LayerJob {
     LayerKind kind = LayerKind::Auto;
     std::optional<double> angle_deg;  ///< 0 (axial) .. 90 (hoop), from the local axial direction
     double target_layers = 1.0;       ///< > 0; how often each place is to be covered
-    std::optional<PatternJob> pattern{};   ///< Helical, Polar and Lattice layers only
-    std::optional<LatticeWish> lattice{};  ///< set for Lattice layers and no others
-    std::optional<WallJob> wall{};         ///< set for Wall layers and no others
+    std::optional<PatternJob> pattern{};          ///< Helical, Polar and Lattice layers only
+    std::optional<LatticeConstraints> lattice{};  ///< set for Lattice layers and no others
+    std::optional<WallJob> wall{};                ///< set for Wall layers and no others
     std::string file;      ///< landing points of an Imported layer; empty for all others
     LandingText points{};  ///< what that file holds, once read (pipeline/load_inputs.h)
 };
 
 /// Each fibre more is one more time that somebody cuts it and ties it on.
-inline constexpr int kMostFibres = 9;
+inline constexpr int kMaxFibres = 9;
 
 struct Job {
     struct MandrelAxis {
@@ -108,7 +108,7 @@ struct Job {
         bool extension_given = false;     ///< by the job's author; else it may be made longer
         TurnKind turn = TurnKind::Friction;
         bool turn_given = false;  ///< by the job's author; else pins may be tried
-        PinWish pins{};           ///< read where the kind of turn does (turn_kinds.h)
+        PinConstraints pins{};    ///< read where the kind of turn does (turn_kinds.h)
     };
     struct TowJob {
         double width_mm = 6.0;       ///< > 0
@@ -124,7 +124,7 @@ struct Job {
         double laydown_mm = 0.2;         ///< > 0; laid fibre against planned fibre, sideways
         double laydown_angle_deg = 0.3;  ///< > 0; and in direction
         double clearance_mm = 5.0;       ///< >= 0; machine and free fibre against mandrel
-        double bare = kMostBelow;  ///< 0 .. 1; share of the wall in reach that may lack layers
+        double bare = kMaxBelow;  ///< 0 .. 1; share of the wall in reach that may lack layers
     };
     struct SpeedJob {
         double fibre_m_min = 30.0;  ///< > 0
@@ -133,7 +133,7 @@ struct Job {
     MandrelJob mandrel;
     TowJob tow;
     std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
-    int fibres = 1;  ///< 1 .. kMostFibres; that may be wound one after the other, cut in between
+    int fibres = 1;  ///< 1 .. kMaxFibres; that may be wound one after the other, cut in between
     bool fibres_given = false;  ///< by the job's author; else there may be more
     EyeLaw eye;
     RedundancyRule redundancy = RedundancyRule::Optimal;

@@ -67,10 +67,10 @@ Key<Job::MandrelJob> list_key(std::string_view name, std::vector<Entry> Job::Man
 
 Key<Job::MandrelJob> regions_key() {
     return list_key(
-        "keep_regions", &Job::MandrelJob::keep_regions, count_schema(0, kMostId),
+        "keep_regions", &Job::MandrelJob::keep_regions, count_schema(0, kMaxId),
         string_text(kAutoWord),
         "ids of the regions that are wound, as meshwind inspect lists them; auto: the outer wall",
-        [](const JsonValue& id) { return static_cast<std::int32_t>(id.integer(0, kMostId)); },
+        [](const JsonValue& id) { return static_cast<std::int32_t>(id.integer(0, kMaxId)); },
         [](std::int32_t id) { return std::to_string(id); });
 }
 
@@ -81,17 +81,17 @@ Key<Job::MandrelJob> faces_key() {
                     read_face_word, face_word_text);
 }
 
-const KeyTable<PinWish>& pin_keys() {
-    static const KeyTable<PinWish> kTable = {{
-        count_or_auto("count", &PinWish::count, kMostPins,
+const KeyTable<PinConstraints>& pin_keys() {
+    static const KeyTable<PinConstraints> kTable = {{
+        count_or_auto("count", &PinConstraints::count, kMaxPins,
                       "pins of a ring; of a pattern a multiple of its circuits, auto: as many; "
                       "of courses auto: 1.25 tow widths apart"),
-        number("diameter", &PinWish::diameter_mm, kLengthRange, "mm, of a pin"),
-        number_or_auto("height", &PinWish::height_mm, kLengthRange,
+        number("diameter", &PinConstraints::diameter_mm, kLengthRange, "mm, of a pin"),
+        number_or_auto("height", &PinConstraints::height_mm, kLengthRange,
                        "mm over the extension; auto: that which leaves the free fibre most room"),
-        count_or_auto("skip", &PinWish::skip, kMostPins,
+        count_or_auto("skip", &PinConstraints::skip, kMaxPins,
                       "pins that a turn runs behind; auto: as few as can be"),
-        number_or_auto("offset", &PinWish::offset_mm, kLengthRange,
+        number_or_auto("offset", &PinConstraints::offset_mm, kLengthRange,
                        "least mm from the rim to the pins' axes; auto: a tow width and a diameter. "
                        "What closes the pattern is added"),
     }};
@@ -328,7 +328,7 @@ const KeyTable<Job>& job_keys() {
                    "the part: how its file is read and what of it is wound"),
             object("tow", &Job::tow, tow_keys(), "the band that is wound"),
             layers_key(),
-            told(count("fibres", &Job::fibres, kMostFibres,
+            told(count("fibres", &Job::fibres, kMaxFibres,
                        "continuous fibres that may be wound one after the other, each by a program "
                        "of its own; a further one is taken only where it covers more, or where "
                        "the machine cannot follow a turn. Where it is not given, and checks fail, "

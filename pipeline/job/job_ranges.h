@@ -39,20 +39,20 @@ inline constexpr JsonRange kSpeedRange = {.min = 1e-3, .max = 10'000.0};     ///
 
 // More circuits than patterns are looked for (winding/revolution/pattern.cpp), more series and
 // plies than anybody winds.
-inline constexpr std::int64_t kMostCircuits = 10'000;
-inline constexpr std::int64_t kMostSeries = 1'000;
-inline constexpr std::int64_t kMostPlies = 1'000;
+inline constexpr std::int64_t kMaxCircuits = 10'000;
+inline constexpr std::int64_t kMaxSeries = 1'000;
+inline constexpr std::int64_t kMaxPlies = 1'000;
 
 // Ids of regions and numbers of courses.
-inline constexpr std::int64_t kMostId = std::numeric_limits<std::int32_t>::max();
+inline constexpr std::int64_t kMaxId = std::numeric_limits<std::int32_t>::max();
 
 // More pins than on any ring.
-inline constexpr std::int64_t kMostPins = 10'000;
+inline constexpr std::int64_t kMaxPins = 10'000;
 
 // Dwells of a turn and less end at every place there is.
-inline constexpr double kMostDwell_deg = 3600.0;
+inline constexpr double kMaxDwell_deg = 3600.0;
 
 // Bands that overlap by more are a layer more.
-inline constexpr double kMostOverlap = 1.0;
+inline constexpr double kMaxOverlap = 1.0;
 
 }  // namespace meshwind

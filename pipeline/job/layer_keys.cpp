@@ -31,26 +31,26 @@ Key<PatternJob> lead_key() {
 
 Key<PatternJob> most_dwell_key() {
     Key<PatternJob> key =
-        number("most_dwell_deg", &PatternJob::most_dwell_deg, {.min = 0.0, .max = kMostDwell_deg},
+        number("most_dwell_deg", &PatternJob::most_dwell_deg, {.min = 0.0, .max = kMaxDwell_deg},
                "largest dwell at each rim, at least dwell_deg; without it any");
     key.read = [](const JsonValue& value, PatternJob& wish) {
-        wish.most_dwell_deg = value.number({.min = wish.dwell_deg, .max = kMostDwell_deg});
+        wish.most_dwell_deg = value.number({.min = wish.dwell_deg, .max = kMaxDwell_deg});
     };
     return key;
 }
 
 const KeyTable<PatternJob>& pattern_keys() {
     static const KeyTable<PatternJob> kTable = {{
-        count_if_any("circuits", &PatternJob::circuits, kMostCircuits,
+        count_if_any("circuits", &PatternJob::circuits, kMaxCircuits,
                      "so many circuits; not of lattices"),
-        count_if_any("starts", &PatternJob::starts, kMostCircuits,
+        count_if_any("starts", &PatternJob::starts, kMaxCircuits,
                      "pattern number: after so many circuits a band lies beside the first one; the "
                      "interlacing"),
         lead_key(),
-        number("most_overlap", &PatternJob::most_overlap, {.min = 0.0, .max = kMostOverlap},
+        number("most_overlap", &PatternJob::most_overlap, {.min = 0.0, .max = kMaxOverlap},
                "share of the distance between bands; without it 0.25, with circuits any; not of "
                "lattices"),
-        number("dwell_deg", &PatternJob::dwell_deg, {.min = 0.0, .max = kMostDwell_deg},
+        number("dwell_deg", &PatternJob::dwell_deg, {.min = 0.0, .max = kMaxDwell_deg},
                "least dwell at each rim, the compensation angle"),
         most_dwell_key(),
         [] {
@@ -73,14 +73,14 @@ bool is_lattice(const LayerJob& layer) {
 }
 
 // A count of a lattice, which other layers refuse.
-Key<LayerJob> lattice_count(std::string_view name, int LatticeWish::*field, std::int64_t most,
-                            std::string_view meaning) {
+Key<LayerJob> lattice_count(std::string_view name, int LatticeConstraints::*field,
+                            std::int64_t most, std::string_view meaning) {
     return only_if<LayerJob>(
         is_lattice, "job.pattern_unused",
         "only a lattice reads it; a helical or polar layer has \"pattern\": {\"circuits\": N}",
         {name, meaning, count_schema(1, most),
          [=](const JsonValue& value, LayerJob& layer) {
-             LatticeWish& lattice = layer.lattice ? *layer.lattice : layer.lattice.emplace();
+             LatticeConstraints& lattice = layer.lattice ? *layer.lattice : layer.lattice.emplace();
              lattice.*field = static_cast<int>(value.integer(1, most));
          },
          [=](const LayerJob& layer) { return std::to_string((*layer.lattice).*field); }});
@@ -88,9 +88,9 @@ Key<LayerJob> lattice_count(std::string_view name, int LatticeWish::*field, std:
 
 Key<LayerJob> series_key() {
     Key<LayerJob> key =
-        lattice_count("series", &LatticeWish::series, kMostSeries,
+        lattice_count("series", &LatticeConstraints::series, kMaxSeries,
                       "bands side by side in a rib; fill: until the wall is closed; lattices only");
-    key.schema = with_default(or_word(kFillWord, key.schema), LatticeWish{}.series);
+    key.schema = with_default(or_word(kFillWord, key.schema), LatticeConstraints{}.series);
     key.read = [read = key.read](const JsonValue& value, LayerJob& layer) {
         if (is_lattice(layer) && value.is_string() && value.one_of({kFillWord}) == 0) {
             layer.lattice->series = 0;
@@ -156,17 +156,17 @@ bool has_plies_or_thickness(const LayerJob& layer) {
 }
 
 Key<LayerJob> circuits_key() {
-    Key<LayerJob> key = lattice_count("circuits", &LatticeWish::circuits, kMostCircuits,
+    Key<LayerJob> key = lattice_count("circuits", &LatticeConstraints::circuits, kMaxCircuits,
                                       "ribs of either hand; lattices only");
     key.needed = is_lattice;
     return key;
 }
 
 Key<LayerJob> plies_key() {
-    Key<LayerJob> key = lattice_count("plies", &LatticeWish::plies, kMostPlies,
+    Key<LayerJob> key = lattice_count("plies", &LatticeConstraints::plies, kMaxPlies,
                                       "how often all of a lattice is wound, band upon "
                                       "band; instead of target_layers");
-    key.schema["default"] = LatticeWish{}.plies;
+    key.schema["default"] = LatticeConstraints{}.plies;
     return key;
 }
 

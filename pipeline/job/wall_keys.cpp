@@ -66,9 +66,9 @@ Key<WallPart> point_key() {
 // A number of a region or rim.
 Key<WallPart> id_key(std::string_view name, std::optional<std::int32_t> WallPart::*field,
                      std::string_view meaning) {
-    return {name, meaning, count_schema(0, kMostId),
+    return {name, meaning, count_schema(0, kMaxId),
             [=](const JsonValue& value, WallPart& part) {
-                part.*field = static_cast<std::int32_t>(value.integer(0, kMostId));
+                part.*field = static_cast<std::int32_t>(value.integer(0, kMaxId));
             },
             [=](const WallPart& part) {
                 return part.*field ? std::to_string(*(part.*field)) : std::string();

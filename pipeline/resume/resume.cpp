@@ -23,11 +23,11 @@ constexpr double kMmPerM = 1000.0;
 
 // A block at the start becomes slower by such a factor at a time. What is behind the first blocks,
 // or does not settle, is the program's own.
-constexpr double kLeastSlowing = 1.01;
-constexpr double kMostSlowing = 2.0;
+constexpr double kMinSlowing = 1.01;
+constexpr double kMaxSlowing = 2.0;
 constexpr double kSettled = 1.0 + 5e-4;  // half of what the check "limits" leaves to rounding
-constexpr std::size_t kMostStartBlocks = 200;
-constexpr int kMostSlowings = 2000;
+constexpr std::size_t kMaxStartBlocks = 200;
+constexpr int kMaxSlowings = 2000;
 
 constexpr std::int64_t kTurn_nano = 360 * kNanoPerUnit;
 
@@ -55,7 +55,7 @@ bool lies_on_wall(const LaidProgram& program, std::size_t block) {
     if (count == 0 || laid.at[count - 1].lifted || laid.at[count - 1].held) {
         return false;
     }
-    const LaydownWall& wall = *program.setup.wall;
+    const LaydownSurface& wall = *program.setup.wall;
     const SurfacePoint foot = wall.nearest(landing_mm);
     const Patch patch(wall.surface(), foot.face);
     const Vector3d on_wall_mm = patch.at({foot.bary[1], foot.bary[2]}).position_mm;
@@ -119,14 +119,14 @@ void slow_start(const Machine& machine, double corner_mm, BlockList& rest) {
         step_s.push_back(block.duration_s);
     }
     const auto slow_down = [&](std::size_t step, double by) {
-        step_s[step] *= std::clamp(by, kLeastSlowing, kMostSlowing);
+        step_s[step] *= std::clamp(by, kMinSlowing, kMaxSlowing);
     };
-    for (int i = 0; i < kMostSlowings; ++i) {
+    for (int i = 0; i < kMaxSlowings; ++i) {
         const AxisLoads loads = axis_loads(machine, joints, step_s);
         const CornerCut& cut = loads.eye.mm > loads.linear.mm ? loads.eye : loads.linear;
         const bool is_corner = loads.acceleration.ratio <= kSettled;
         const std::size_t step = is_corner ? cut.step : loads.acceleration.step;
-        if ((is_corner && cut.mm <= kSettled * corner_mm) || step > kMostStartBlocks) {
+        if ((is_corner && cut.mm <= kSettled * corner_mm) || step > kMaxStartBlocks) {
             break;
         }
         if (is_corner) {  // the cut goes by the square of the speeds on both sides

@@ -76,7 +76,7 @@ bool was_too_bare(const Run& run) {
 bool joins_enough(const Run& run) {
     const Plan& plan = first_plan(run);
     return was_too_bare(run) && plan.planner == Planner::Cover &&
-           can_cover(run) >= kLeastReach * plan.coverage.reachable;
+           can_cover(run) >= kMinReach * plan.coverage.reachable;
 }
 
 bool stands(const Run& run) {

@@ -14,7 +14,7 @@ inline constexpr double kWorthMore = 0.005;
 
 /// Share of what courses reach that fibres have to be able to join: a plan has to cover
 /// kCoveredShare of it, and what is planned later to join the courses covers .02 on top at most.
-inline constexpr double kLeastReach = kCoveredShare - 0.02;
+inline constexpr double kMinReach = kCoveredShare - 0.02;
 
 [[nodiscard]] const Plan& first_plan(const Run& run);
 

@@ -15,7 +15,7 @@ constexpr double kWorthIt = 0.01;
 constexpr double kNearly = 0.95;
 
 // Fibres that are tied on where the machine cannot follow turns. Each is a stop of the machine.
-constexpr int kMostToSpare = 4;
+constexpr int kMaxToSpare = 4;
 
 // The fewest fibres that reach what all those that were looked for do.
 int fibres_enough(const std::vector<double>& reach) {
@@ -48,8 +48,8 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
     if (fibres_free) {
         more.fibres = std::max(job.fibres, enough);
     }
-    for (const WhatIf& what_if : plan.what_if) {
-        if (what_if.rule == WhatIf::Rule::Extension && !job.mandrel.extension_given &&
+    for (const RelaxedRule& what_if : plan.what_if) {
+        if (what_if.rule == RelaxedRule::Rule::Extension && !job.mandrel.extension_given &&
             what_if.reachable > plan.coverage.reachable + kWorthIt) {
             more.mandrel.extension_mm *= what_if.factor;
         }
@@ -62,8 +62,8 @@ std::optional<Job> more_room(const Job& job, const Plan& plan) {
     // a run of the whole job.
     const bool covers = plan.coverage.fraction >= kNearly * kCoveredShare * plan.coverage.reachable;
     if (same() && fibres_free && covers && job.fibres <= enough) {
-        const int spare = std::clamp(plan.effort.turns_refused, 1, kMostToSpare);
-        more.fibres = std::min(job.fibres + spare, kMostFibres);
+        const int spare = std::clamp(plan.effort.turns_refused, 1, kMaxToSpare);
+        more.fibres = std::min(job.fibres + spare, kMaxFibres);
     }
     return same() ? std::nullopt : std::optional(std::move(more));
 }

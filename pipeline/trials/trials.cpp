@@ -31,7 +31,7 @@ constexpr double kWellCovered = 0.95;
 // A pattern that covers less leaves a neck bare, which a wider blend may let it lie on. Where none
 // covers it all, so many are wound until one holds.
 constexpr double kPatternCovers = 0.99;
-constexpr std::size_t kMostBarePatterns = 2;
+constexpr std::size_t kMaxBarePatterns = 2;
 
 // By friction a turn that is 10 degrees flatter takes 1.8 times the length.
 constexpr double kLongerExtension = 2.0;
@@ -43,11 +43,11 @@ constexpr double kWellInReach = 0.96;
 constexpr double kNeverEnough = 2.0;
 
 // More fibres and longer extensions are tried so many times at most.
-constexpr int kMostMends = 2;
+constexpr int kMaxMends = 2;
 
 // A cover that fails by chance is planned with so many seeds at most, and with fewer where other
 // blends, fibres and extensions are tried too.
-constexpr std::uint64_t kMostSeeds = 3;
+constexpr std::uint64_t kMaxSeeds = 3;
 constexpr std::uint64_t kSeedsOfTries = 2;
 
 bool can_turn_on_pins(const Job& job) {
@@ -70,7 +70,7 @@ double least_covered_at(Depth depth) {
         case Depth::WholePatterns:
             return kPatternCovers;
         default:
-            return kLeastReach;
+            return kMinReach;
     }
 }
 
@@ -228,7 +228,7 @@ void try_job(const TrialInputs& inputs, const Job& job, Depth depth, std::uint64
              Trials& trials) {
     const std::uint64_t first_seed = inputs.options.context.seed;
     const std::uint64_t seeds = trials.best && is_done(trials) ? 1
-                                : depth == Depth::Full         ? kMostSeeds
+                                : depth == Depth::Full         ? kMaxSeeds
                                                                : kSeedsOfTries;
     LastRun& last = trials.last;
     last.by_chance = last.by_chance || first == 0;
@@ -273,7 +273,7 @@ void find_pattern(const TrialInputs& inputs, const Job& job, Trials& trials) {
     }
     std::stable_sort(bare.begin(), bare.end(),
                      [](const Look& a, const Look& b) { return a.share > b.share; });
-    bare.resize(std::min(bare.size(), kMostBarePatterns));
+    bare.resize(std::min(bare.size(), kMaxBarePatterns));
     for (const Look& look : bare) {
         if (look.share > 0.0 && !is_done(trials)) {
             try_job(inputs, look.job, Depth::PatternsFirst, 0, trials);
@@ -295,7 +295,7 @@ double look_at(const TrialInputs& inputs, Job& job, Trials& trials) {
         double share = 0.0;
         if (joins_enough(look)) {
             share = can_cover(look);
-            if (plan.coverage.joinable < kLeastReach * plan.coverage.reachable) {
+            if (plan.coverage.joinable < kMinReach * plan.coverage.reachable) {
                 job = more_fibres(job, plan).value_or(job);
             }
         }
@@ -380,7 +380,7 @@ void mend_room(const TrialInputs& inputs, const Job& job, Trials& trials) {
     }
     std::optional<Job>& next = trials.last.next;
     next = room_for(*trials.best);
-    for (int mend = 0; mend < kMostMends && next; ++mend) {
+    for (int mend = 0; mend < kMaxMends && next; ++mend) {
         try_job(inputs, *std::exchange(next, std::nullopt), Depth::WhereItCovers, 0, trials);
     }
 }

@@ -22,8 +22,8 @@ namespace {
 
 // A stage is planned for the mandrel that it begins on: it grows by this share of the radius of the
 // narrowest leg at most, and by so many layers, for which there is time to make them even.
-constexpr double kMostGrowth = 0.04;
-constexpr double kMostLayersOfAStage = 6.0;
+constexpr double kMaxGrowth = 0.04;
+constexpr double kMaxLayersOfAStage = 6.0;
 
 // Circuits of a pattern lie in both hands: it lays no less.
 constexpr int kLayersOfAPattern = 2;
@@ -37,15 +37,15 @@ constexpr double kFilledTo = 0.65;
 
 // Of the places that ask for the thinnest wall, share that asks for no more than a pattern lays:
 // where bands overlap and on domes more lies than was asked for.
-constexpr double kMostPlaces = 0.75;
+constexpr double kMaxPlaces = 0.75;
 
 // A whole number of layers is meant, not one more.
 constexpr double kSameLayers = 1e-9;
 
 int layers_of_a_stage(const Mandrel& bare, double tow_thickness_mm) {
-    double layers = kMostLayersOfAStage;
+    double layers = kMaxLayersOfAStage;
     for (const Rim& rim : bare.rims) {
-        layers = std::min(layers, kMostGrowth * rim.radius_mm / tow_thickness_mm);
+        layers = std::min(layers, kMaxGrowth * rim.radius_mm / tow_thickness_mm);
     }
     const int whole = static_cast<int>(layers);
     return whole < kLayersOfAPattern && find_revolution(bare).body ? kLayersOfAPattern
@@ -259,7 +259,7 @@ StageAsk WallStages::next() const {
             layers.push_back(ask.measured.layers[i]);
         }
     }
-    ask.everywhere = quantile(std::move(layers), kMostPlaces);
+    ask.everywhere = quantile(std::move(layers), kMaxPlaces);
     return ask;
 }
 

@@ -17,7 +17,7 @@ namespace {
 // Fewest and most faces of a capsule's mesh around its axis: a quarter turn must stay a few faces,
 // and a drum of a metre within 0.1 mm takes 300.
 constexpr int kFewestSides = 12;
-constexpr int kMostSides = 720;
+constexpr int kMaxSides = 720;
 // Squared lengths below this share of the larger one belong to points, not to segments.
 constexpr double kPoint = 1e-24;
 
@@ -187,7 +187,7 @@ TriangleSoup capsule_mesh(const Capsule& capsule, double outside_mm) {
     const double wider = 1.0 + outside_mm / capsule.radius_mm;
     const double widest = std::acos(1.0 / (wider * wider));
     const int wanted = static_cast<int>(std::ceil(2.0 * kPi / widest));
-    const int quarter = (std::clamp(wanted, kFewestSides, kMostSides) + 3) / 4;
+    const int quarter = (std::clamp(wanted, kFewestSides, kMaxSides) + 3) / 4;
     const int sides = 4 * quarter;
     const double step = 2.0 * kPi / sides;
     const double radius = capsule.radius_mm / std::sqrt(std::cos(step));

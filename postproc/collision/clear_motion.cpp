@@ -15,7 +15,7 @@ std::vector<std::size_t> hits_within(const MotionCheck& check, const EyePath& st
     axes.path = refine_path(check.machine, part, RedundancyPolicy::Chosen, check.tolerance);
     axes.joints = solve_joints(check.machine, axes.path, RedundancyPolicy::Chosen);
     CollisionRule rule = check.rule;
-    rule.told_mm = rule.clearance_mm;
+    rule.report_within_mm = rule.clearance_mm;
     return hit_stations(axes,
                         check_collisions(check.machine, check.envelope, check.obstacles, axes.path,
                                          axes.joints, rule),

@@ -117,7 +117,7 @@ void sweep_head(const CollisionTask& task, const MachineStep& step, double least
     const SweptObstacles mandrel{task.obstacles, rule.clearance_mm};
     const Isometry3d mandrel_from_base = base_from_mandrel(step.machine, step.to).inverse();
     for (const LinkedChunk& part : task.parts) {
-        if (!(rule.told_mm > rule.clearance_mm)) {
+        if (!(rule.report_within_mm > rule.clearance_mm)) {
             found.head = found.head || !is_clear(step, mandrel, part);
             continue;
         }
@@ -155,7 +155,7 @@ StepFinding find_in_step(const CollisionTask& task, const EyePath& path, const J
     const std::size_t before = i > 0 ? i - 1 : i;
     const MachineStep step{task.machine, joints.row(before), joints.row(i)};
     StepFinding found;
-    found.clearance_mm = task.rule.told_mm;
+    found.clearance_mm = task.rule.report_within_mm;
     found.fibre = fibre_blocked(task.obstacles, path[before], path[i], task.rule);
     sweep_head(task, step, least_mm, found);
     for (const LinkedChunk& body : task.bodies) {
@@ -166,9 +166,9 @@ StepFinding find_in_step(const CollisionTask& task, const EyePath& path, const J
     return found;
 }
 
-CollisionReport collision_report(const std::vector<StepFinding>& found, double told_mm) {
+CollisionReport collision_report(const std::vector<StepFinding>& found, double report_within_mm) {
     CollisionReport report;
-    report.min_clearance_mm = told_mm;
+    report.min_clearance_mm = report_within_mm;
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (found[i].fibre) {
             report.fibre_hits.push_back(i);
@@ -229,7 +229,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
     const CollisionTask task{machine, obstacles, rule, chunks_of(envelope.parts),
                              chunks_of(envelope.bodies)};
     std::vector<StepFinding> found(path.size());
-    std::atomic<double> least_mm = rule.told_mm;
+    std::atomic<double> least_mm = rule.report_within_mm;
     parallel_for(path.size(), kStepChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             double least = least_mm;
@@ -239,7 +239,7 @@ CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& env
             }
         }
     });
-    return collision_report(found, rule.told_mm);
+    return collision_report(found, rule.report_within_mm);
 }
 
 bool head_strikes(const Machine& machine, const HeadEnvelope& envelope, const RayQuery& obstacles,

@@ -49,7 +49,7 @@ struct CollisionRule {
     double fibre_step_mm = 2.0;  ///< the eye moves no further than this between two fibre rays
     /// Clearances of the head beyond this are not told apart; where it is `clearance_mm`, none is
     /// measured.
-    double told_mm = kClearanceCap_mm;
+    double report_within_mm = kClearanceCap_mm;
     bool least_only = false;  ///< no clearance is told but the least of all: much is not measured
 };
 
@@ -60,9 +60,10 @@ struct CollisionReport {
         head_hits;  ///< steps in which the head comes nearer than the clearance
     std::vector<std::size_t>
         body_hits;  ///< steps in which a body touches what turns with the mandrel
-    std::vector<double> clearance_mm;  ///< of the head at each eye point, up to told_mm; with
-                                       ///< least_only told_mm where it was not measured
-    double min_clearance_mm = 0.0;     ///< least of them
+    std::vector<double>
+        clearance_mm;               ///< of the head at each eye point, up to report_within_mm; with
+                                    ///< least_only report_within_mm where it was not measured
+    double min_clearance_mm = 0.0;  ///< least of them
     std::size_t min_clearance_point = 0;
 };
 

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 // Pieces and steps larger than this are divided without a search where the table, which is good to
 // some mm, says that it would not settle them.
-constexpr double kLeastUndecided_mm = 1.0;
+constexpr double kMinUndecided_mm = 1.0;
 constexpr double kGuess_mm = 2.0;
 
 using Joints = std::vector<double>;
@@ -147,7 +147,7 @@ Middle middle_of(const LinkSweep& sweep, double low, double high) {
 // between what is needed and what would do. Its parts are looked at at once, which finds the same.
 bool is_undecided(const RayQuery& obstacles, const Vector3d& centre, double need, double search,
                   double size) {
-    if (size < kLeastUndecided_mm || !obstacles.has_table()) {
+    if (size < kMinUndecided_mm || !obstacles.has_table()) {
         return false;
     }
     const double guess = obstacles.distance_estimate_mm(centre);

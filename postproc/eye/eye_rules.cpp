@@ -98,7 +98,7 @@ Place place_of(const EyePoint& point, const EyeLaw& law) {
 }
 
 // Length that the law names for a point, before the rates.
-double told_mm(const EyePoint& point, const EyeLaw& law) {
+double told_length_mm(const EyePoint& point, const EyeLaw& law) {
     double told = law.free_length_mm;
     for (const LengthPiece& piece : law.lengths) {
         const bool here = piece.piece ? *piece.piece == point.piece
@@ -108,11 +108,11 @@ double told_mm(const EyePoint& point, const EyeLaw& law) {
     return told;
 }
 
-// The least lengths that are nowhere shorter than told and change by the rates.
+// The shortest lengths that respect the given ones and the limits of their rates.
 std::vector<double> piecewise_lengths(const EyePath& path, const EyeLaw& law) {
     std::vector<double> length;
     for (const EyePoint& point : path) {
-        length.push_back(told_mm(point, law));
+        length.push_back(told_length_mm(point, law));
     }
     for (std::size_t i = 1; i < path.size(); ++i) {
         const double ds = path[i].s_mm - path[i - 1].s_mm;

@@ -13,7 +13,7 @@ namespace meshwind {
 namespace {
 
 // Most pieces of a circuit: two courses and two turns, as often as lattices of two series need.
-constexpr std::size_t kMostPieces = 8;
+constexpr std::size_t kMaxPieces = 8;
 
 // About Z, from the points of one stretch to those of another: that with the least squares.
 double turned_rad(std::span<const EyePoint> from, std::span<const EyePoint> to) {
@@ -106,8 +106,8 @@ private:
     // circuit later.
     void count_equal() {
         const std::size_t n = kind_.size();
-        equal_.assign(kMostPieces + 1, std::vector<std::size_t>(n + 1, 0));
-        for (std::size_t length = 1; length <= kMostPieces; ++length) {
+        equal_.assign(kMaxPieces + 1, std::vector<std::size_t>(n + 1, 0));
+        for (std::size_t length = 1; length <= kMaxPieces; ++length) {
             for (std::size_t i = n > length ? n - length : 0; i-- > 0;) {
                 equal_[length][i] = kind_[i] == kind_[i + length] ? equal_[length][i + 1] + 1 : 0;
             }
@@ -119,7 +119,7 @@ private:
         std::size_t best_length = 0;
         std::size_t best_circuits = 0;
         std::size_t most = 0;
-        for (std::size_t length = 1; length <= kMostPieces; ++length) {
+        for (std::size_t length = 1; length <= kMaxPieces; ++length) {
             const std::size_t circuits = equal_[length][piece] / length + 1;
             const std::size_t saved =
                 circuits > kKeptCircuits ? (circuits - kKeptCircuits) * length : 0;

@@ -7,7 +7,7 @@
 namespace meshwind {
 namespace {
 
-constexpr std::size_t kMostStretches = 3;
+constexpr std::size_t kMaxStretches = 3;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::vector<BindingLimit> binding_limits(std::span<const LimitedStep> steps,
         if (limit.time_s > 0.0) {
             limit.name = name_of(number);
             std::stable_sort(limit.stretches.begin(), limit.stretches.end(), longer);
-            limit.stretches.resize(std::min(limit.stretches.size(), kMostStretches));
+            limit.stretches.resize(std::min(limit.stretches.size(), kMaxStretches));
             binding.push_back(std::move(limit));
         }
     }

@@ -24,7 +24,7 @@ constexpr double kShareInBlends = 0.5;
 constexpr double kCyclesOfRamp = 300.0;
 
 // Where corners turn back on themselves a blend has no side to leave them on.
-constexpr double kLeastCosine = 1e-3;
+constexpr double kMinCosine = 1e-3;
 
 struct Segment {
     double length = 0.0;        // of X Y Z; of U V W where these rest; else of A B C: mm or deg
@@ -84,7 +84,7 @@ BlendSpeeds blend_speeds(const Segment& here, const Segment& next, double corner
     const bool turns = here.along.norm() > 0.0 && next.along.norm() > 0.0;
     const double cosine =
         std::sqrt(std::max(0.0, 0.5 * (1.0 - here.along.dot(next.along))));  // of half the corner
-    if (turns && std::isfinite(corner_mm) && cosine > kLeastCosine) {
+    if (turns && std::isfinite(corner_mm) && cosine > kMinCosine) {
         const double most = 2.0 * std::sqrt(here.acceleration * corner_mm / cosine);
         speeds = {std::min(speeds.here, most), std::min(speeds.next, most)};
     }

@@ -79,8 +79,8 @@ struct BlockList {
 /// What one block can ask for: more turns than the longest stroke of the narrowest tow winds (10 m
 /// at 0.5 mm), and a longer way than any bed. Whatever goes beyond has lost its point, and winding
 /// it again would take hours.
-inline constexpr double kMostBlock_deg = 20'000 * 360.0;
-inline constexpr double kMostBlock_mm = 100'000.0;
+inline constexpr double kMaxBlock_deg = 20'000 * 360.0;
+inline constexpr double kMaxBlock_mm = 100'000.0;
 
 /// Words when an axis goes further than that from one position to the next; else empty.
 [[nodiscard]] std::string beyond_one_block(const BlockAxis& axis, std::int64_t from_nano,

@@ -19,7 +19,7 @@ constexpr std::size_t kSamplesPerStep = 2;
 constexpr int kSecants = 2;
 // A step is cut by the square root of its excess, and what is left over in the next round. Beyond
 // so many parts the deviation of the whole step says little about that of a part.
-constexpr double kMostParts = 8.0;
+constexpr double kMaxParts = 8.0;
 constexpr std::size_t kChunk = 256;
 
 double angle_between_lines(const Vector3d& a, const Vector3d& b) {
@@ -165,7 +165,7 @@ int BlockCheck::parts(std::size_t step) const {
     const double excess =
         std::max({one.pull_mm / tolerance_.sideways_mm, one.angle_rad / tolerance_.angle_rad,
                   one.eye_share, one.twist_rad / tolerance_.twist_rad});
-    const double wish = std::min(std::ceil(std::sqrt(excess)), kMostParts);
+    const double wish = std::min(std::ceil(std::sqrt(excess)), kMaxParts);
     return std::max(1, static_cast<int>(std::min(wish, std::ceil(move / kFinestStep_mm))));
 }
 

@@ -64,7 +64,7 @@ std::string block_words(const BlockList& list, std::size_t block) {
 
 std::string beyond_one_block(const BlockAxis& axis, std::int64_t from_nano, std::int64_t to_nano) {
     const bool rotary = axis.type == AxisType::Rotary;
-    const double most = rotary ? kMostBlock_deg : kMostBlock_mm;
+    const double most = rotary ? kMaxBlock_deg : kMaxBlock_mm;
     const double way = (static_cast<double>(to_nano) - static_cast<double>(from_nano)) /
                        static_cast<double>(kNanoPerUnit);
     if (std::abs(way) <= most) {

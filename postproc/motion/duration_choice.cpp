@@ -15,9 +15,9 @@ namespace {
 // Shares by which all steps may become shorter or longer at once, in turn, each for as long as it
 // saves this part of the share.
 constexpr std::array<double, 9> kShares = {
-    0.5, 0.25, 0.12, 0.06, 0.03, 0.015, 0.007, 0.003, kLeastDurationShare};
+    0.5, 0.25, 0.12, 0.06, 0.03, 0.015, 0.007, 0.003, kMinDurationShare};
 constexpr double kWorthwhile = 0.01;
-constexpr int kMostRounds = 30;
+constexpr int kMaxRounds = 30;
 
 // What happens at a step matters to so many before and after.
 constexpr std::size_t kReach = 3;
@@ -226,7 +226,7 @@ std::vector<double> tightened_s(const MovingSteps& steps, std::vector<double> du
     for (const double share : kShares) {
         double saved = 1.0;  // share of the time
         std::vector<char> changed(steps.count + 2, 1);
-        for (int round = 0; round < kMostRounds && saved > kWorthwhile * share; ++round) {
+        for (int round = 0; round < kMaxRounds && saved > kWorthwhile * share; ++round) {
             const double before_s = sum_s();
             const Costs cost = weigh_choices(
                 steps, {duration_s, open_steps(steps, duration_s, changed), 1.0 + share}, table);

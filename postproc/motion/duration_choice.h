@@ -9,10 +9,10 @@
 namespace meshwind {
 
 /// The least share by which steps are tried shorter or longer.
-inline constexpr double kLeastDurationShare = 0.001;
+inline constexpr double kMinDurationShare = 0.001;
 
 /// All steps may become a share shorter or longer at once, and that share shrinks to
-/// kLeastDurationShare. The sum never gets longer, for to stay as it is is a choice of each step.
+/// kMinDurationShare. The sum never gets longer, for to stay as it is is a choice of each step.
 /// \param duration_s of each step, rest included; ramps have room and corners are within the limit
 /// A cancellation point in each round.
 [[nodiscard]] std::vector<double> tightened_s(const MovingSteps& steps,

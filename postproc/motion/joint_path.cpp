@@ -224,7 +224,7 @@ std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy) 
     double central = 0.0;
     double turn = 0.0;
     for (std::size_t i = 0; i < path.size(); ++i) {
-        if (eye_radius_mm(path[i]) > kLeastEyeRadius_mm) {
+        if (eye_radius_mm(path[i]) > kMinEyeRadius_mm) {
             const double wrapped =
                 path[i].azimuth_rad - std::atan2(path[i].eye_mm.y(), path[i].eye_mm.x());
             central += std::remainder(wrapped - central, 2.0 * kPi);

@@ -75,7 +75,7 @@ inline constexpr double kEyeThere_mm = 1e-6;
 
 /// Below this distance the direction of the eye from the spindle axis is rounding noise of
 /// positions of some metres; the policy CentralAngle then keeps the previous turn.
-inline constexpr double kLeastEyeRadius_mm = 1e-6;
+inline constexpr double kMinEyeRadius_mm = 1e-6;
 
 /// How far the eye may get from the half-plane before the mandrel follows. Hold: up to the plane
 /// x = 0 of the machine, where cross feeds end. Oscillate: a head that has half of its distance

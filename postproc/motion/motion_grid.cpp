@@ -26,8 +26,8 @@ constexpr double kLengthStep_mm = kShorteningRate * kKnot_mm;
 constexpr int kLengths = 36;
 
 // Steps of a length that may be taken from one place to the next (kLengtheningRate).
-constexpr int kMostLonger = 4;
-constexpr int kMostShorter = 2;
+constexpr int kMaxLonger = 4;
+constexpr int kMaxShorter = 2;
 
 // Rounding of lengths that change by just what they may.
 constexpr double kRateSlack_mm = 1e-9;
@@ -231,8 +231,8 @@ void for_states_before(std::size_t s, const Visit& visit) {
     visit(kGiven);
     for (int turn = std::max(-kTurnsToASide, turn_of(s) - 1);
          turn <= std::min(kTurnsToASide, turn_of(s) + 1); ++turn) {
-        for (int length = std::max(0, length_of(s) - kMostLonger);
-             length <= std::min(kLengths - 1, length_of(s) + kMostShorter); ++length) {
+        for (int length = std::max(0, length_of(s) - kMaxLonger);
+             length <= std::min(kLengths - 1, length_of(s) + kMaxShorter); ++length) {
             visit(state_of(turn, length));
         }
     }

@@ -39,7 +39,7 @@ constexpr double kVelocityWeight = 4.0;
 constexpr double kFreeShortening = 0.6;
 constexpr double kShorteningWeight = 10.0;
 // What lengthening by so little per mm of fibre costs is all the same.
-constexpr double kLeastRise = 0.1;
+constexpr double kMinRise = 0.1;
 
 // A range that is not clear is halved so many times.
 constexpr int kHalvings = 3;
@@ -57,8 +57,8 @@ constexpr double kLengthReach_mm = 12.0;
 constexpr double kScan_mm = 4.0;
 
 // Keeps the equations solvable where a variable has no say, and pivots positive in rounding.
-constexpr double kLeastDiagonal = 1e-9;
-constexpr double kLeastPivot = 1e-12;
+constexpr double kMinDiagonal = 1e-9;
+constexpr double kMinPivot = 1e-12;
 
 struct Range {
     double low = 0.0;
@@ -95,7 +95,7 @@ public:
             for (std::size_t back = 1; back <= std::min(i, kBand); ++back) {
                 sum -= row_[i][back] * row_[i][back];
             }
-            row_[i][0] = std::sqrt(std::max(sum, kLeastPivot));
+            row_[i][0] = std::sqrt(std::max(sum, kMinPivot));
             for (std::size_t back = 1; back <= std::min(i, kBand); ++back) {
                 x[i] -= row_[i][back] * x[i - back];
             }
@@ -351,7 +351,7 @@ void add_lengths(const MotionKnots& knots, const ChosenMotion& motion, Equations
         const double unit = kLengthUnit_mm / knots[k].ahead_mm;
         const std::array<Term, 2> terms{Term{2 * k + 1, -unit}, Term{2 * k + 3, unit}};
         if (rise > 0.0) {
-            equations.add(terms, rise, knots.step_s(k) / std::max(rise, kLeastRise));
+            equations.add(terms, rise, knots.step_s(k) / std::max(rise, kMinRise));
         } else if (rise < -kFreeShortening) {
             equations.add(terms, rise + kFreeShortening, kShorteningWeight * knots.step_s(k));
         }
@@ -366,7 +366,7 @@ Equations damped_equations(const MotionKnots& knots, const ChosenMotion& motion,
     add_velocities(knots, motion, slopes, equations);
     add_lengths(knots, motion, equations);
     for (std::size_t i = 0; i < variables; ++i) {
-        equations.matrix.at(i, 0) += damping * knots.step_s(0) + kLeastDiagonal;
+        equations.matrix.at(i, 0) += damping * knots.step_s(0) + kMinDiagonal;
     }
     return equations;
 }

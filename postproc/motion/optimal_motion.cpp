@@ -17,7 +17,7 @@ constexpr std::size_t kChunk = 256;
 
 // Places that a change asks for are no nearer to the one before: the motion would have to be smooth
 // over nothing.
-constexpr double kLeastKnot_mm = 1.0;
+constexpr double kMinKnot_mm = 1.0;
 
 // Places kept at either end of a stretch: what the accelerations at its first free one need.
 constexpr double kKeptEnds = 3.0;
@@ -127,8 +127,7 @@ MotionKnots::MotionKnots(const OptimalMotionTask& task, std::size_t first, std::
     for (std::size_t i = first; i <= last; ++i) {
         if (!knots_.empty()) {
             const double passed = path[i].s_mm - path[knots_.back().station].s_mm;
-            const bool needed =
-                i == last ? passed > 0.0 : is_edge(task, i) && passed > kLeastKnot_mm;
+            const bool needed = i == last ? passed > 0.0 : is_edge(task, i) && passed > kMinKnot_mm;
             if (passed < task.knot_mm && !needed) {
                 continue;
             }
@@ -171,7 +170,7 @@ double MotionKnots::least_mm(std::size_t knot) const {
 
 double MotionKnots::central_rad(std::size_t knot, double length_mm, double near_rad) const {
     const Eigen::Vector3d eye = eye_mm(knot, length_mm);
-    if (std::hypot(eye.x(), eye.y()) < kLeastEyeRadius_mm) {
+    if (std::hypot(eye.x(), eye.y()) < kMinEyeRadius_mm) {
         return near_rad;
     }
     const double central = -std::atan2(eye.y(), eye.x());

@@ -17,7 +17,7 @@ namespace meshwind {
 namespace {
 
 // Sweeps over the path, at most; a step is lengthened by no less than a part of this many.
-constexpr int kMostSweeps = 200;
+constexpr int kMaxSweeps = 200;
 constexpr double kSweepSlack = 1e-4;
 
 // A duration that is a whole number of ticks up to rounding is not one tick more.
@@ -31,8 +31,8 @@ constexpr double kLeast_s = 1e-300;
 
 // Slowing down lengthens a step without room by the square root of what it lacks, within these, so
 // that it neither creeps nor overshoots by much.
-constexpr double kLeastSlowing = 1.001;
-constexpr double kMostSlowing = 1.3;
+constexpr double kMinSlowing = 1.001;
+constexpr double kMaxSlowing = 1.3;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -85,7 +85,7 @@ std::vector<double> swept_s(const MovingSteps& steps, std::vector<double> durati
         return longer;
     };
     bool changed = true;
-    for (int sweeps = 0; changed && sweeps < kMostSweeps; ++sweeps) {
+    for (int sweeps = 0; changed && sweeps < kMaxSweeps; ++sweeps) {
         check_interrupt();
         changed = false;
         for (std::size_t m = 1; m <= steps.count; ++m) {
@@ -122,7 +122,7 @@ std::vector<double> slowed_down_s(const MovingSteps& steps, std::vector<double> 
             const double lacks = std::max(room_ratio(steps, duration_s, m),
                                           std::sqrt(corner_ratio(steps, duration_s, m)));
             if (lacks > 1.0 + kStepSlack) {
-                const double longer = std::clamp(std::sqrt(lacks), kLeastSlowing, kMostSlowing);
+                const double longer = std::clamp(std::sqrt(lacks), kMinSlowing, kMaxSlowing);
                 lengthen(m, longer);
                 if (m > 1) {
                     lengthen(m - 1, std::sqrt(longer));
@@ -150,7 +150,7 @@ std::vector<double> kept_in_ticks_s(const MovingSteps& steps, std::vector<double
 // The limit that keeps step m from being shorter: its own, or of the ramps and corners that it has
 // a part in the one that is used most.
 std::size_t limit_of(const MovingSteps& steps, std::span<const double> duration_s, std::size_t m) {
-    if (duration_s[m] <= steps.least_s[m] * (1.0 + kLeastDurationShare)) {
+    if (duration_s[m] <= steps.least_s[m] * (1.0 + kMinDurationShare)) {
         return steps.least_of[m];
     }
     const auto at_once_s = [&](std::size_t n, std::size_t g, Eigen::Index lane) {

@@ -330,14 +330,14 @@ void FlowParser::open_repeat(const std::string& label, std::string_view digits) 
     if (!open_[in_sub ? 1 : 0].labels.insert(label).second) {
         line_.fail("nc.label_twice", "O" + label + " marks two repeats; number each its own");
     }
-    if (open_.size() > kMostOpenRepeats) {
+    if (open_.size() > kMaxOpenRepeats) {
         line_.fail("nc.nesting",
-                   "more than " + std::to_string(kMostOpenRepeats) + " repeats within one another");
+                   "more than " + std::to_string(kMaxOpenRepeats) + " repeats within one another");
     }
     std::int64_t times = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), times);
     // What does not fit is too often all the same.
-    open(Kind::Repeat, label, error == std::errc{} ? times : kMostLinesRun);
+    open(Kind::Repeat, label, error == std::errc{} ? times : kMaxLinesRun);
 }
 
 void FlowParser::check_closes(Kind kind, const std::string& label) const {

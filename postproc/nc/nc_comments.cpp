@@ -85,7 +85,7 @@ bool begins_with(std::string_view comment, std::string_view words) {
 }
 
 // More pins at a ring, or mm of one, than anything has.
-constexpr double kMostOfPins = 1e4;
+constexpr double kMaxOfPins = 1e4;
 
 [[noreturn]] void bad_tie_on(const NcLine& line) {
     line.fail("nc.tie_on",
@@ -255,7 +255,7 @@ void NcMarks::pins(const NcLine& line, std::string_view comment, BlockList& list
         const auto [end, error] = std::from_chars(comment.data(), comment.data() + comment.size(),
                                                   value[i], std::chars_format::fixed);
         if (error != std::errc{} || !std::isfinite(value[i]) ||
-            (i + 1 < kBefore.size() && value[i] < 0.0) || value[i] > kMostOfPins) {
+            (i + 1 < kBefore.size() && value[i] < 0.0) || value[i] > kMaxOfPins) {
             bad_pins(line);
         }
         comment.remove_prefix(static_cast<std::size_t>(end - comment.data()));

@@ -10,7 +10,7 @@ namespace meshwind {
 namespace {
 
 // Numbers of subprograms have four digits.
-constexpr std::size_t kMostSubprograms = 8000;
+constexpr std::size_t kMaxSubprograms = 8000;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ FoldedProgram NcDialect::fold(BlockList list) const {
     FoldedProgram folded = fold_repeats(list);
     // A corrected block might have become one that the controller runs too fast.
     if (has_slow_linear(folded.list, flavour_.slow_linear) ||
-        folded.layout.subprograms.size() > kMostSubprograms) {
+        folded.layout.subprograms.size() > kMaxSubprograms) {
         return {std::move(list), {}};
     }
     return folded;

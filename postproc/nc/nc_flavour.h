@@ -1,4 +1,4 @@
-/// What tells one G-code language from another: the one writer and the one reader go by it.
+/// Properties of a G-code dialect, shared by its writer and its reader.
 #pragma once
 
 #include <cstddef>

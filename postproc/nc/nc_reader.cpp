@@ -20,7 +20,7 @@ namespace {
 constexpr double kSecondsPerMinute = 60.0;
 
 // A program needs two to get to its start; each that is kept takes some hundred bytes.
-constexpr std::size_t kMostRapidMoves = 1000;
+constexpr std::size_t kMaxRapidMoves = 1000;
 
 // An inch is 25.4 mm.
 constexpr std::int64_t kTenthsOfMmPerInch = 254;
@@ -391,8 +391,8 @@ void Reader::rapid() {
         line_.fail("nc.rapid", "a rapid move after the first feed move would tear the fibre");
     }
     any_placed_ = true;
-    if (list_.head->approach.size() == kMostRapidMoves) {
-        line_.fail("nc.too_many_lines", "more than " + std::to_string(kMostRapidMoves) +
+    if (list_.head->approach.size() == kMaxRapidMoves) {
+        line_.fail("nc.too_many_lines", "more than " + std::to_string(kMaxRapidMoves) +
                                             " rapid moves lead to the start; leave some out");
     }
     RapidMove move{places_.nano(), places_.placed(), std::vector<bool>(list_.axes.size(), false),

@@ -1,4 +1,4 @@
-/// The one reader of G-code: text to blocks, as a flavour has it.
+/// Parses G-code of any flavour into blocks.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ constexpr std::size_t kFirstSubprogram = 1001;
 constexpr std::size_t kTypicalLine = 64;
 // F has so many digits, and never fewer than the second.
 constexpr int kFeedDigits = 6;
-constexpr int kLeastFeedDigits = 4;
+constexpr int kMinFeedDigits = 4;
 // Of the title behind O0001; older controls show no more.
 constexpr std::size_t kTitleLength = 32;
 
@@ -201,18 +201,18 @@ std::string start_moves(const NcSource& source) {
 std::string approach_text(const NcSource& source) {
     const NcFlavour& flavour = source.flavour;
     const ProgramHeader& header = source.header;
-    const bool goes_on = !header.goes_on_from.empty();
+    const bool continues_fibre = !header.goes_on_from.empty();
     std::string text = comment_lines(
         flavour, "approach: rotary axes turn first, then the linear axes move together;");
-    text += comment_lines(flavour,
-                          goes_on ? "the eye stands nearly there, the fibre stays on"
-                                  : "bring the eye clear of the mandrel by hand before the start");
+    text += comment_lines(
+        flavour, continues_fibre ? "the eye stands nearly there, the fibre stays on"
+                                 : "bring the eye clear of the mandrel by hand before the start");
     text += start_moves(source);
     text += comment_lines(
         flavour,
         std::string(flavour.message) +
             (header.in_the_air ? std::string("no fibre for this run in the air, start again")
-             : goes_on         ? std::string("the fibre is on already, start again")
+             : continues_fibre ? std::string("the fibre is on already, start again")
                                : std::string(flavour.tie_on)));
     text += "M0\n";
     return text;
@@ -224,7 +224,7 @@ void append_short(const NcSource& source, double value, std::size_t block, std::
     const int whole = std::max(static_cast<int>(std::floor(std::log10(value))) + 1, 1);
     const int leading = whole - static_cast<int>(std::floor(std::log10(value))) - 1;
     const int decimals = std::min(kFeedDigits + leading - whole, most_digits - whole);
-    if (whole >= most_digits || whole + decimals - leading < kLeastFeedDigits) {
+    if (whole >= most_digits || whole + decimals - leading < kMinFeedDigits) {
         throw InputError("dialect.duration", "block " + std::to_string(block),
                          "takes " + fixed(source.list.blocks[block].duration_s, 6) +
                              " s, which F cannot say in the digits that " +

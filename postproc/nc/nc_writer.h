@@ -1,4 +1,4 @@
-/// The one writer of G-code: blocks to text, as a flavour has it.
+/// Writes blocks as G-code of any flavour.
 #pragma once
 
 #include <string>

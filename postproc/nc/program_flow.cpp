@@ -32,11 +32,11 @@ private:
 
     // No sum or product of two numbers within the limit overflows.
     void add(Extent& to, std::int64_t times, std::int64_t lines, std::int32_t line) const {
-        const bool fits = lines == 0 || times <= kMostLinesRun / lines;
-        if (!fits || to.lines + times * lines > kMostLinesRun) {
+        const bool fits = lines == 0 || times <= kMaxLinesRun / lines;
+        if (!fits || to.lines + times * lines > kMaxLinesRun) {
             fail("nc.too_many_lines", file_, line,
-                 "with all repetitions the program runs more than " +
-                     std::to_string(kMostLinesRun) + " lines; split it");
+                 "with all repetitions the program runs more than " + std::to_string(kMaxLinesRun) +
+                     " lines; split it");
         }
         to.lines += times * lines;
     }

@@ -13,10 +13,10 @@ namespace meshwind {
 /// Lines that a program may run, its repetitions counted each time: a larger program is refused
 /// before the first line is run, for it would not fit in memory: 20 million blocks of six axes take
 /// 1.5 GB, twice that while they grow.
-inline constexpr std::int64_t kMostLinesRun = 20'000'000;
+inline constexpr std::int64_t kMaxLinesRun = 20'000'000;
 
 /// Repeated stretches within one another that are followed; no program has a use for more.
-inline constexpr std::size_t kMostOpenRepeats = 100;
+inline constexpr std::size_t kMaxOpenRepeats = 100;
 
 /// A stretch of a program. Lines of the text are counted from 1.
 struct FlowStep {

@@ -69,13 +69,13 @@ void expect(const NcLine& line, bool fits, const char* expected) {
     }
 }
 
-// Sums over kMostLinesRun ticks must fit.
-constexpr std::int64_t kMostPulses = 1'000'000'000;
+// Sums over kMaxLinesRun ticks must fit.
+constexpr std::int64_t kMaxPulses = 1'000'000'000;
 
 std::int64_t whole(const NcLine& line, std::string_view word) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || std::abs(value) > kMostPulses) {
+    if (error != std::errc{} || end != word.data() + word.size() || std::abs(value) > kMaxPulses) {
         wrong(line, "whole numbers");
     }
     return value;
@@ -216,8 +216,8 @@ BlockList Reader::program(std::string_view text) && {
     list_.head->by_meshwind = is_by_meshwind(lines);
     for (const std::string_view words : lines) {
         ++line_.number;
-        if (line_.number > kMostLinesRun) {
-            line_.fail("nc.too_many_lines", "more than " + std::to_string(kMostLinesRun) +
+        if (line_.number > kMaxLinesRun) {
+            line_.fail("nc.too_many_lines", "more than " + std::to_string(kMaxLinesRun) +
                                                 " lines are not read; split the program");
         }
         line(words);
@@ -305,7 +305,7 @@ void Reader::start() {
 
 void Reader::open_block() {
     block_.ticks = block_.left = whole(line_, words_.front());
-    if (block_.ticks <= 0 || block_.ticks > kMostLinesRun) {
+    if (block_.ticks <= 0 || block_.ticks > kMaxLinesRun) {
         wrong(line_, "a number of ticks above 0");
     }
     block_.sums.clear();
@@ -420,10 +420,10 @@ void append_blocks(const PulseSource& source, std::string& text) {
         }
         const std::int64_t ticks = ticks_of(block.duration_s);
         written += ticks + 1;
-        if (written > kMostLinesRun) {
+        if (written > kMaxLinesRun) {
             throw InputError(
                 "dialect.duration", "block " + std::to_string(i),
-                "the program has more than " + std::to_string(kMostLinesRun) + " ticks; split it");
+                "the program has more than " + std::to_string(kMaxLinesRun) + " ticks; split it");
         }
         append_ticks(source.list, i, ticks, text);
     }

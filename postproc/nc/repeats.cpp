@@ -47,7 +47,7 @@ public:
             const std::size_t length = end - (start + 1);
             const std::size_t equal = equal_until(start + 1, length) - (start + 1);
             const Run run{start, length, equal / length + 1};
-            if (run.count >= kLeastCircuits && run.saved() >= kLeastLinesSaved &&
+            if (run.count >= kMinCircuits && run.saved() >= kMinLinesSaved &&
                 run.saved() > best.saved() && moves(run)) {
                 best = run;
             }
@@ -393,7 +393,7 @@ std::size_t ProgramLayout::calls() const {
 }
 
 FoldedProgram fold_repeats(BlockList list, const RepeatTolerance& tolerance) {
-    if (list.blocks.size() > kLeastCircuits) {
+    if (list.blocks.size() > kMinCircuits) {
         FoldedProgram folded = fold_runs(list, tolerance);
         if (pays(folded)) {
             return folded;

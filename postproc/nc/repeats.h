@@ -52,10 +52,11 @@ struct RepeatTolerance {
 };
 
 /// A circuit is repeated at least so often to become a subprogram.
-inline constexpr std::size_t kLeastCircuits = 3;
+inline constexpr std::size_t kMinCircuits = 3;
 
-/// And saves at least as many lines, about a page of them: less is not worth looking elsewhere for.
-inline constexpr std::size_t kLeastLinesSaved = 40;
+/// Lines that it has to save, about a page: below that a subprogram hurts readability more than it
+/// saves.
+inline constexpr std::size_t kMinLinesSaved = 40;
 
 /// Repeats are folded only if the program then has at most this share of its lines: what is shorter
 /// by less is easier to follow written out.

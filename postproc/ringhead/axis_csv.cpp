@@ -29,7 +29,7 @@ constexpr std::size_t kTurn = 9;
 constexpr double kRightAngleCosine = 1e-3;
 
 // The shortest vector that still says a direction: directions are unit vectors with a few decimals.
-constexpr double kLeastDirection = 0.5;
+constexpr double kMinDirection = 0.5;
 
 // From farther away than 1 km a position in double precision is no longer good to 1e-9 mm steps.
 constexpr double kFarthest_mm = 1e6;
@@ -155,7 +155,7 @@ Vector3d vector_in(const AxisLines& lines, const AxisColumns& columns, std::size
 Vector3d direction_in(const AxisLines& lines, const AxisColumns& columns, std::size_t first,
                       const char* code) {
     const Vector3d v = vector_in(lines, columns, first);
-    if (v.norm() < kLeastDirection) {
+    if (v.norm() < kMinDirection) {
         lines.fail(code, std::string(kNames[first]) + " and the two beside it have the length " +
                              std::to_string(v.norm()) + "; give a unit vector");
     }

@@ -24,7 +24,7 @@ constexpr double kSecondsPerMinute = 60.0;
 constexpr double kFreeTurn_deg_s = 400.0;
 // A move with less way than this takes its time from its turn: with half of it 1e-6 m/s, the last
 // digit of $VEL.CP, would already be a tenth of the speed of a slow passage.
-constexpr double kLeastWay_mm = 0.01;
+constexpr double kMinWay_mm = 0.01;
 
 [[noreturn]] void fail(const char* code, const std::string& place, const std::string& words) {
     throw InputError(code, place, words);
@@ -123,7 +123,7 @@ KrlMove timed_move(const KrlFrame& from, const KrlFrame& to, double time_s, doub
     double path_mm_s = speed_mm_s;
     double turn_deg_s = kFreeTurn_deg_s;
     const double way_mm = (end.translation() - begin.translation()).norm();
-    if (way_mm < kLeastWay_mm) {
+    if (way_mm < kMinWay_mm) {
         const SwivelSpin turns = swivel_and_spin(begin, end);
         turn_deg_s = deg_from_rad(std::max(turns.swivel_rad, std::abs(turns.spin_rad))) / time_s;
     } else {

@@ -193,11 +193,11 @@ void LandingPaths::check_turns(const std::vector<Landing>& stretch,
     const std::size_t n = stretch.size();
     for (std::size_t i = 1; i < n; ++i) {
         const double turn = std::acos(std::clamp(tangents[i - 1].dot(tangents[i]), -1.0, 1.0));
-        if (turn > kMostLandingTurn_rad) {
+        if (turn > kMaxLandingTurn_rad) {
             fail("import.sparse", stretch[i].line,
                  "the fibre turns by " + fixed(deg_from_rad(turn), 1) +
                      " deg since the point before, more than " +
-                     fixed(deg_from_rad(kMostLandingTurn_rad), 1) +
+                     fixed(deg_from_rad(kMaxLandingTurn_rad), 1) +
                      " deg; give the points in order and closer together");
         }
     }

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "geodesic/surface_path.h"
 #include "mesh/ray_query.h"
 #include "postproc/tables/landing_csv.h"
@@ -89,7 +89,7 @@ inline constexpr double kLandingStation_mm = 4.0;
 inline constexpr double kStringStation_mm = 1.0;
 
 /// From point to point a fibre turns no more than this: through fewer points no curve is known.
-inline constexpr double kMostLandingTurn_rad = 0.8;
+inline constexpr double kMaxLandingTurn_rad = 0.8;
 
 inline constexpr double kTangentOff_rad = 0.3;
 

@@ -21,13 +21,13 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 // The linear problem is solved again on the moved curve so often at most, or until no station moves
 // by more.
-constexpr int kMostPasses = 8;
+constexpr int kMaxPasses = 8;
 constexpr double kStill_mm = 1e-4;
 
 // Weight of the points against the integral, 1 / mm^7 each: from none to where stations some mm
 // apart stay on them; found to a hundredth of a decade.
-constexpr double kLeastWeight_log = -16.0;
-constexpr double kMostWeight_log = 2.0;
+constexpr double kMinWeight_log = -16.0;
+constexpr double kMaxWeight_log = 2.0;
 constexpr int kHalvings = 11;
 
 // With fewer stations no curvature changes.
@@ -147,8 +147,8 @@ Eigen::VectorXd smoothest_mm(const CurvatureChange& curvature, const PointOffset
     const auto furthest_mm = [&](const Eigen::VectorXd& u) {
         return is_point.cwiseProduct(off_mm + u).cwiseAbs().maxCoeff();
     };
-    double low = kLeastWeight_log;
-    double high = kMostWeight_log;
+    double low = kMinWeight_log;
+    double high = kMaxWeight_log;
     Eigen::VectorXd best = solve(high);
     for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (low + high);
@@ -216,7 +216,7 @@ double worst_off_mm(const SurfacePath& path, const GivenPoints& given) {
 double smooth_course(const Surface& wall, const RayQuery& facets,
                      std::span<const std::size_t> given, double tolerance_mm, SurfacePath& path) {
     const GivenPoints points = given_points(path, given);
-    for (int pass = 0; pass < kMostPasses && path.size() >= kFewest; ++pass) {
+    for (int pass = 0; pass < kMaxPasses && path.size() >= kFewest; ++pass) {
         const Eigen::VectorXd sideways_mm =
             smoothest_mm(curvature_change(path), point_offsets(path, points), tolerance_mm);
         move_stations(wall, facets, sideways_mm, path);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 
 namespace meshwind {
 namespace {

@@ -46,7 +46,7 @@ constexpr int kPinRootBits = 50;
 constexpr std::uintmax_t kPinRootSteps = 60;
 
 // A free fibre shorter than this has no direction.
-constexpr double kLeastFree_mm = 1e-3;
+constexpr double kMinFree_mm = 1e-3;
 
 // Stations closer than this to the one before are not recorded.
 constexpr double kStation_mm = 1e-6;
@@ -154,20 +154,20 @@ void check_extent(const Machine& machine, const BlockList& list, const LaydownOp
     for (std::size_t block = 1; block < list.blocks.size(); ++block) {
         const std::vector<double> to = joints_at(list, block);
         samples += samples_of(machine, from, to, eye_at(machine, from), options);
-        if (samples > kMostSamples) {
+        if (samples > kMaxSamples) {
             throw InputError("verify.too_long", "",
                              "up to " + block_words(list, block) +
                                  " the axes go further than can be wound again, " +
-                                 fixed(kMostSamples * options.sample_mm / 1e6, 0) +
+                                 fixed(kMaxSamples * options.sample_mm / 1e6, 0) +
                                  " km of the eye's way or " +
-                                 fixed(kMostSamples * options.sample_rad / (2.0 * kPi), 0) +
+                                 fixed(kMaxSamples * options.sample_rad / (2.0 * kPi), 0) +
                                  " turns; split the program, or mend a block that goes too far");
         }
         from = to;
     }
 }
 
-Landing tied_on(const LaydownWall& wall, const Vector3d& tie_on_mm) {
+Landing tied_on(const LaydownSurface& wall, const Vector3d& tie_on_mm) {
     Landing landing{FieldWalker(wall.surface(), wall.nearest(tie_on_mm)), PinContact(wall.pins())};
     landing.walker.move_under(tie_on_mm);  // the patch's point instead of the facet's
     return landing;
@@ -330,7 +330,7 @@ std::string follow_pin(const EyeCurve& curve, Landing& landing, LaidFibre& fibre
 }
 
 // Over a hollow, to where the straight fibre meets the wall again; false where it does not.
-bool cross_hollow(const LaydownWall& wall, const Vector3d& eye, Landing& landing,
+bool cross_hollow(const LaydownSurface& wall, const Vector3d& eye, Landing& landing,
                   LaidFibre& fibre) {
     const Vector3d free = eye - landing.position_mm();
     const double length = free.norm();
@@ -370,7 +370,7 @@ std::string stop_words(const FieldWalk& walk) {
 
 // The landing point follows the eye to the end of its curve where no pin holds the fibre.
 // \return empty, or in words why the fibre cannot be followed
-std::string follow_straight(const LaydownWall& wall, const EyeCurve& curve, Landing& landing,
+std::string follow_straight(const LaydownSurface& wall, const EyeCurve& curve, Landing& landing,
                             LaidFibre& fibre) {
     const Vector3d& eye = curve.end();
     const AimField field = [&curve, &eye](const Vector3d& x, const Vector3d& n) {
@@ -378,12 +378,12 @@ std::string follow_straight(const LaydownWall& wall, const EyeCurve& curve, Land
     };
     for (int bridges = 0; bridges < kMaxBridges; ++bridges) {
         const double free = (eye - landing.position_mm()).norm();
-        if (free < kLeastFree_mm) {
+        if (free < kMinFree_mm) {
             return "the eye touches the mandrel";
         }
         const double begun = fibre.end_mm();
         const FieldWalk walk = landing.walker.walk(
-            field, free, std::max(kStepShare * free, kLeastFree_mm), [&](const PathPoint& station) {
+            field, free, std::max(kStepShare * free, kMinFree_mm), [&](const PathPoint& station) {
                 record(landing.pins, station, begun + station.s_mm, false, fibre);
             });
         if (walk.length_mm > kStation_mm) {
@@ -405,7 +405,7 @@ std::string follow_straight(const LaydownWall& wall, const EyeCurve& curve, Land
 
 // The landing point follows the eye to the end of its curve.
 // \return empty, or in words why the fibre cannot be followed
-std::string follow(const LaydownWall& wall, const EyeCurve& curve, Landing& landing,
+std::string follow(const LaydownSurface& wall, const EyeCurve& curve, Landing& landing,
                    LaidFibre& fibre) {
     std::string words = landing.pins.update(landing.position_mm(), curve.end());
     if (!words.empty()) {
@@ -432,7 +432,7 @@ struct AxisMove {
 
 // Lays the fibre of one block.
 // \return empty, or in words why the fibre cannot be followed
-std::string lay_block(const LaydownWall& wall, const Machine& machine, const Block& block,
+std::string lay_block(const LaydownSurface& wall, const Machine& machine, const Block& block,
                       const AxisMove& move, Landing& landing, LaidFibre& fibre) {
     std::vector<double> joints;
     double time_s = fibre.laid.time_s.back();
@@ -459,7 +459,7 @@ std::string lay_block(const LaydownWall& wall, const Machine& machine, const Blo
 
 }  // namespace
 
-LaidPath lay_down(const LaydownWall& wall, const Machine& machine, const BlockList& list,
+LaidPath lay_down(const LaydownSurface& wall, const Machine& machine, const BlockList& list,
                   const Vector3d& tie_on_mm, const LaydownOptions& options) {
     Landing landing = tied_on(wall, tie_on_mm);
     check_extent(machine, list, options);

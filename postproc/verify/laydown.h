@@ -30,18 +30,18 @@ struct LaydownOptions {
 
 /// Samples of a program at most: 100 km of fibre at 10 mm, five times what a vessel of 3 m takes; a
 /// sample takes 400 bytes.
-inline constexpr double kMostSamples = 1e7;
+inline constexpr double kMaxSamples = 1e7;
 
 /// What fibre is laid on: a wall, with what laying looks up there. Built once for any number of
 /// programs and threads.
-class LaydownWall {
+class LaydownSurface {
 public:
     /// \param surface the wall with its extensions (mesh/mandrel/extension.h)
     /// \param bridge_reach_mm over hollows the fibre is looked for so far ahead of the landing
     /// point; what it meets further on counts as a collision of the free fibre
     /// \param pins that stand on it
-    explicit LaydownWall(Surface surface, double bridge_reach_mm = kBridgeReach_mm,
-                         std::vector<Pin> pins = {});
+    explicit LaydownSurface(Surface surface, double bridge_reach_mm = kBridgeReach_mm,
+                            std::vector<Pin> pins = {});
 
     [[nodiscard]] const Surface& surface() const { return surface_; }
     [[nodiscard]] double bridge_reach_mm() const { return bridge_reach_mm_; }
@@ -106,10 +106,10 @@ struct LaidPath {
 /// the fibre up to there counted as laid.
 /// \param tie_on_mm within an edge of the wall
 /// A cancellation point at each block, and a few times a second within one.
-/// \throws InputError verify.tie_on where it is not; verify.too_long for more than kMostSamples,
+/// \throws InputError verify.tie_on where it is not; verify.too_long for more than kMaxSamples,
 /// before anything is laid
 /// Accuracy: tests/postproc/verify/laydown_test.cpp.
-[[nodiscard]] LaidPath lay_down(const LaydownWall& wall, const Machine& machine,
+[[nodiscard]] LaidPath lay_down(const LaydownSurface& wall, const Machine& machine,
                                 const BlockList& list, const Eigen::Vector3d& tie_on_mm,
                                 const LaydownOptions& options = {});
 

@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr double kHollow_per_mm = 1e-4;
 
 // Shallower creases count as flat, as those of rims do (hollow_rim.h).
-constexpr double kLeastValley_rad = 1e-3;
+constexpr double kMinValley_rad = 1e-3;
 
 // Whether the wall bends up at an edge: seen across it, the normal beyond leans back.
 bool is_valley(const Surface& surface, std::size_t face, std::size_t edge) {
@@ -38,7 +38,7 @@ bool is_valley(const Surface& surface, std::size_t face, std::size_t edge) {
         static_cast<std::size_t>(std::find(there.begin(), there.end(), start) - there.begin());
     const Vector3d& here = surface.normal[at(surface.corner[face][edge])];
     const Vector3d& beyond = surface.normal[at(surface.corner[at(other)][corner])];
-    return beyond.dot(along.cross(here).normalized()) < -kLeastValley_rad;
+    return beyond.dot(along.cross(here).normalized()) < -kMinValley_rad;
 }
 
 // Per face: whether a hollow of the wall, along any direction, is within reach.
@@ -84,7 +84,7 @@ RayQuery facets_of(const Surface& surface) {
 
 }  // namespace
 
-LaydownWall::LaydownWall(Surface surface, double bridge_reach_mm, std::vector<Pin> pins)
+LaydownSurface::LaydownSurface(Surface surface, double bridge_reach_mm, std::vector<Pin> pins)
     : surface_(std::move(surface)),
       bridge_reach_mm_(bridge_reach_mm),
       pins_(std::move(pins)),
@@ -95,7 +95,7 @@ LaydownWall::LaydownWall(Surface surface, double bridge_reach_mm, std::vector<Pi
     }
 }
 
-SurfacePoint LaydownWall::nearest(const Vector3d& place) const {
+SurfacePoint LaydownSurface::nearest(const Vector3d& place) const {
     const double reach = std::max(1.0, 2.0 * surface_.mean_edge_mm);
     const ClosestPoint closest = facets_.closest(place, reach);
     if (closest.part < 0) {

@@ -36,7 +36,7 @@ struct VerifyTask {
     const BlockList& program;  ///< as a dialect's reader gave it, with the place of its tie-on
     const Machine& machine;
     const HeadEnvelope& envelope;
-    const LaydownWall& wall;
+    const LaydownSurface& wall;
     const RayQuery& obstacles;  ///< everything that can be hit
     const VerifyRules& rules;
     const PlannedFibre& plan;  ///< for the last comparison; empty: nothing is compared

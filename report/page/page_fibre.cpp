@@ -21,9 +21,9 @@ using nlohmann::json;
 // A page is to stay below 30 MB, and a browser to draw it: of all fibres together so many stations
 // (60 bytes each, before they are packed) and blocks (some 80 bytes) are in it, and so much of the
 // programs' text.
-constexpr std::size_t kMostStations = 200'000;
-constexpr std::size_t kMostBlocks = 100'000;
-constexpr std::size_t kMostText = 2'000'000;
+constexpr std::size_t kMaxStations = 200'000;
+constexpr std::size_t kMaxBlocks = 100'000;
+constexpr std::size_t kMaxText = 2'000'000;
 
 // What a page shows of fibre and eye is rounded: below what is seen or read, packed it is half.
 constexpr double kShownPlace_mm = 0x1p-8;
@@ -125,10 +125,10 @@ json pieces_json(const ShownFibre& fibre, const ShownStations& shown) {
 
 // Whole lines from the beginning, of all programs in proportion.
 std::string_view shown_text(std::string_view text, std::size_t all_bytes) {
-    if (all_bytes <= kMostText) {
+    if (all_bytes <= kMaxText) {
         return text;
     }
-    const double share = static_cast<double>(kMostText) / static_cast<double>(all_bytes);
+    const double share = static_cast<double>(kMaxText) / static_cast<double>(all_bytes);
     const auto most = static_cast<std::size_t>(share * static_cast<double>(text.size()));
     return text.substr(0, text.rfind('\n', most) + 1);
 }
@@ -261,8 +261,8 @@ PageExtent page_extent(const Run& run) {
     }
     return {.first = run.layers.front().setup,
             .usable = run.usable,
-            .station_every = every_of(stations, kMostStations),
-            .block_every = every_of(blocks, kMostBlocks),
+            .station_every = every_of(stations, kMaxStations),
+            .block_every = every_of(blocks, kMaxBlocks),
             .text_bytes = text_bytes};
 }
 

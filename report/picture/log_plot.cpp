@@ -29,7 +29,7 @@ constexpr double kCharacter = 5.6;  // mean width of a letter of 11 px
 constexpr double kRoom = 1.25;
 
 constexpr int kOrders = 4;
-constexpr double kMostDecades = 8.0;
+constexpr double kMaxDecades = 8.0;
 
 // Colours that can be told apart by most eyes, on white and on black: those of Okabe and Ito.
 constexpr const char* kStyle =
@@ -83,7 +83,7 @@ PlotRanges ranges_of(const LogPlot& plot) {
     for (Range& y : ranges.y) {  // whole decades
         const double top = std::ceil(std::log10(y.high));
         const double bottom = std::min(std::floor(std::log10(y.low)), top - 1.0);
-        y = {std::pow(10.0, std::max(bottom, top - kMostDecades)), std::pow(10.0, top)};
+        y = {std::pow(10.0, std::max(bottom, top - kMaxDecades)), std::pow(10.0, top)};
     }
     return ranges;
 }

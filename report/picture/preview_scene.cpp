@@ -31,8 +31,8 @@ constexpr double kDepthThicknesses = 2.0;
 // Rays to the sky from each vertex: so many together, within bounds; how far, as a share of the
 // part's size; how far off the wall they begin.
 constexpr double kRays = 2e6;
-constexpr double kLeastRays = 24.0;
-constexpr double kMostRays = 96.0;
+constexpr double kMinRays = 24.0;
+constexpr double kMaxRays = 96.0;
 constexpr double kSkyAt = 0.5;
 constexpr double kOffWall = 2e-3;
 
@@ -261,7 +261,7 @@ std::vector<float> open_sky(const PreviewMesh& body) {
     const RayQuery rays({&soup, 1});
     const double size_mm = diagonal_mm(soup);
     const int count = static_cast<int>(
-        std::clamp(kRays / static_cast<double>(body.position_mm.size()), kLeastRays, kMostRays));
+        std::clamp(kRays / static_cast<double>(body.position_mm.size()), kMinRays, kMaxRays));
     std::vector<float> open(body.position_mm.size(), 1.0F);
     parallel_for(body.position_mm.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {

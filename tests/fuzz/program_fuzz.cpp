@@ -23,8 +23,8 @@ constexpr std::array<const char*, 7> kDialects = {"linuxcnc", "fanuc",  "siemens
                                                   "marlin",   "pulses", "krl"};
 
 // Only so that an input takes milliseconds: longer programs are read and written, not wound.
-constexpr std::size_t kMostBlocks = 40;
-constexpr double kMostWay = 2000.0;  // mm and degrees of all axes together
+constexpr std::size_t kMaxBlocks = 40;
+constexpr double kMaxWay = 2000.0;  // mm and degrees of all axes together
 
 constexpr double kExtension_mm = 60.0;
 
@@ -59,7 +59,7 @@ struct World {
     Machine machine;
     HeadEnvelope envelope;
     std::optional<RayQuery> obstacles;
-    std::optional<LaydownWall> wall;
+    std::optional<LaydownSurface> wall;
     VerifyRules rules;
 };
 
@@ -116,7 +116,7 @@ double way_of(const BlockList& list) {
 }
 
 void wind(const World& world, BlockList list) {
-    if (list.blocks.size() > kMostBlocks || !(way_of(list) < kMostWay)) {
+    if (list.blocks.size() > kMaxBlocks || !(way_of(list) < kMaxWay)) {
         return;
     }
     if (!list.tie_on_mm) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 // Of the processor and of memory, for an input under 100 kB.
 constexpr double kMost_s = 10.0;
 constexpr long kMost_kB = 1L << 20;
-constexpr std::size_t kMostBytes = 100'000;
+constexpr std::size_t kMaxBytes = 100'000;
 
 struct Usage {
     double user_s;
@@ -41,7 +41,7 @@ bool replay(const fs::path& file) {
     const Usage before = usage();
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     const Usage after = usage();
-    const bool kept = bytes.size() < kMostBytes && after.user_s - before.user_s <= kMost_s &&
+    const bool kept = bytes.size() < kMaxBytes && after.user_s - before.user_s <= kMost_s &&
                       after.peak_kB - before.peak_kB <= kMost_kB;
     if (!kept) {
         std::fprintf(stderr, "beyond the bounds: %zu bytes, %.1f s, %ld kB\n", bytes.size(),

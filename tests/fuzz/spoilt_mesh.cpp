@@ -9,7 +9,7 @@
 namespace meshwind::fuzz {
 namespace {
 
-constexpr std::size_t kMostFaces = 200;  // a mandrel of so many takes milliseconds
+constexpr std::size_t kMaxFaces = 200;  // a mandrel of so many takes milliseconds
 
 class Bytes {
 public:
@@ -137,7 +137,7 @@ TriangleSoup spoilt_mesh(std::span<const std::uint8_t> bytes) {
     Bytes input(bytes);
     TriangleSoup soup = input.below(3) == 0 ? soup_of(input) : tube_of(input);
     const double unit = std::pow(10.0, static_cast<double>(input.below(7)) - 3.0);
-    while (input.left() && soup.faces.size() < kMostFaces) {
+    while (input.left() && soup.faces.size() < kMaxFaces) {
         spoil(soup, input);
     }
     for (Eigen::Vector3d& p : soup.points_mm) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "mesh/shapes/make.h"
 #include "tests/support/hourglass.h"
 #include "tests/support/reference.h"
@@ -129,8 +129,8 @@ TEST(TraceTaut, MeridianLeavesAndLandsWhereTheCommonTangentTouches) {
     const auto [leaving, landing] = bridge_in(taut.path, string);
     EXPECT_NEAR(taut.path[leaving].position_mm.z(), -shape.height_mm, kLeaving_mm);
     EXPECT_NEAR(taut.path[landing].position_mm.z(), shape.height_mm, kLeaving_mm);
-    // theta^2 / 4 of itself for the string that turns by 14 deg (measure.h), and 1e-3 by which the
-    // station nearest to the middle may miss it.
+    // theta^2 / 4 of itself for the string that turns by 14 deg (slip_and_bridging.h), and 1e-3 by
+    // which the station nearest to the middle may miss it.
     EXPECT_NEAR(string.worst_gap_mm, shape.gap_mm(), 0.016 * shape.gap_mm());
     EXPECT_EQ(taut.stop, TraceStop::Rim);
 }

@@ -10,8 +10,8 @@ Plan plan_that_reaches(std::vector<double> of_fibres, double with_longer_extensi
     Plan plan;
     plan.coverage.reachable = 0.9;
     plan.reach_of_fibres = std::move(of_fibres);
-    plan.what_if = {{WhatIf::Rule::Friction, 1.5, 0.99},
-                    {WhatIf::Rule::Extension, 1.5, with_longer_extensions}};
+    plan.what_if = {{RelaxedRule::Rule::Friction, 1.5, 0.99},
+                    {RelaxedRule::Rule::Extension, 1.5, with_longer_extensions}};
     return plan;
 }
 
@@ -48,7 +48,7 @@ TEST(MoreRoom, IsFibresToSpareWhereThePlanNearlyCovers) {
     Job many;
     many.fibres = 7;
     plan.reach_of_fibres = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.9};
-    EXPECT_EQ(more_room(many, plan)->fibres, kMostFibres);
+    EXPECT_EQ(more_room(many, plan)->fibres, kMaxFibres);
     plan.reach_of_fibres = {0.9, 0.9};
     plan.effort.turns_refused = 0;
     EXPECT_FALSE(more_room(parse_job(R"({"fibres": 1})", "job"), plan));

@@ -181,7 +181,7 @@ TEST(PieceProgram, TheEyeKeepsToItsPlane) {
                    .plane_y_mm = -90.0};
         const Planned p = planned(with_eye(eye));
         PieceProgramOptions options;
-        options.in_spite = true;  // whatever the head hits then
+        options.ignore_limits = true;  // whatever the head hits then
         const PieceProgram made = p.program(options);
         ASSERT_GT(made.blocks.blocks.size(), 100U);
         for (std::size_t b = 0; b < made.blocks.blocks.size(); ++b) {
@@ -223,10 +223,10 @@ TEST(PieceProgram, PiecesBeyondTheTravelAreRefusedAndNoOthers) {
     }
     EXPECT_NEAR(static_cast<double>(beyond.size()), 0.5 * static_cast<double>(p.plan.pieces.size()),
                 1.0);
-    const std::map<std::size_t, Rejection> refused = refused_by_machine(p.setup, p.plan.pieces);
+    const std::map<std::size_t, CourseFault> refused = refused_by_machine(p.setup, p.plan.pieces);
     std::set<std::size_t> named;
     for (const auto& [piece, reason] : refused) {
-        EXPECT_EQ(reason, Rejection::AxisTravel) << piece;
+        EXPECT_EQ(reason, CourseFault::AxisTravel) << piece;
         named.insert(piece);
     }
     // Each run of pieces beyond it is refused by its worst.
@@ -244,7 +244,7 @@ TEST(PieceProgram, PiecesBeyondTheTravelAreRefusedAndNoOthers) {
     EXPECT_EQ(none.refused, refused);
     EXPECT_TRUE(none.blocks.blocks.empty());
     PieceProgramOptions options;
-    options.in_spite = true;
+    options.ignore_limits = true;
     const PieceProgram made = p.program(options);
     double top_mm = -HUGE_VAL;
     for (std::size_t b = 0; b < made.blocks.blocks.size(); ++b) {
@@ -256,7 +256,7 @@ TEST(PieceProgram, PiecesBeyondTheTravelAreRefusedAndNoOthers) {
 
 TEST(PieceProgram, ReasonsAreFreeLengthAndHead) {
     const auto reasons = [](const Planned& p) {
-        std::set<Rejection> found;
+        std::set<CourseFault> found;
         for (const auto& [piece, reason] : refused_by_machine(p.setup, p.plan.pieces)) {
             found.insert(reason);
         }
@@ -265,15 +265,15 @@ TEST(PieceProgram, ReasonsAreFreeLengthAndHead) {
     // sqrt(36^2 - 30^2) = 20 mm along hoops, 26 mm along courses: below the machine's 30 mm.
     EXPECT_EQ(
         reasons(planned(with_eye({.rule = EyeRule::Cylinder, .lengths = {}, .radius_mm = 36.0}))),
-        std::set{Rejection::FreeLength});
+        std::set{CourseFault::FreeLength});
     // On 40 mm it is long enough, 26 mm along hoops; the ball of 4 mm about the eye leaves 6 mm of
     // clearance.
     Machine patient = test::shipped("six_axis");
     patient.fibre.min_free_length_mm = 20.0;
     Job job = with_eye({.rule = EyeRule::Cylinder, .lengths = {}, .radius_mm = 40.0});
-    EXPECT_EQ(reasons(planned(job, patient)), std::set<Rejection>{});
+    EXPECT_EQ(reasons(planned(job, patient)), std::set<CourseFault>{});
     job.tolerance.clearance_mm = 7.0;
-    EXPECT_EQ(reasons(planned(job, patient)), std::set{Rejection::HeadHit});
+    EXPECT_EQ(reasons(planned(job, patient)), std::set{CourseFault::HeadHit});
 }
 
 TEST(PieceProgram, GoesOnFromTheNearestWholeTurn) {
@@ -318,7 +318,7 @@ TEST(PieceProgram, WhatIsReadFromTheTextIsWoundAgain) {
     const Planned p = planned(with_eye({}));
     int texts = 0;
     PieceProgramOptions options;
-    options.through_text = [&](const PieceProgram& made) {
+    options.round_trip = [&](const PieceProgram& made) {
         ++texts;
         BlockList read = made.blocks;
         read.tie_on_mm = made.eyes.path.front().landing_mm;

@@ -203,7 +203,7 @@ TEST(PlanLayer, HoopsCoverThePipeSideBySide) {
 
 TEST(PlanLayer, RibsOfALatticeAreAsFarApartAsTheirNumberSays) {
     LayerJob layer = layer_of(LayerKind::Lattice, 50.0);
-    layer.lattice = LatticeWish{.circuits = 4, .series = 1, .plies = 1};
+    layer.lattice = LatticeConstraints{.circuits = 4, .series = 1, .plies = 1};
     const Plan plan = planned(layer);
     ASSERT_EQ(plan.failure, "");
     EXPECT_EQ(plan.courses, 8);

@@ -120,12 +120,12 @@ TEST(WallStages, CountWhatAPatternLays) {
     EXPECT_TRUE(stages.done());
     const WallFigures figures = stages.figures();
     EXPECT_EQ(figures.stages, 1);
-    EXPECT_LE(figures.below_share, kMostBelow);
+    EXPECT_LE(figures.below_share, kMaxBelow);
     EXPECT_GE(figures.mean_ratio, 1.0);
     // Circuits are a whole number, which may be a quarter more.
     EXPECT_LE(figures.mean_ratio, 1.25);
     EXPECT_NEAR(figures.fibre_mm, plan.fibre_length_mm, 1e-9);
-    EXPECT_TRUE(wall_check(figures, kMostBelow).ok);
+    EXPECT_TRUE(wall_check(figures, kMaxBelow).ok);
     EXPECT_EQ(wall_check(figures, 0.0).ok, figures.below_share == 0.0);
 }
 
@@ -142,10 +142,10 @@ TEST(WallStages, SayWhatLacks) {
     EXPECT_EQ(figures.mean_ratio, 0.0);
     ASSERT_EQ(figures.thin.size(), 1U);
     EXPECT_NEAR(figures.thin.front().most_lacking_mm, 8 * 0.25, 1e-12);
-    const Check check = wall_check(figures, kMostBelow);
+    const Check check = wall_check(figures, kMaxBelow);
     EXPECT_FALSE(check.ok);
     EXPECT_EQ(check.numbers.at("below"), 1.0);
-    EXPECT_EQ(check.numbers.at("limit"), kMostBelow);
+    EXPECT_EQ(check.numbers.at("limit"), kMaxBelow);
     ASSERT_TRUE(check.place.has_value());
     EXPECT_NEAR(check.place->position_mm.head<2>().norm(), kPipeRadius_mm, 0.2);
 }

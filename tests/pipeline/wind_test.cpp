@@ -212,8 +212,8 @@ TEST(Wind, TheNextLayerIsWoundOnTheOneBefore) {
     EXPECT_GE(turns, least_turns);
     EXPECT_LT(turns, least_turns + 1.0);
     // One fibre goes on from layer to layer, or it is said why not.
-    ASSERT_TRUE(second.plan.goes_on);
-    EXPECT_EQ(second.plan.cut_because, "");
+    ASSERT_TRUE(second.plan.continues_fibre);
+    EXPECT_EQ(second.plan.cut_reason, "");
     const PathPoint& end = first.plan.pieces.back().path.back();
     const Vector3d& begin = second.plan.pieces.front().path.front().position_mm;
     EXPECT_LT((begin - end.position_mm - thick_mm * end.normal).norm(), 2.0 * kOnWall_mm);
@@ -251,7 +251,7 @@ TEST(Wind, AWallIsWoundInStagesUntilItIsThick) {
     EXPECT_EQ(run.walls.front().last, 1U);
     const WallFigures& figures = run.walls.front().figures;
     EXPECT_EQ(figures.asked_layers, 8.0);
-    EXPECT_LE(figures.below_share, kMostBelow);
+    EXPECT_LE(figures.below_share, kMaxBelow);
     EXPECT_GE(figures.mean_ratio, 1.0);
     EXPECT_LE(figures.mean_ratio, 1.25);
     EXPECT_EQ(check_of(run, "wall").numbers.at("below"), figures.below_share);
@@ -281,7 +281,7 @@ TEST(Wind, AWallOfAVesselStepsAwayFromItsOpenings) {
     };
     EXPECT_NEAR(turns_mm(0), 8.0 + 4.0, 30.0 * rad_from_deg(3.0));
     EXPECT_GT(turns_mm(2), turns_mm(0) + 8.0);
-    EXPECT_LE(run.walls.front().figures.below_share, kMostBelow);
+    EXPECT_LE(run.walls.front().figures.below_share, kMaxBelow);
 }
 
 // The figures of a wall are those of all its stages, and the bound is below what they take.
@@ -312,7 +312,7 @@ TEST(Wind, AWallOfCoversCountsAllItsStages) {
     EXPECT_NEAR(figures.fibre_mm, fibre_mm, 1e-6 * fibre_mm);
     EXPECT_GT(figures.least_factor, 1.0);
     EXPECT_GT(figures.fibre_factor, figures.least_factor);
-    EXPECT_EQ(check_of(run, "wall").ok, figures.below_share <= kMostBelow);
+    EXPECT_EQ(check_of(run, "wall").ok, figures.below_share <= kMaxBelow);
     EXPECT_LT(figures.below_share, 0.1);
 }
 
@@ -322,7 +322,7 @@ TEST(Wind, AnAutoLayerGoesOnWhereTheSpindleStands) {
     job.layers.push_back(quick_job(LayerKind::Auto).layers.front());
     const meshwind::Run run = wind(small_pipe(), shipped("six_axis"), job);
     ASSERT_EQ(run.layers.size(), 2U);
-    ASSERT_TRUE(run.layers[1].plan.goes_on);
+    ASSERT_TRUE(run.layers[1].plan.continues_fibre);
     const BlockList& before = run.layers[0].programs.back().made.blocks;
     const BlockList& after = run.layers[1].programs.front().made.blocks;
     // Many turns lie behind it; the nearest whole turn is half a turn away at most.

@@ -12,17 +12,17 @@
 namespace meshwind::test {
 
 struct AnyMachine : Windability {
-    std::function<Rejection(std::span<const Piece>)> follow_rule{};
-    std::function<Rejection(std::span<const Piece>)> alone_rule{};
+    std::function<CourseFault(std::span<const Piece>)> follow_rule{};
+    std::function<CourseFault(std::span<const Piece>)> alone_rule{};
     std::function<std::vector<std::size_t>(std::span<const Piece>)> refused_rule{};
 
-    [[nodiscard]] Rejection follow(std::span<const Piece> pieces) const override {
-        return follow_rule ? follow_rule(pieces) : Rejection::None;
+    [[nodiscard]] CourseFault follow(std::span<const Piece> pieces) const override {
+        return follow_rule ? follow_rule(pieces) : CourseFault::None;
     }
-    [[nodiscard]] Rejection wind_alone(std::span<const Piece> pieces) const override {
-        return alone_rule ? alone_rule(pieces) : Rejection::None;
+    [[nodiscard]] CourseFault wind_alone(std::span<const Piece> pieces) const override {
+        return alone_rule ? alone_rule(pieces) : CourseFault::None;
     }
-    [[nodiscard]] Rejection wind_circuits(std::span<const Piece> pieces) const override {
+    [[nodiscard]] CourseFault wind_circuits(std::span<const Piece> pieces) const override {
         return wind_alone(pieces);
     }
     [[nodiscard]] std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const override {

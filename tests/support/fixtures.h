@@ -85,8 +85,8 @@ inline std::vector<Rim> plain_rims(std::int32_t count) {
 }
 
 /// A course that crosses two rims anywhere, windable at least one way; covers a few samples.
-inline Member random_member(Draw& draw, std::int32_t rims, std::int32_t samples) {
-    Member member;
+inline LibraryCourse random_member(Draw& draw, std::int32_t rims, std::int32_t samples) {
+    LibraryCourse member;
     for (RimCrossing& end : member.end) {
         end.rim = draw.below(rims);
         end.azimuth_rad = draw.between(-kPi, kPi);

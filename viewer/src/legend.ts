@@ -3,7 +3,7 @@ import { category, cssColour, gradient, kBare, kOverLimit } from './colour';
 import type { Colouring } from './colour';
 import { escapeHtml, number, withUnit } from './format';
 
-const kMostCategories = 8;
+const kMaxCategories = 8;
 
 export function swatch(colour: string, words: string, hatched = false): string {
     const style = hatched
@@ -18,9 +18,9 @@ export function legendHtml(by: Colouring, bare: boolean, transitions: boolean): 
     const keys: string[] = [];
     let scale = '';
     if (by.kind === 'categories') {
-        const count = Math.min(by.max + 1, kMostCategories);
+        const count = Math.min(by.max + 1, kMaxCategories);
         for (let n = 0; n < count; ++n) keys.push(swatch(cssColour(category(n)), String(n)));
-        if (by.max + 1 > kMostCategories) keys.push('<span class="key">then again</span>');
+        if (by.max + 1 > kMaxCategories) keys.push('<span class="key">then again</span>');
     } else {
         const limit = by.limit === null ? '' : '<span class="limit">limit</span>';
         const half = (by.min + by.max) / 2;

@@ -10,7 +10,7 @@ const kLeft = 84;
 const kRight = 10;
 const kFoot = 18;
 const kGap = 7;
-const kLeastSpan = 0.05; // s
+const kMinSpan = 0.05; // s
 const kPad = 0.08; // of a row's scale, above and below
 const kZoomStep = 1.6;
 
@@ -47,7 +47,7 @@ export class Plots {
 
     /** The stretch of the clock that can be shown; all of it is. */
     setWhole(from: number, to: number): void {
-        this.whole = { from, to: Math.max(to, from + kLeastSpan) };
+        this.whole = { from, to: Math.max(to, from + kMinSpan) };
         this.zoomAll();
     }
 
@@ -85,7 +85,7 @@ export class Plots {
 
     private setWindow(from: number, span: number): void {
         const { whole } = this;
-        const length = Math.min(Math.max(span, kLeastSpan), whole.to - whole.from);
+        const length = Math.min(Math.max(span, kMinSpan), whole.to - whole.from);
         const start = Math.min(Math.max(from, whole.from), whole.to - length);
         this.window = { from: start, to: start + length };
         this.request();

@@ -2,8 +2,8 @@
 import { element } from './dom';
 
 const kStep = 24; // px that an arrow key moves a border
-const kLeastPx = 120;
-const kMostShare = 0.65; // of the window
+const kMinPx = 120;
+const kMaxShare = 0.65; // of the window
 
 export type PanelId = 'side' | 'plots';
 
@@ -38,11 +38,11 @@ export class SidePanel {
     }
 
     private most(): number {
-        return kMostShare * (this.id === 'side' ? window.innerWidth : window.innerHeight);
+        return kMaxShare * (this.id === 'side' ? window.innerWidth : window.innerHeight);
     }
 
     private resize(size: number | null): void {
-        this.kept.size = size === null ? null : Math.round(Math.min(Math.max(size, kLeastPx), this.most()));
+        this.kept.size = size === null ? null : Math.round(Math.min(Math.max(size, kMinPx), this.most()));
         this.apply();
     }
 
@@ -74,7 +74,7 @@ export class SidePanel {
         element(`fold-${this.id}`).setAttribute('aria-expanded', String(!folded));
         if (size === null) style.removeProperty(`--${this.id}-size`);
         else style.setProperty(`--${this.id}-size`, `${size}px`);
-        this.border.setAttribute('aria-valuemin', String(kLeastPx));
+        this.border.setAttribute('aria-valuemin', String(kMinPx));
         this.border.setAttribute('aria-valuemax', String(Math.round(this.most())));
         this.border.setAttribute('aria-valuenow', String(this.size()));
         keep(this.id, this.kept);

@@ -19,11 +19,11 @@ namespace meshwind {
 namespace {
 
 // Rows, each of a cell of samples. More take longer by their square.
-constexpr std::size_t kMostRows = 400;
+constexpr std::size_t kMaxRows = 400;
 
 // Columns that are added at a time, and rounds of that.
 constexpr std::size_t kColumnsOfARound = 300;
-constexpr int kMostRounds = 60;
+constexpr int kMaxRounds = 60;
 
 // A column pays where it is worth more than it costs by this share of that: not by rounding.
 constexpr double kPays = 1e-7;
@@ -74,7 +74,7 @@ struct BoundModel {
         return static_cast<int>(cells.cell.size() + task.nodes);
     }
     [[nodiscard]] double cost(const BoundColumn& column) const {
-        const Member& member = task.members[at(column.member)];
+        const LibraryCourse& member = task.members[at(column.member)];
         return member.length_mm + member.turn_mm + task.off_angle_cost * member.off_angle_mm;
     }
 };
@@ -117,7 +117,7 @@ BoundCells cells_of(const BoundTask& task) {
     BoundCells cells;
     cells.of_sample.assign(task.asked.size(), -1);
     std::vector<std::size_t> asking = asking_samples(task);
-    const std::size_t n = std::min(kMostRows, asking.size());
+    const std::size_t n = std::min(kMaxRows, asking.size());
     std::vector<std::size_t> centres;
     centres.reserve(n);
     for (std::size_t k = 0; k < n; ++k) {
@@ -333,7 +333,7 @@ void enter(const BoundModel& model, const LinearProgramme::Solution& solution, F
 // Solves, and adds columns as long as some pay.
 FibreBound solved(BoundModel& model, LinearProgramme& programme, FibreBound bound) {
     LinearProgramme::Solution solution;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
         solution = programme.solve();
         if (!solution.feasible) {
             break;
@@ -393,13 +393,13 @@ FibreBound bound_fibre(const BoundTask& task) {
     return FibreBoundFinder(task).find();
 }
 
-std::vector<LaidCourse> whole_courses(const FibreBound& bound, std::span<const Member> members,
-                                      double share) {
+std::vector<DirectedCourse> whole_courses(const FibreBound& bound,
+                                          std::span<const LibraryCourse> members, double share) {
     struct Laid {
         NodePair nodes;
         long step;
         double azimuth_rad;
-        LaidCourse course;
+        DirectedCourse course;
         double times;
 
         bool operator<(const Laid& other) const {
@@ -422,7 +422,7 @@ std::vector<LaidCourse> whole_courses(const FibreBound& bound, std::span<const M
         }
     }
     std::sort(laid.begin(), laid.end());
-    std::vector<LaidCourse> courses;
+    std::vector<DirectedCourse> courses;
     double carried = 0.5;
     for (const Laid& like : laid) {
         carried += like.times;

@@ -15,10 +15,10 @@ namespace meshwind {
 
 /// What the least fibre is sought for. References outlive who seeks it.
 struct BoundTask {
-    std::span<const Member> members;      ///< the library
-    std::span<const char> allowed;        ///< per member
-    std::span<const std::int32_t> asked;  ///< per sample: layers
-    std::span<const char> reached;        ///< per sample: others ask for nothing
+    std::span<const LibraryCourse> members;  ///< the library
+    std::span<const char> allowed;           ///< per member
+    std::span<const std::int32_t> asked;     ///< per sample: layers
+    std::span<const char> reached;           ///< per sample: others ask for nothing
     /// Per sample. Where there are many, those that are near each other share a row; empty: some
     /// of them stand for all.
     std::span<const Eigen::Vector3d> position_mm{};
@@ -70,7 +70,8 @@ private:
 
 /// Whole courses for a share of those fractions: like courses beside each other, one more each time
 /// that their sum passes a half, so that they share their roundings. \param members the library
-[[nodiscard]] std::vector<LaidCourse> whole_courses(const FibreBound& bound,
-                                                    std::span<const Member> members, double share);
+[[nodiscard]] std::vector<DirectedCourse> whole_courses(const FibreBound& bound,
+                                                        std::span<const LibraryCourse> members,
+                                                        double share);
 
 }  // namespace meshwind

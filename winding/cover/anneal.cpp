@@ -9,8 +9,8 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "winding/cover/fit.h"
-#include "winding/cover/joints.h"
+#include "winding/cover/fit_course.h"
+#include "winding/cover/rim_joints.h"
 
 namespace meshwind {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::size_t kTask = 2;
 // Kinds of proposals, as shares of all.
 constexpr double kFreshShare = 0.10;      // a course somewhere, mostly where layers are missing
 constexpr double kNeighbourShare = 0.12;  // a course beside another
-constexpr double kJoinShare = 0.06;  // a course from where fibres arrive in vain to where they lack
+constexpr double kJoinShare = 0.06;       // a course from a surplus node to a deficit node
 constexpr double kDropShare = 0.08;
 constexpr double kReverseShare = 0.04;  // a course wound the other way
 constexpr double kNudgeShare = 0.40;    // a course moved a little
@@ -51,7 +51,7 @@ constexpr double kAloneShare = 0.5;
 struct AnnealTask {
     CourseRules rules;  // with the footprints of the ground
     const AnnealGround& ground;
-    std::span<const Member> library;
+    std::span<const LibraryCourse> library;
     std::span<const char> allowed;  // per member of the library
     const AnnealOptions& options;
 };
@@ -81,7 +81,7 @@ struct AnnealState {
 // Samples that a course covers, by the library: at first there may be no course at all.
 double samples_of_a_course(const AnnealTask& task) {
     double covered = 0.0;
-    for (const Member& member : task.library) {
+    for (const LibraryCourse& member : task.library) {
         covered += member.length_mm * task.rules.tow.width_mm / task.ground.samples.area_mm2;
     }
     return std::max(1.0, covered / std::max<double>(1.0, static_cast<double>(task.library.size())));
@@ -95,7 +95,7 @@ AnnealPrices prices_at(const AnnealOptions& options, double course, double share
 }
 
 // What the courses leave open is worth the proposal that closes it.
-double open_cost(const AnnealState& now, const Joints& joints) {
+double open_cost(const AnnealState& now, const RimJoints& joints) {
     const AnnealOptions& options = now.task.options;
     const int fibres = joints.fibres();
     const int allowed = std::min(fibres, options.fibres);
@@ -104,13 +104,13 @@ double open_cost(const AnnealState& now, const Joints& joints) {
 }
 
 // Of the fibre of a course's turns.
-double turn_cost(const AnnealTask& task, const Member& member) {
+double turn_cost(const AnnealTask& task, const LibraryCourse& member) {
     return task.options.turn_share * member.turn_mm * task.rules.tow.width_mm /
            task.ground.samples.area_mm2;
 }
 
 // Of fibre off the wanted winding angle.
-double angle_cost(const AnnealTask& task, const Member& member) {
+double angle_cost(const AnnealTask& task, const LibraryCourse& member) {
     return task.options.select.angle_weight * member.off_angle_mm * task.rules.tow.width_mm /
            task.ground.samples.area_mm2;
 }
@@ -140,7 +140,7 @@ double change(const AnnealState& now, const CourseExchange& exchange, AnnealScra
     const GroundLayers& layers = now.courses.layers();
     const LayerCosts& cost = now.prices.layers;
     double sum = 0.0;
-    Joints joints = now.courses.joints();
+    RimJoints joints = now.courses.joints();
     if (exchange.out) {
         const PlacedCourse& course = now.courses[*exchange.out];
         for (const std::int32_t sample : course.member.footprint) {
@@ -151,7 +151,7 @@ double change(const AnnealState& now, const CourseExchange& exchange, AnnealScra
         joints.add(course.member, course.backward, -1);
     }
     if (exchange.in) {
-        const Member& member = exchange.in->member;
+        const LibraryCourse& member = exchange.in->member;
         for (const std::int32_t sample : member.footprint) {
             const std::int32_t over = layers.over(sample) + scratch.shift[at(sample)]++;
             sum += cost.of(over + 1) - cost.of(over);
@@ -270,8 +270,8 @@ Fit fitted(const AnnealState& now, const PlacedCourse& course, std::optional<std
 Proposal judged(const AnnealState& now, const Candidate& candidate, bool backward,
                 Proposal proposal, AnnealScratch& scratch) {
     const CourseRules& rules = now.task.rules;
-    Sketch sketch;
-    if (draw_path(rules, candidate, sketch) != Refusal::None) {
+    DraftCourse sketch;
+    if (draw_path(rules, candidate, sketch) != CandidateFault::None) {
         return proposal;
     }
     PlacedCourse course{std::move(sketch.course), std::move(sketch.path), backward, false};
@@ -287,7 +287,7 @@ Proposal judged(const AnnealState& now, const Candidate& candidate, bool backwar
     if (!is_taken(now.prices, proposal,
                   taken_out(now, proposal.exchange.out) - fit.saved - slack(now.prices)) ||
         draw_sketch(rules, moved(rules, course, seed_station(course), fit.move), scratch.footprint,
-                    sketch) != Refusal::None) {
+                    sketch) != CandidateFault::None) {
         return proposal;
     }
     return weighed(now, {std::move(sketch.course), std::move(sketch.path), backward, false},
@@ -311,7 +311,7 @@ Proposal joining(const AnnealState& now, Draws& draws, Proposal proposal, Anneal
     const ArrivingWay& which = ways[draws.below(ways.size())];
     const auto& members = which.way->windable;
     const std::size_t number = at(members[draws.below(members.size())]);
-    const Member& member = now.task.library[number];
+    const LibraryCourse& member = now.task.library[number];
     const bool backward = arrival_node(end_of(member, true)) == which.arrival;
     if (now.task.allowed[number] == 0) {
         return proposal;
@@ -443,7 +443,7 @@ AnnealEffort anneal_courses(const AnnealTask& task, std::vector<PlacedCourse>& p
 }  // namespace
 
 AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
-                    std::span<const Member> library, std::span<const char> allowed,
+                    std::span<const LibraryCourse> library, std::span<const char> allowed,
                     std::vector<PlacedCourse>& courses, const AnnealOptions& options) {
     const AnnealTask task{
         {rules.mandrel, rules.obstacles, ground.footprints, rules.tow, rules.turns,

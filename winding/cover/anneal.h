@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "winding/cover/anneal_ground.h"
-#include "winding/cover/balance.h"
+#include "winding/cover/balance_courses.h"
 #include "winding/cover/placed_course.h"
-#include "winding/cover/select.h"
+#include "winding/cover/select_courses.h"
 
 namespace meshwind {
 
@@ -32,8 +32,8 @@ struct AnnealOptions {
     double turn_share = 1.5;
     /// True where courses may lead; empty: anywhere.
     std::function<bool(const NodePair&)> way{};
-    /// The last word on a course that is about to be taken, which it may make exact; false where
-    /// it cannot be wound. Must be pure and thread-safe. Empty: a sketch is enough.
+    /// Checks a course that is about to be taken, and may make it exact; false where it cannot
+    /// be wound. Must be pure and thread-safe. Empty: a sketch is enough.
     std::function<bool(PlacedCourse& course)> verify{};
     std::function<void(double share)> progress{};
 };
@@ -53,7 +53,7 @@ struct AnnealEffort {
 /// the end Proposals are drawn and judged in parallel, in groups; the same for any number of
 /// threads.
 AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
-                    std::span<const Member> library, std::span<const char> allowed,
+                    std::span<const LibraryCourse> library, std::span<const char> allowed,
                     std::vector<PlacedCourse>& courses, const AnnealOptions& options);
 
 }  // namespace meshwind

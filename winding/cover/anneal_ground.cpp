@@ -5,7 +5,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "mesh/nearest.h"
-#include "winding/cover/fit.h"
+#include "winding/cover/fit_course.h"
 
 namespace meshwind {
 namespace {
@@ -22,7 +22,7 @@ constexpr int kPlacesTried = 24;
 }  // namespace
 
 AnnealGround::AnnealGround(const CourseRules& rules, CoverageSamples weighed,
-                           const CoverageSamples& measured, std::span<const Member> library)
+                           const CoverageSamples& measured, std::span<const LibraryCourse> library)
     : samples(std::move(weighed)),
       footprints(rules.mandrel.surface, samples, rules.tow.width_mm),
       strips(rules.mandrel.surface, samples, kStripBands * rules.tow.width_mm),
@@ -70,7 +70,7 @@ std::size_t GroundLayers::needy_place(Draws& draws) const {
 
 LayerCosts::LayerCosts(double beyond_layers, double bare) {
     for (std::size_t i = 0; i < cost_.size(); ++i) {
-        const std::int32_t over = static_cast<std::int32_t>(i) - kMostOff;
+        const std::int32_t over = static_cast<std::int32_t>(i) - kMaxOff;
         const double off = over - beyond_layers;
         cost_[i] = off * off + bare * std::max(0, -over);
     }
@@ -147,7 +147,7 @@ void AnnealedCourses::lay(const PlacedCourse& course, int times) {
     joints_.add(course.member, course.backward, times);
 }
 
-std::vector<ArrivingWay> ways_that_join(const Ways& ways, const Joints& joints) {
+std::vector<ArrivingWay> ways_that_join(const Ways& ways, const RimJoints& joints) {
     const std::vector<std::size_t> part = joints.part_of();
     std::vector<ArrivingWay> joining;
     for (const auto& [nodes, way] : ways) {

@@ -1,4 +1,4 @@
-/// What the annealing weighs courses on, and the courses as they lie there.
+/// Samples and lookup tables of the annealing, and the courses on them.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 #include "core/index.h"
 #include "core/random.h"
-#include "winding/cover/grow.h"
-#include "winding/cover/joints.h"
+#include "winding/cover/grow_library.h"
 #include "winding/cover/library.h"
-#include "winding/cover/select.h"
+#include "winding/cover/rim_joints.h"
+#include "winding/cover/select_courses.h"
 #include "winding/cover/symmetry.h"
 #include "winding/laminate/families.h"
 #include "winding/laminate/samples.h"
@@ -30,7 +30,7 @@ namespace meshwind {
 struct AnnealGround {
     /// \param weighed the samples \param measured those of the members' footprints
     AnnealGround(const CourseRules& rules, CoverageSamples weighed, const CoverageSamples& measured,
-                 std::span<const Member> library);
+                 std::span<const LibraryCourse> library);
 
     CoverageSamples samples;
     FootprintFinder footprints;
@@ -68,14 +68,14 @@ public:
 
     /// \param over the target
     [[nodiscard]] double of(std::int32_t over) const {
-        return cost_[at(std::clamp(over, -kMostOff, kMostOff) + kMostOff)];
+        return cost_[at(std::clamp(over, -kMaxOff, kMaxOff) + kMaxOff)];
     }
 
 private:
     // Layers off the target from which on more make no difference.
-    static constexpr std::int32_t kMostOff = 64;
+    static constexpr std::int32_t kMaxOff = 64;
 
-    std::array<double, 2 * kMostOff + 1> cost_{};  // by layers over the target, from -kMostOff
+    std::array<double, 2 * kMaxOff + 1> cost_{};  // by layers over the target, from -kMaxOff
 };
 
 /// Scratch for one thread.
@@ -126,7 +126,7 @@ public:
     [[nodiscard]] std::size_t any(Draws& draws) const { return draws.below(courses_.size()); }
 
     [[nodiscard]] const GroundLayers& layers() const { return layers_; }
-    [[nodiscard]] const Joints& joints() const { return joints_; }
+    [[nodiscard]] const RimJoints& joints() const { return joints_; }
 
     /// How many more belong to no family (families.h). Looks for the neighbours of what is put in.
     [[nodiscard]] int more_alone(CourseExchange& exchange) const;
@@ -143,7 +143,7 @@ private:
     std::vector<PlacedCourse>& courses_;
     double band_mm_;
     GroundLayers layers_;
-    Joints joints_;
+    RimJoints joints_;
     Neighbourhood neighbours_;
     int alone_ = 0;  // courses without a family
 };
@@ -156,6 +156,6 @@ struct ArrivingWay {
 
 /// Ways with windable courses that lead from a node where too many courses arrive to one where too
 /// many depart, or to another part of the plan.
-[[nodiscard]] std::vector<ArrivingWay> ways_that_join(const Ways& ways, const Joints& joints);
+[[nodiscard]] std::vector<ArrivingWay> ways_that_join(const Ways& ways, const RimJoints& joints);
 
 }  // namespace meshwind

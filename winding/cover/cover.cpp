@@ -13,11 +13,11 @@
 #include "core/text/text_number.h"
 #include "winding/cover/cover_courses.h"
 #include "winding/cover/fibre_routes.h"
-#include "winding/cover/grow.h"
-#include "winding/cover/join.h"
-#include "winding/cover/lay_out.h"
+#include "winding/cover/grow_library.h"
+#include "winding/cover/join_courses.h"
+#include "winding/cover/lay_out_plan.h"
 #include "winding/cover/order_to_follow.h"
-#include "winding/cover/prove.h"
+#include "winding/cover/prove_courses.h"
 #include "winding/cover/uncovered.h"
 #include "winding/laminate/course_character.h"
 #include "winding/laminate/coverage.h"
@@ -29,12 +29,12 @@ namespace {
 // Routes of so many fibres are looked for, at most.
 constexpr std::size_t kRoutesLookedFor = 9;
 
-// Where courses reach less of the wall nothing is planned: what comes of it is no part.
+// Below this reachable share of the wall no plan is made.
 constexpr double kWorthPlanning = 0.5;
 
 // Attempts that refuse as many courses as before, or more, before no others are put there; none are
 // before the last attempts either.
-constexpr int kMostInVain = 2;
+constexpr int kMaxInVain = 2;
 constexpr int kAttemptsWithoutOthers = 2;
 
 // Courses in winding order.
@@ -67,15 +67,15 @@ std::vector<char> proven_reach(const CoverTask& task, ReachProver& prover, Prove
 }
 
 void strike_off_what_is_apart(const PlanRoutes& routes, ProvenLibrary& library) {
-    const std::span<Member> members = library.members();
+    const std::span<LibraryCourse> members = library.members();
     for (std::size_t i = 0; i < members.size(); ++i) {
-        Member& member = members[i];
+        LibraryCourse& member = members[i];
         for (const bool backward : {false, true}) {
             bool& windable = backward ? member.windable_backward : member.windable_forward;
             windable = windable && routes.hold(nodes_of(member, backward));
         }
         if (library.allowed()[i] != 0 && !is_windable(member)) {
-            library.strike_off(i, Rejection::Apart);
+            library.strike_off(i, CourseFault::Apart);
         }
     }
 }
@@ -120,11 +120,13 @@ PlanRoutes find_routes(const CoverTask& task, ProvenLibrary& library, PlanCourse
 // way.
 void join_to(const CoverTask& task, const PlanRoutes& routes, int fibres, CourseJoiner& joiner,
              ProvenLibrary& library, PlanCourses& courses) {
-    const auto place = [&](const LaidCourse& course, PlacedCourse& in_place) {
+    const auto place = [&](const DirectedCourse& course, PlacedCourse& in_place) {
         in_place = library.placed(course);
         return task.prover.prove_and_wind(in_place);
     };
-    const auto strike = [&](std::size_t member, Rejection why) { library.strike_off(member, why); };
+    const auto strike = [&](std::size_t member, CourseFault why) {
+        library.strike_off(member, why);
+    };
     joiner.join({library.members_and_placed(), library.size(), library.allowed(),
                  task.mandrel.rims.size(), task.samples.size(), task.select,
                  std::min(fibres, routes.fibres_needed()), fibres, place, strike},
@@ -133,9 +135,9 @@ void join_to(const CoverTask& task, const PlanRoutes& routes, int fibres, Course
 
 CoverOrder put_in_order(const CoverTask& task, const PlanRoutes& routes,
                         std::span<const PlacedCourse> courses, ProvenLibrary& library) {
-    std::vector<Member>& members = library.members_and_placed();
+    std::vector<LibraryCourse>& members = library.members_and_placed();
     gather(courses, library.size(), members);
-    std::vector<LaidCourse> laid;
+    std::vector<DirectedCourse> laid;
     std::vector<double> lateness;
     for (const PlacedCourse& course : courses) {
         laid.push_back({static_cast<std::int32_t>(library.size() + laid.size()), course.backward});
@@ -188,7 +190,7 @@ TriedOrder order_that_holds(const CoverTask& task, const AnnealGround& ground,
     std::vector<PlacedCourse> best;
     std::size_t least = 0;
     int in_vain = 0;
-    for (int attempt = 0; attempt < kMostAttempts && !courses.placed.empty(); ++attempt) {
+    for (int attempt = 0; attempt < kMaxAttempts && !courses.placed.empty(); ++attempt) {
         CoverOrder order = joined_to_fibres(task, reach.routes, joiner, library, courses);
         lay_out_order(task, order, library, plan);
         std::unique_ptr<TrialWinding> trial = task.machine != nullptr && !order.courses.empty()
@@ -207,7 +209,7 @@ TriedOrder order_that_holds(const CoverTask& task, const AnnealGround& ground,
             least = refused.size();
         }
         give_up_courses(task, refused, library, courses);
-        if (in_vain < kMostInVain && attempt + kAttemptsWithoutOthers < kMostAttempts) {
+        if (in_vain < kMaxInVain && attempt + kAttemptsWithoutOthers < kMaxAttempts) {
             replace_lost_courses(task, ground, reach, library, courses);
         }
     }
@@ -280,7 +282,7 @@ FibreReach proven_fibre_reach(const CoverTask& task, ProvenLibrary& library, Pla
     const double sketched = reached_share(library.reached());
     library.reached() = proven_reach(task, prover, library);
     // The answers are what sketches reach: what they bring is told beside what holds.
-    for (WhatIf& what_if : plan.what_if) {
+    for (RelaxedRule& what_if : plan.what_if) {
         what_if.reachable -= sketched - reached_share(library.reached());
     }
     FibreReach reach;
@@ -291,10 +293,10 @@ FibreReach proven_fibre_reach(const CoverTask& task, ProvenLibrary& library, Pla
 
 // Plans courses of a library in which there are some.
 CoverOutcome plan_courses(const CoverTask& task, ProvenLibrary& library, Plan& plan) {
-    plan.what_if = ask_what_if(task.rules, task.samples, library.library(),
-                               seed_of(Stream::Otherwise, task.options.context.seed));
+    plan.what_if = coverage_if_relaxed(task.rules, task.samples, library.library(),
+                                       seed_of(Stream::Otherwise, task.options.context.seed));
     if (reached_share(library.reached()) < kWorthPlanning) {
-        library.strike_off_all(Rejection::NotPlanned);
+        library.strike_off_all(CourseFault::NotPlanned);
         return {.failure = hardly_reachable(library)};
     }
     const AnnealGround ground(task.rules, samples_at(task.mandrel.surface, task.stage.weighed.at),

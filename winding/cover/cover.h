@@ -5,7 +5,7 @@
 
 #include "core/run_context.h"
 #include "winding/cover/library.h"
-#include "winding/cover/select.h"
+#include "winding/cover/select_courses.h"
 #include "winding/laminate/stage_ask.h"
 #include "winding/plan/figures.h"
 #include "winding/plan/windability.h"
@@ -14,7 +14,7 @@ namespace meshwind {
 
 /// The whole plan is shown to the machine so many times at most. Of 14 plans of five tees one
 /// needed a second attempt and none more; of those that need more than a few, each costs minutes.
-inline constexpr int kMostAttempts = 5;
+inline constexpr int kMaxAttempts = 5;
 
 struct CoverOptions {
     Tow tow;
@@ -25,7 +25,7 @@ struct CoverOptions {
     int fibres = 1;                     ///< that the plan may take, >= 1
     std::optional<double> angle_rad{};  ///< wanted winding angle (wound_angle.h)
     RunContext context{};               ///< `effort`: how long courses are annealed
-    double most_bare = kMostBelow;      ///< share of the wall in reach; what of it lacks layers
+    double most_bare = kMaxBelow;       ///< share of the wall in reach; what of it lacks layers
     double least_covered = 0.0;         ///< of the wall in reach; what covers less fails, not wound
     double least_joined = 0.0;          ///< of the wall; so it does where fibres join less of it
     int candidates = 16000;             ///< tried over the whole surface
@@ -39,7 +39,7 @@ struct CoverOptions {
 /// \param obstacles everything that the free fibre must not hit: mandrel with its extensions
 /// \param machine follows every course, between half turns, before it enters the plan; winds every
 /// course that is to stay alone; then winds all. What it refuses there is replaced and the plan is
-/// made again, kMostAttempts times at most; then the plan with the fewest refused pieces stands.
+/// made again, kMaxAttempts times at most; then the plan with the fewest refused pieces stands.
 /// Null: a free length is all that is asked for.
 /// \return a plan; when nothing is admissible its `failure` says why and `pieces` is empty
 [[nodiscard]] TriedPlan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles,

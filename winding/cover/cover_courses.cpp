@@ -10,19 +10,19 @@
 #include "core/margins.h"
 #include "core/random.h"
 #include "winding/cover/anneal.h"
-#include "winding/cover/joints.h"
 #include "winding/cover/placed_course.h"
-#include "winding/cover/select.h"
+#include "winding/cover/rim_joints.h"
+#include "winding/cover/select_courses.h"
 
 namespace meshwind {
 namespace {
 
 // So many others are tried in place of a course that leads from stage to stage. It takes 20 ms
 // each, and without one a stage is lost.
-constexpr std::size_t kMostSpares = 200;
+constexpr std::size_t kMaxSpares = 200;
 
 // What does not hold of the courses that fill thin places makes room for others so many times.
-constexpr int kMostFills = 10;
+constexpr int kMaxFills = 10;
 
 // Proposals at an effort of 1, and where a few courses had to be given up.
 constexpr double kProposals = 30'000.0;
@@ -91,10 +91,10 @@ AnnealOptions annealing_prices(const CoverTask& task, const PlanRoutes& routes, 
 std::vector<PlacedCourse> those_that_hold(const CoverTask& task, std::vector<PlacedCourse> courses,
                                           bool to_stay, ProvenLibrary& library) {
     task.report_progress("prove", 0.0);
-    const std::vector<Rejection> found = task.prover.prove_all(courses, to_stay);
+    const std::vector<CourseFault> found = task.prover.prove_all(courses, to_stay);
     std::vector<PlacedCourse> holding;
     for (std::size_t i = 0; i < found.size(); ++i) {
-        if (found[i] == Rejection::None) {
+        if (found[i] == CourseFault::None) {
             holding.push_back(std::move(courses[i]));
         } else {
             library.refuse(courses[i], found[i]);
@@ -104,21 +104,22 @@ std::vector<PlacedCourse> those_that_hold(const CoverTask& task, std::vector<Pla
 }
 
 // Which of these hold; the others are struck off the library. \param proven what holds, kept
-std::vector<char> which_hold(const CoverTask& task, std::span<const LaidCourse> courses,
-                             ProvenLibrary& library, std::map<LaidCourse, PlacedCourse>& proven) {
-    std::set<LaidCourse> unknown;
+std::vector<char> which_hold(const CoverTask& task, std::span<const DirectedCourse> courses,
+                             ProvenLibrary& library,
+                             std::map<DirectedCourse, PlacedCourse>& proven) {
+    std::set<DirectedCourse> unknown;
     std::copy_if(courses.begin(), courses.end(), std::inserter(unknown, unknown.end()),
-                 [&](const LaidCourse& course) { return !proven.contains(course); });
+                 [&](const DirectedCourse& course) { return !proven.contains(course); });
     std::vector<PlacedCourse> tried;
     tried.reserve(unknown.size());
-    for (const LaidCourse& course : unknown) {
+    for (const DirectedCourse& course : unknown) {
         tried.push_back(library.placed(course));
     }
     for (PlacedCourse& course : those_that_hold(task, std::move(tried), false, library)) {
-        proven.emplace(LaidCourse{course.of_library, course.backward}, std::move(course));
+        proven.emplace(DirectedCourse{course.of_library, course.backward}, std::move(course));
     }
     std::vector<char> holds;
-    for (const LaidCourse& course : courses) {
+    for (const DirectedCourse& course : courses) {
         holds.push_back(proven.contains(course));
     }
     return holds;
@@ -138,14 +139,14 @@ void anneal_proven(const CoverTask& task, const AnnealGround& ground, const Plan
     annealing.progress = [&task](double share) { task.report_progress("anneal", share); };
     annealing.way = [&routes](const NodePair& nodes) { return routes.hold(nodes); };
     annealing.verify = [&task, &library, mending](PlacedCourse& course) {
-        const Rejection rejection =
+        const CourseFault rejection =
             mending ? task.prover.prove_and_wind(course) : task.prover.prove(course);
-        if (rejection != Rejection::None) {
+        if (rejection != CourseFault::None) {
             // On the samples of the plan, not on those of the annealing.
             FootprintFinder::Scratch scratch = task.footprints.make_scratch();
             library.note_refused(task.footprints.footprint(course.path, scratch), rejection);
         }
-        return rejection == Rejection::None;
+        return rejection == CourseFault::None;
     };
     const AnnealEffort effort = anneal(task.rules, ground, library.members_and_placed(),
                                        library.allowed(), courses.placed, annealing);
@@ -155,17 +156,17 @@ void anneal_proven(const CoverTask& task, const AnnealGround& ground, const Plan
 
 void fill_where_thin(const CoverTask& task, const std::vector<char>& joinable,
                      ProvenLibrary& library, PlanCourses& courses) {
-    for (int round = 0; round < kMostFills; ++round) {
+    for (int round = 0; round < kMaxFills; ++round) {
         const std::vector<std::int32_t> members = fill_thin_places(
             library.members(), library.allowed(), joinable,
             layers_of(courses.placed, task.samples.size()), task.select, task.stage.filled_to);
         if (members.empty()) {
             return;
         }
-        Joints joints(task.nodes(), courses.placed);
+        RimJoints joints(task.nodes(), courses.placed);
         std::vector<PlacedCourse> filling;
         for (const std::int32_t i : members) {
-            const Member& member = library.members()[at(i)];
+            const LibraryCourse& member = library.members()[at(i)];
             const bool backward = joints.evener_backward(member);
             joints.add(member, backward, 1);
             filling.push_back(library.placed({i, backward}));
@@ -178,12 +179,12 @@ void fill_where_thin(const CoverTask& task, const std::vector<char>& joinable,
 // The next course that holds in place of the link between two stages that did not.
 void replace_link(const CoverTask& task, const ProvenLibrary& library, std::int32_t link,
                   PlanCourses& courses) {
-    std::vector<LaidCourse>& spares = courses.spare_links[at(link)];
-    for (std::size_t tried = 0; !spares.empty() && tried < kMostSpares; ++tried) {
+    std::vector<DirectedCourse>& spares = courses.spare_links[at(link)];
+    for (std::size_t tried = 0; !spares.empty() && tried < kMaxSpares; ++tried) {
         PlacedCourse course = library.placed(spares.back());
         spares.pop_back();
         course.link = link;
-        if (task.prover.prove_and_wind(course) == Rejection::None) {
+        if (task.prover.prove_and_wind(course) == CourseFault::None) {
             courses.placed.push_back(std::move(course));
             return;
         }
@@ -213,12 +214,13 @@ CoverTask::CoverTask(const Mandrel& part, const RayQuery& obstacles, const Cover
 std::optional<double> choose_courses(const CoverTask& task, const std::vector<char>& joinable,
                                      ProvenLibrary& library, PlanCourses& courses) {
     courses.placed = those_that_hold(task, std::move(courses.placed), false, library);
-    std::map<LaidCourse, PlacedCourse> proven;
-    const FirstChoice first = choose_first(
-        library.members(), library.allowed(), joinable, task.samples.position_mm, task.nodes(),
-        task.select, task.stage,
-        [&](std::span<const LaidCourse> some) { return which_hold(task, some, library, proven); });
-    for (const LaidCourse& course : first.courses) {
+    std::map<DirectedCourse, PlacedCourse> proven;
+    const FirstChoice first = choose_first(library.members(), library.allowed(), joinable,
+                                           task.samples.position_mm, task.nodes(), task.select,
+                                           task.stage, [&](std::span<const DirectedCourse> some) {
+                                               return which_hold(task, some, library, proven);
+                                           });
+    for (const DirectedCourse& course : first.courses) {
         courses.placed.push_back(proven.at(course));
     }
     return first.least_fibre_mm;
@@ -235,7 +237,7 @@ void make_courses_even(const CoverTask& task, const AnnealGround& ground, const 
 }
 
 void give_up_courses(const CoverTask& task,
-                     const std::vector<std::pair<std::size_t, Rejection>>& refused,
+                     const std::vector<std::pair<std::size_t, CourseFault>>& refused,
                      ProvenLibrary& library, PlanCourses& courses) {
     for (std::size_t k = refused.size(); k-- > 0;) {
         const auto& [index, reason] = refused[k];

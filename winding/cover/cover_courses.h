@@ -14,11 +14,11 @@
 #include "winding/cover/cover.h"
 #include "winding/cover/fibre_routes.h"
 #include "winding/cover/library.h"
-#include "winding/cover/prove.h"
+#include "winding/cover/prove_courses.h"
 #include "winding/laminate/samples.h"
 #include "winding/laminate/stage_ask.h"
 #include "winding/plan/course.h"
-#include "winding/plan/rejection.h"
+#include "winding/plan/course_fault.h"
 #include "winding/plan/windability.h"
 
 namespace meshwind {
@@ -60,11 +60,12 @@ struct FibreReach {
 /// The courses of a plan, not in order.
 struct PlanCourses {
     std::vector<PlacedCourse> placed;
-    std::vector<std::vector<LaidCourse>> spare_links;  ///< per link: in its place, the best last
-    std::uint64_t annealings = 0;                      ///< so far
+    std::vector<std::vector<DirectedCourse>>
+        spare_links;               ///< per link: in its place, the best last
+    std::uint64_t annealings = 0;  ///< so far
 };
 
-/// Leaves of the courses those that hold, and adds those to begin with (select.h).
+/// Leaves of the courses those that hold, and adds those to begin with (select_courses.h).
 /// \return the least fibre, as in Plan
 [[nodiscard]] std::optional<double> choose_courses(const CoverTask& task,
                                                    const std::vector<char>& joinable,
@@ -78,7 +79,7 @@ void make_courses_even(const CoverTask& task, const AnnealGround& ground, const 
 /// Takes courses out, and strikes them off the library. Another comes in place of a link.
 /// \param refused the numbers of the courses, in order, each once
 void give_up_courses(const CoverTask& task,
-                     const std::vector<std::pair<std::size_t, Rejection>>& refused,
+                     const std::vector<std::pair<std::size_t, CourseFault>>& refused,
                      ProvenLibrary& library, PlanCourses& courses);
 
 /// Adds courses in place of those given up.

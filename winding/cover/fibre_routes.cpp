@@ -10,7 +10,7 @@ namespace meshwind {
 namespace {
 
 // Routes that are looked into; so many only a mandrel of many rims has.
-constexpr int kMostRoutes = 2000;
+constexpr int kMaxRoutes = 2000;
 
 // Nodes between which the fibre goes round and round.
 struct NodeGroups {
@@ -52,11 +52,12 @@ NodeGroups groups_of(const KnownWays& ways, std::size_t nodes) {
 }
 
 // Per group and sample: 1 where a course within the group passes.
-std::vector<std::vector<char>> covered_by(const NodeGroups& groups, std::span<const Member> members,
+std::vector<std::vector<char>> covered_by(const NodeGroups& groups,
+                                          std::span<const LibraryCourse> members,
                                           std::size_t samples) {
     std::vector<std::vector<char>> covered(static_cast<std::size_t>(groups.count),
                                            std::vector<char>(samples, 0));
-    for (const Member& member : members) {
+    for (const LibraryCourse& member : members) {
         for (const bool backward : {false, true}) {
             const auto [departure, arrival] = nodes_of(member, backward);
             const int from = groups.of_node[departure];
@@ -75,22 +76,22 @@ std::vector<std::vector<char>> covered_by(const NodeGroups& groups, std::span<co
 
 // What routes are sought among.
 struct RouteTask {
-    std::span<const Member> members;
+    std::span<const LibraryCourse> members;
     const KnownWays& ways;
     NodeGroups groups;
     std::vector<std::vector<char>> covered;  // per group and sample
 };
 
 // The proven course between two groups that reaches most that is not reached yet.
-const LaidCourse* best_link(const RouteTask& task, int from, int to,
-                            const std::vector<char>& reached) {
-    const LaidCourse* best = nullptr;
+const DirectedCourse* best_link(const RouteTask& task, int from, int to,
+                                const std::vector<char>& reached) {
+    const DirectedCourse* best = nullptr;
     std::int64_t most = -1;
     for (const auto& [nodes, way] : task.ways) {
         if (task.groups.of_node[nodes.first] != from || task.groups.of_node[nodes.second] != to) {
             continue;
         }
-        for (const LaidCourse& course : way.proven) {
+        for (const DirectedCourse& course : way.proven) {
             const auto& footprint = task.members[at(course.member)].footprint;
             const std::int64_t more =
                 std::count_if(footprint.begin(), footprint.end(),
@@ -118,7 +119,7 @@ std::vector<char> together(std::vector<char> reached, const std::vector<char>& m
 // Groups in the order of a route, and the courses that lead from each to the next.
 struct GroupRoute {
     std::vector<int> groups;
-    std::vector<LaidCourse> links;
+    std::vector<DirectedCourse> links;
     std::vector<char> reached;  // with the routes before
 };
 
@@ -131,7 +132,7 @@ struct BestRoute {
 
 // Looks into a route and all that go on from it.
 void extend(const RouteTask& task, const GroupRoute& route, BestRoute& best) {
-    if (++best.tried > kMostRoutes) {
+    if (++best.tried > kMaxRoutes) {
         return;
     }
     if (count_reached(route.reached) > best.most) {
@@ -144,7 +145,8 @@ void extend(const RouteTask& task, const GroupRoute& route, BestRoute& best) {
         }
         GroupRoute longer = route;
         longer.reached = together(std::move(longer.reached), task.covered[at(next)]);
-        const LaidCourse* const course = best_link(task, route.groups.back(), next, longer.reached);
+        const DirectedCourse* const course =
+            best_link(task, route.groups.back(), next, longer.reached);
         if (course != nullptr) {
             for (const std::int32_t sample : task.members[at(course->member)].footprint) {
                 longer.reached[at(sample)] = 1;
@@ -185,7 +187,7 @@ FibreRoute fibre_route(const GroupRoute& found, const NodeGroups& groups) {
 
 }  // namespace
 
-std::vector<OrderedCourse> longest_fibres(std::span<const Member> members,
+std::vector<OrderedCourse> longest_fibres(std::span<const LibraryCourse> members,
                                           std::span<const OrderedCourse> order, std::size_t most) {
     struct Fibre {
         double length_mm = 0.0;
@@ -213,7 +215,7 @@ std::vector<OrderedCourse> longest_fibres(std::span<const Member> members,
     return kept;
 }
 
-std::vector<FibreRoute> best_routes(std::span<const Member> members, const KnownWays& ways,
+std::vector<FibreRoute> best_routes(std::span<const LibraryCourse> members, const KnownWays& ways,
                                     std::size_t nodes, std::size_t samples, std::size_t most) {
     RouteTask task{members, ways, groups_of(ways, nodes), {}};
     task.covered = covered_by(task.groups, members, samples);

@@ -1,4 +1,4 @@
-/// The ways that continuous fibres take among the nodes (see balance.h) of a library.
+/// The ways that continuous fibres take among the nodes (see balance_courses.h) of a library.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "winding/cover/order.h"
+#include "winding/cover/order_courses.h"
 
 namespace meshwind {
 
 /// The fibres of an order with the most course length, at most so many, in their order.
-[[nodiscard]] std::vector<OrderedCourse> longest_fibres(std::span<const Member> members,
+[[nodiscard]] std::vector<OrderedCourse> longest_fibres(std::span<const LibraryCourse> members,
                                                         std::span<const OrderedCourse> order,
                                                         std::size_t most);
 
@@ -21,9 +21,9 @@ namespace meshwind {
 /// each a single course leads on to the next, and none back. A branch too slim for the head to pass
 /// on the way back makes such a stage: the fibre may end there.
 struct FibreRoute {
-    std::vector<int> stage;         ///< per node; -1 where the fibre never comes
-    std::vector<LaidCourse> links;  ///< links[i] leads from stage i to stage i + 1
-    double reach = 0.0;             ///< share of the samples that it and those before it reach
+    std::vector<int> stage;             ///< per node; -1 where the fibre never comes
+    std::vector<DirectedCourse> links;  ///< links[i] leads from stage i to stage i + 1
+    double reach = 0.0;                 ///< share of the samples that it and those before it reach
 
     /// True when a course may lead from a node to another, as often as wanted.
     [[nodiscard]] bool holds(const NodePair& nodes) const {
@@ -56,8 +56,8 @@ struct PlanRoutes {
 
 /// What is known of the way between two nodes.
 struct KnownWay {
-    bool abounds = false;            ///< many courses lead there
-    std::vector<LaidCourse> proven;  ///< courses that hold, in the library's order
+    bool abounds = false;                ///< many courses lead there
+    std::vector<DirectedCourse> proven;  ///< courses that hold, in the library's order
 };
 
 using KnownWays = std::map<NodePair, KnownWay>;
@@ -65,7 +65,7 @@ using KnownWays = std::map<NodePair, KnownWay>;
 /// The routes of at most so many fibres, one after the other the one whose stages' courses cover
 /// most samples that those before it do not; none that covers less than kWorthAFibre of all. \param
 /// nodes their number: two for each rim
-[[nodiscard]] std::vector<FibreRoute> best_routes(std::span<const Member> members,
+[[nodiscard]] std::vector<FibreRoute> best_routes(std::span<const LibraryCourse> members,
                                                   const KnownWays& ways, std::size_t nodes,
                                                   std::size_t samples, std::size_t most);
 

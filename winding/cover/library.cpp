@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/units.h"
 #include "geodesic/bridge.h"
-#include "winding/cover/fit.h"
+#include "winding/cover/fit_course.h"
 #include "winding/laminate/wound_angle.h"
 
 namespace meshwind {
@@ -75,7 +75,7 @@ struct Run {
 };
 
 // Largest height of the straight fibre over the wall, from where it leaves the wall to where it
-// meets it again. The string over the path is a little off it (geodesic/measure.h).
+// meets it again. The string over the path is a little off it (geodesic/slip_and_bridging.h).
 double worst_bridge_mm(const Run& run) {
     const std::vector<double>& gap = run.string.gap_mm;
     double worst = run.string.worst_gap_mm;
@@ -101,29 +101,31 @@ double worst_bridge_mm(const Run& run) {
 
 // Traces a member's candidate, notes where it crosses the rims, and judges what the path alone
 // tells.
-Refusal follow(const CourseRules& rules, TraceMethod method, Member& course, Run& run) {
+CandidateFault follow(const CourseRules& rules, TraceMethod method, LibraryCourse& course,
+                      Run& run) {
     std::array<TraceResult, 2> half;
     for (std::size_t e = 0; e < 2; ++e) {  // judged one by one: most candidates fail at one end
         half[e] = trace_half(rules, course.candidate, e == 0 ? -1.0 : 1.0, method);
         if (half[e].stop != TraceStop::Rim || half[e].rim < 0) {
-            return Refusal::NoRim;
+            return CandidateFault::NoRim;
         }
         const Rim& rim = rules.mandrel.rims[static_cast<std::size_t>(half[e].rim)];
         const PathPoint& last = half[e].path.back();
         course.end[e] = crossing_at(rim, last.position_mm, last.tangent);
         if (!can_turn(rim, course.end[e], rules.turns)) {
-            return rules.turns.pins.empty() ? Refusal::NotTurnable : Refusal::TouchesPins;
+            return rules.turns.pins.empty() ? CandidateFault::NotTurnable
+                                            : CandidateFault::TouchesPins;
         }
     }
     run.seed = half[0].path.size() - 1;
     run.path = join_halves(half[0].path, half[1].path);
     run.string = taut_string(run.path);
     return worst_bridge_mm(run) > margin::kCoverBridging * rules.tow.bridging_tolerance_mm
-               ? Refusal::Bridging
-               : Refusal::None;
+               ? CandidateFault::Bridging
+               : CandidateFault::None;
 }
 
-void measure_length(const CourseRules& rules, const SurfacePath& path, Member& course) {
+void measure_length(const CourseRules& rules, const SurfacePath& path, LibraryCourse& course) {
     course.length_mm = path.back().s_mm;
     course.turn_mm = 0.0;
     for (const RimCrossing& end : course.end) {
@@ -138,7 +140,7 @@ void measure_length(const CourseRules& rules, const SurfacePath& path, Member& c
 // from where it touches. Some stations beyond the bridge, whose ends are not known better.
 std::optional<Candidate> seed_on_the_wall(const Run& run, const Candidate& candidate) {
     const std::vector<double>& gap = run.string.gap_mm;
-    if (gap[run.seed] < kLeastBridge_mm) {
+    if (gap[run.seed] < kMinBridge_mm) {
         return std::nullopt;
     }
     std::size_t station = run.seed;
@@ -154,9 +156,9 @@ std::optional<Candidate> seed_on_the_wall(const Run& run, const Candidate& candi
 }
 
 // The walk tells most of what is not admissible, the patches then what is.
-Refusal follow_taut(const CourseRules& rules, Member& course, Run& run) {
-    Refusal refusal = follow(rules, TraceMethod::Walk, course, run);
-    for (int moved = 0; refusal == Refusal::None && moved < kMaxMoves; ++moved) {
+CandidateFault follow_taut(const CourseRules& rules, LibraryCourse& course, Run& run) {
+    CandidateFault refusal = follow(rules, TraceMethod::Walk, course, run);
+    for (int moved = 0; refusal == CandidateFault::None && moved < kMaxMoves; ++moved) {
         const auto seed = seed_on_the_wall(run, course.candidate);
         if (!seed && moved > 0) {
             break;
@@ -235,13 +237,13 @@ bool is_windable(const CourseRules& rules, const SurfacePath& path, const TautSt
     return choose_free_lengths(s_mm, windows, rule.preferred_mm).blocked.empty();
 }
 
-Refusal follow_course(const CourseRules& rules, const Candidate& candidate, Member& member,
-                      FollowedCourse& followed) {
-    Member course;
+CandidateFault follow_course(const CourseRules& rules, const Candidate& candidate,
+                             LibraryCourse& member, TracedCourse& followed) {
+    LibraryCourse course;
     course.candidate = candidate;
     Run run;
-    const Refusal refusal = follow_taut(rules, course, run);
-    if (refusal != Refusal::None) {
+    const CandidateFault refusal = follow_taut(rules, course, run);
+    if (refusal != CandidateFault::None) {
         return refusal;
     }
     measure_length(rules, run.path, course);
@@ -249,14 +251,14 @@ Refusal follow_course(const CourseRules& rules, const Candidate& candidate, Memb
         measure_slip(rules.mandrel.surface, run.path, run.string,
                      {.friction = rules.tow.friction.holds(), .method = TraceMethod::Patches});
     if (slip.worst > rules.tow.friction.holds()) {
-        return Refusal::Slips;
+        return CandidateFault::Slips;
     }
     member = std::move(course);
     followed = {std::move(run.path), std::move(run.string), std::move(slip)};
-    return Refusal::None;
+    return CandidateFault::None;
 }
 
-bool is_windable(const CourseRules& rules, const FollowedCourse& course, bool backward) {
+bool is_windable(const CourseRules& rules, const TracedCourse& course, bool backward) {
     if (!backward) {
         return is_windable(rules, course.path, course.string, kWindableStep_mm);
     }
@@ -264,35 +266,36 @@ bool is_windable(const CourseRules& rules, const FollowedCourse& course, bool ba
     return is_windable(rules, back, taut_string(back), kWindableStep_mm);
 }
 
-Refusal judge(const CourseRules& rules, const Candidate& candidate,
-              FootprintFinder::Scratch& scratch, Member& member) {
-    Member course;
-    FollowedCourse followed;
-    const Refusal refusal = follow_course(rules, candidate, course, followed);
-    if (refusal != Refusal::None) {
+CandidateFault judge(const CourseRules& rules, const Candidate& candidate,
+                     FootprintFinder::Scratch& scratch, LibraryCourse& member) {
+    LibraryCourse course;
+    TracedCourse followed;
+    const CandidateFault refusal = follow_course(rules, candidate, course, followed);
+    if (refusal != CandidateFault::None) {
         return refusal;
     }
     course.windable_forward = is_windable(rules, followed, false);
     course.windable_backward = is_windable(rules, followed, true);
     if (!is_windable(course)) {
-        return Refusal::NotWindable;
+        return CandidateFault::NotWindable;
     }
     course.footprint = rules.footprints.footprint(followed.path, scratch);
     member = std::move(course);
-    return Refusal::None;
+    return CandidateFault::None;
 }
 
 namespace {
 
 // As draw_path(), wherever it ends.
-Refusal draw_where_it_is(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
-    Member& course = sketch.course;
+CandidateFault draw_where_it_is(const CourseRules& rules, const Candidate& candidate,
+                                DraftCourse& sketch) {
+    LibraryCourse& course = sketch.course;
     course.candidate = candidate;
     course.windable_forward = false;
     course.windable_backward = false;
     Run run;
-    const Refusal refusal = follow(rules, TraceMethod::Walk, course, run);
-    if (refusal == Refusal::None) {
+    const CandidateFault refusal = follow(rules, TraceMethod::Walk, course, run);
+    if (refusal == CandidateFault::None) {
         measure_length(rules, run.path, course);
         sketch.path = std::move(run.path);
     }
@@ -301,16 +304,17 @@ Refusal draw_where_it_is(const CourseRules& rules, const Candidate& candidate, S
 
 }  // namespace
 
-Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& sketch) {
-    Refusal refusal = draw_where_it_is(rules, candidate, sketch);
-    for (int moves = 0; refusal == Refusal::None; ++moves) {
+CandidateFault draw_path(const CourseRules& rules, const Candidate& candidate,
+                         DraftCourse& sketch) {
+    CandidateFault refusal = draw_where_it_is(rules, candidate, sketch);
+    for (int moves = 0; refusal == CandidateFault::None; ++moves) {
         if (ends_at_pins(rules, sketch.course, kSketchAtPin_mm)) {
             break;
         }
         const PlacedCourse placed{sketch.course, std::move(sketch.path)};
         const auto move = move_to_pins(rules, placed);
         if (!move || moves == kSketchMoves) {
-            return Refusal::MissesPins;
+            return CandidateFault::MissesPins;
         }
         refusal =
             draw_where_it_is(rules, moved(rules, placed, seed_station(placed), *move), sketch);
@@ -320,32 +324,32 @@ Refusal draw_path(const CourseRules& rules, const Candidate& candidate, Sketch& 
 
 namespace {
 
-Refusal sketch_windable(const CourseRules& rules, const Candidate& candidate,
-                        FootprintFinder::Scratch& scratch, Member& member) {
-    Sketch sketch;
-    const Refusal refusal = draw_path(rules, candidate, sketch);
-    if (refusal != Refusal::None) {
+CandidateFault sketch_windable(const CourseRules& rules, const Candidate& candidate,
+                               FootprintFinder::Scratch& scratch, LibraryCourse& member) {
+    DraftCourse sketch;
+    const CandidateFault refusal = draw_path(rules, candidate, sketch);
+    if (refusal != CandidateFault::None) {
         return refusal;
     }
-    Member& course = sketch.course;
+    LibraryCourse& course = sketch.course;
     const SurfacePath back = reversed(sketch.path);
     course.windable_forward =
         is_windable(rules, sketch.path, taut_string(sketch.path), kSketchStep_mm);
     course.windable_backward = is_windable(rules, back, taut_string(back), kSketchStep_mm);
     if (!is_windable(course)) {
-        return Refusal::NotWindable;
+        return CandidateFault::NotWindable;
     }
     course.footprint = rules.footprints.footprint(sketch.path, scratch);
     member = std::move(course);
-    return Refusal::None;
+    return CandidateFault::None;
 }
 
 }  // namespace
 
-Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
-                    FootprintFinder::Scratch& scratch, Sketch& sketch) {
-    const Refusal refusal = draw_path(rules, candidate, sketch);
-    if (refusal == Refusal::None) {
+CandidateFault draw_sketch(const CourseRules& rules, const Candidate& candidate,
+                           FootprintFinder::Scratch& scratch, DraftCourse& sketch) {
+    const CandidateFault refusal = draw_path(rules, candidate, sketch);
+    if (refusal == CandidateFault::None) {
         sketch.course.footprint = rules.footprints.footprint(sketch.path, scratch);
     }
     return refusal;
@@ -359,13 +363,13 @@ LibraryPart build_library(const CourseRules& rules, std::span<const Candidate> c
         LibraryPart& part = parts[begin / kCandidateChunk];
         FootprintFinder::Scratch scratch = rules.footprints.make_scratch();
         for (std::size_t i = begin; i < end; ++i) {
-            Member member;
-            Refusal refusal = sketch_windable(rules, candidates[i], scratch, member);
-            if (refusal == Refusal::None && judging == Judging::Courses) {
+            LibraryCourse member;
+            CandidateFault refusal = sketch_windable(rules, candidates[i], scratch, member);
+            if (refusal == CandidateFault::None && judging == Judging::Courses) {
                 refusal = judge(rules, candidates[i], scratch, member);
             }
             part.outcome.push_back(refusal);
-            if (refusal == Refusal::None) {
+            if (refusal == CandidateFault::None) {
                 part.members.push_back(std::move(member));
             }
         }

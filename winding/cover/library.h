@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "geodesic/lifted_wall.h"
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "geodesic/trace.h"
 #include "mesh/mandrel.h"
 #include "mesh/ray_query.h"
 #include "winding/laminate/footprint.h"
 #include "winding/plan/course.h"
+#include "winding/plan/course_fault.h"
 #include "winding/plan/free_fibre.h"
-#include "winding/plan/rejection.h"
 #include "winding/plan/tow.h"
 #include "winding/turn/course_turns.h"
 
@@ -55,28 +55,29 @@ struct CourseRules {
 [[nodiscard]] SurfacePath trace_both_ways(const CourseRules& rules, const Candidate& candidate,
                                           TraceMethod method = TraceMethod::Patches);
 
-/// Follows a candidate on the curved patches and measures its slip. On Refusal::None `member` holds
-/// its ends and length, and `followed` the course; on others both are unchanged.
-[[nodiscard]] Refusal follow_course(const CourseRules& rules, const Candidate& candidate,
-                                    Member& member, FollowedCourse& followed);
+/// Follows a candidate on the curved patches and measures its slip. On CandidateFault::None
+/// `member` holds its ends and length, and `followed` the course; on others both are unchanged.
+[[nodiscard]] CandidateFault follow_course(const CourseRules& rules, const Candidate& candidate,
+                                           LibraryCourse& member, TracedCourse& followed);
 
 /// True when a free length can be found all along a course, in one direction of travel.
-[[nodiscard]] bool is_windable(const CourseRules& rules, const FollowedCourse& course,
-                               bool backward);
+[[nodiscard]] bool is_windable(const CourseRules& rules, const TracedCourse& course, bool backward);
 
-/// Judges a candidate by all rules. On Refusal::None `member` is filled, on others it is unchanged.
-[[nodiscard]] Refusal judge(const CourseRules& rules, const Candidate& candidate,
-                            FootprintFinder::Scratch& scratch, Member& member);
+/// Judges a candidate by all rules. On CandidateFault::None `member` is filled, on others it is
+/// unchanged.
+[[nodiscard]] CandidateFault judge(const CourseRules& rules, const Candidate& candidate,
+                                   FootprintFinder::Scratch& scratch, LibraryCourse& member);
 
 /// Judges a candidate by the walk alone: as draw_sketch(), but without a footprint. Where fibre
 /// turns on pins the path is one beside it that ends at pins.
-[[nodiscard]] Refusal draw_path(const CourseRules& rules, const Candidate& candidate,
-                                Sketch& sketch);
+[[nodiscard]] CandidateFault draw_path(const CourseRules& rules, const Candidate& candidate,
+                                       DraftCourse& sketch);
 
-/// Judges a candidate by the walk: ends, turns and bridges. On Refusal::None `sketch` is filled, on
-/// others it is of no use. Slip is not measured: the candidate is steered within the friction.
-[[nodiscard]] Refusal draw_sketch(const CourseRules& rules, const Candidate& candidate,
-                                  FootprintFinder::Scratch& scratch, Sketch& sketch);
+/// Judges a candidate by the walk: ends, turns and bridges. On CandidateFault::None `sketch` is
+/// filled, on others it is of no use. Slip is not measured: the candidate is steered within the
+/// friction.
+[[nodiscard]] CandidateFault draw_sketch(const CourseRules& rules, const Candidate& candidate,
+                                         FootprintFinder::Scratch& scratch, DraftCourse& sketch);
 
 /// True when a free length can be found about every `step_mm` of a path, and carried from each
 /// place to the next. \param path in the direction of travel \param string over it
@@ -91,8 +92,8 @@ enum class Judging { Sketches, Courses };
 
 /// Candidates judged in parallel. Members in the order of the candidates, whatever the threads.
 struct LibraryPart {
-    std::vector<Member> members;
-    std::vector<Refusal> outcome;  ///< per candidate
+    std::vector<LibraryCourse> members;
+    std::vector<CandidateFault> outcome;  ///< per candidate
 };
 [[nodiscard]] LibraryPart build_library(const CourseRules& rules,
                                         std::span<const Candidate> candidates,

@@ -5,21 +5,22 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "winding/cover/arrange.h"
-#include "winding/cover/lay_out.h"
-#include "winding/cover/order.h"
+#include "winding/cover/arrange_courses.h"
+#include "winding/cover/lay_out_plan.h"
+#include "winding/cover/order_courses.h"
 
 namespace meshwind {
 namespace {
 
 // Orders that are tried. Each closes turns that it found, so that later ones have fewer to choose
 // from.
-constexpr int kMostOrders = 20;
+constexpr int kMaxOrders = 20;
 
 class Follower {
 public:
-    Follower(const CourseRules& rules, const Windability* machine, std::span<const Member> members,
-             std::span<const LaidCourse> laid, std::span<const double> lateness)
+    Follower(const CourseRules& rules, const Windability* machine,
+             std::span<const LibraryCourse> members, std::span<const DirectedCourse> laid,
+             std::span<const double> lateness)
         : rules_(rules), machine_(machine), members_(members), laid_(laid) {
         for (std::size_t i = 0; i < laid.size(); ++i) {
             lateness_[laid[i].member] = lateness[i];
@@ -33,7 +34,7 @@ public:
         }
         std::vector<OrderedCourse> order = best;
         std::pair<std::size_t, std::size_t> least;  // cuts, closed turns
-        for (int tried = 0; tried < kMostOrders; ++tried) {
+        for (int tried = 0; tried < kMaxOrders; ++tried) {
             const std::size_t known = closed_.size();
             const std::pair<std::size_t, std::size_t> count{cuts(order), close_turns(order)};
             if (tried == 0 || count < least) {
@@ -84,7 +85,7 @@ private:
     std::size_t close_turns(std::span<const OrderedCourse> order) {
         Plan plan;
         lay_out(rules_, members_, order, plan);
-        std::vector<std::pair<LaidCourse, LaidCourse>> turns;
+        std::vector<std::pair<DirectedCourse, DirectedCourse>> turns;
         std::vector<std::size_t> first;  // piece of each: the course before it
         std::size_t piece = 0;
         for (std::size_t i = 0; i + 1 < order.size(); ++i) {
@@ -100,7 +101,7 @@ private:
             constexpr std::size_t kCourseTurnCourse = 3;
             const auto pieces = std::span(plan.pieces).subspan(first[i], kCourseTurnCourse);
             refused[i] = static_cast<char>(closed_.count(turns[i]) != 0 ||
-                                           machine_->follow(pieces) != Rejection::None);
+                                           machine_->follow(pieces) != CourseFault::None);
         });
         for (std::size_t i = 0; i < turns.size(); ++i) {
             if (refused[i] != 0) {
@@ -112,8 +113,8 @@ private:
 
     const CourseRules& rules_;
     const Windability* machine_;
-    std::span<const Member> members_;
-    std::span<const LaidCourse> laid_;
+    std::span<const LibraryCourse> members_;
+    std::span<const DirectedCourse> laid_;
     std::map<std::int32_t, double> lateness_;  // by member
     ClosedTurns closed_;
 };
@@ -121,7 +122,8 @@ private:
 }  // namespace
 
 FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machine,
-                              std::span<const Member> members, std::span<const LaidCourse> laid,
+                              std::span<const LibraryCourse> members,
+                              std::span<const DirectedCourse> laid,
                               std::span<const double> lateness, std::size_t fibres) {
     return Follower(rules, machine, members, laid, lateness).run(fibres);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "winding/cover/library.h"
-#include "winding/cover/order.h"
+#include "winding/cover/order_courses.h"
 #include "winding/plan/course.h"
 #include "winding/plan/windability.h"
 
@@ -17,15 +17,15 @@ struct FollowedOrder {
     ClosedTurns closed{};   ///< all that it was found not to follow
 };
 
-/// Orders and arranges courses (order.h, arrange.h). Where the machine cannot follow a turn from
-/// one course to the next, they are put in another order: of those that are tried, the one with the
-/// fewest cuts, and then with the fewest such turns. As far as more fibres are allowed they are cut
-/// at those that are left.
-/// \param machine null: each turn can be followed \param members proven
-/// \param lateness per entry of `laid` \param fibres that may be tied on, >= 1
+/// Orders and arranges courses (order_courses.h, arrange_courses.h). Where the machine cannot
+/// follow a turn from one course to the next, they are put in another order: of those that are
+/// tried, the one with the fewest cuts, and then with the fewest such turns. As far as more fibres
+/// are allowed they are cut at those that are left. \param machine null: each turn can be followed
+/// \param members proven \param lateness per entry of `laid` \param fibres that may be tied on, >=
+/// 1
 [[nodiscard]] FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machine,
-                                            std::span<const Member> members,
-                                            std::span<const LaidCourse> laid,
+                                            std::span<const LibraryCourse> members,
+                                            std::span<const DirectedCourse> laid,
                                             std::span<const double> lateness, std::size_t fibres);
 
 }  // namespace meshwind

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kPoints = 500;
 
 // Combinations of planes that are used: a body of revolution has no end of them.
-constexpr std::size_t kMostMaps = 15;
+constexpr std::size_t kMaxMaps = 15;
 
 // Two directions closer than this, in rad, are one: they come from fits to meshes.
 constexpr double kSame = 0.03;
@@ -131,7 +131,7 @@ void MirrorImages::add_with_products(const Matrix3d& map) {
         const bool known = same(image, Matrix3d::Identity()) ||
                            std::any_of(maps_.begin(), maps_.end(),
                                        [&](const Matrix3d& other) { return same(image, other); });
-        if (!known && maps_.size() < kMostMaps) {
+        if (!known && maps_.size() < kMaxMaps) {
             maps_.push_back(image);
         }
     }

@@ -20,8 +20,8 @@ namespace {
 struct Reason {
     std::int32_t region = -1;
     bool passed = false;  // by a member of the library
-    Rejection rejection = Rejection::None;
-    Refusal refusal = Refusal::None;
+    CourseFault rejection = CourseFault::None;
+    CandidateFault refusal = CandidateFault::None;
 
     [[nodiscard]] bool operator<(const Reason& other) const {
         return std::tie(region, passed, rejection, refusal) <
@@ -31,24 +31,24 @@ struct Reason {
 
 // Per sample that members pass: what became of most of them. Where one of them holds it is None
 // unless more were refused than not; where none of those tried does, the others do not count.
-std::vector<std::optional<Rejection>> commonest_rejections(const Library& library,
-                                                           std::span<const Rejection> rejection) {
+std::vector<std::optional<CourseFault>> commonest_rejections(
+    const Library& library, std::span<const CourseFault> rejection) {
     std::vector<std::array<std::int32_t, kRejections>> tally(library.reached.size());
     for (std::size_t i = 0; i < library.members.size(); ++i) {
         for (const std::int32_t sample : library.members[i].footprint) {
             ++tally[at(sample)][static_cast<std::size_t>(rejection[i])];
         }
     }
-    std::vector<std::optional<Rejection>> commonest(tally.size());
+    std::vector<std::optional<CourseFault>> commonest(tally.size());
     for (std::size_t i = 0; i < tally.size(); ++i) {
         const auto& counts = tally[i];
         const auto most = std::max_element(counts.begin() + 1, counts.end()) - counts.begin();
         const std::int32_t refused = std::accumulate(counts.begin() + 1, counts.end(), 0);
         const std::int32_t others = library.reached[i] != 0 ? counts[0] : 0;
         if (refused > others) {
-            commonest[i] = static_cast<Rejection>(most);
+            commonest[i] = static_cast<CourseFault>(most);
         } else if (counts[0] > 0) {
-            commonest[i] = Rejection::None;
+            commonest[i] = CourseFault::None;
         }
     }
     return commonest;
@@ -56,17 +56,17 @@ std::vector<std::optional<Rejection>> commonest_rejections(const Library& librar
 
 std::string rule_of(const Reason& reason) {
     if (!reason.passed) {
-        return reason.refusal == Refusal::None ? "no candidate was tried here"
-                                               : name_of(reason.refusal);
+        return reason.refusal == CandidateFault::None ? "no candidate was tried here"
+                                                      : name_of(reason.refusal);
     }
-    return reason.rejection == Rejection::None
+    return reason.rejection == CourseFault::None
                ? "a course for it would lay more fibre over covered wall than it gains"
                : name_of(reason.rejection);
 }
 
 // Of how many courses a rejection is the reason.
 std::string so_with(const Reason& reason, int courses) {
-    return reason.rejection == Rejection::None
+    return reason.rejection == CourseFault::None
                ? ""
                : " (so with " + std::to_string(courses) + (courses == 1 ? " course" : " courses") +
                      " that would cover it)";
@@ -79,24 +79,24 @@ constexpr double kWorthAWord = 0.001;
 // Pins are a change of the tooling: nothing is said of them for less wall.
 constexpr double kWorthPins = 0.01;
 
-double worth_a_word(WhatIf::Rule rule) {
-    return rule == WhatIf::Rule::Pins ? kWorthPins : kWorthAWord;
+double worth_a_word(RelaxedRule::Rule rule) {
+    return rule == RelaxedRule::Rule::Pins ? kWorthPins : kWorthAWord;
 }
 
 // Nothing where pins cannot stand, or do already.
-std::optional<CourseRules> loosened(CourseRules rules, WhatIf::Rule rule) {
+std::optional<CourseRules> loosened(CourseRules rules, RelaxedRule::Rule rule) {
     switch (rule) {
-        case WhatIf::Rule::Friction:
+        case RelaxedRule::Rule::Friction:
             rules.tow.friction = rules.tow.friction.share(kLooser);
             rules.turns.rule.friction = rules.turns.rule.friction.share(kLooser);
             break;
-        case WhatIf::Rule::Bridging:
+        case RelaxedRule::Rule::Bridging:
             rules.tow.bridging_tolerance_mm *= kLooser;
             break;
-        case WhatIf::Rule::Extension:
+        case RelaxedRule::Rule::Extension:
             rules.turns.rule.extension_mm *= kLooser;
             break;
-        case WhatIf::Rule::Pins: {
+        case RelaxedRule::Rule::Pins: {
             std::string failure;
             std::vector<PinStand> pins = rules.turns.pins.empty()
                                              ? stand_pins(rules.mandrel.rims, {}, rules.tow,
@@ -115,14 +115,15 @@ std::optional<CourseRules> loosened(CourseRules rules, WhatIf::Rule rule) {
 }  // namespace
 
 std::vector<Uncovered> uncovered_wall(const Surface& surface, const CoverageSamples& samples,
-                                      const Library& library, std::span<const Rejection> rejection,
+                                      const Library& library,
+                                      std::span<const CourseFault> rejection,
                                       std::span<const std::int32_t> layers) {
     const auto commonest = commonest_rejections(library, rejection);
     const auto reason_of = [&](std::size_t sample) {
         const std::int32_t region = surface.region[at(samples.at[sample].face)];
         return commonest[sample]
-                   ? Reason{region, true, *commonest[sample], Refusal::None}
-                   : Reason{region, false, Rejection::None, library.closest_miss[sample]};
+                   ? Reason{region, true, *commonest[sample], CandidateFault::None}
+                   : Reason{region, false, CourseFault::None, library.closest_miss[sample]};
     };
     std::map<Reason, double> area_mm2;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -151,22 +152,24 @@ std::vector<Uncovered> uncovered_wall(const Surface& surface, const CoverageSamp
     return uncovered;
 }
 
-std::vector<WhatIf> ask_what_if(const CourseRules& rules, const CoverageSamples& samples,
-                                const Library& library, std::uint64_t seed) {
+std::vector<RelaxedRule> coverage_if_relaxed(const CourseRules& rules,
+                                             const CoverageSamples& samples, const Library& library,
+                                             std::uint64_t seed) {
     const double now = reached_share(library.reached);
-    std::vector<WhatIf> answers;
-    for (const WhatIf::Rule rule : {WhatIf::Rule::Friction, WhatIf::Rule::Bridging,
-                                    WhatIf::Rule::Extension, WhatIf::Rule::Pins}) {
+    std::vector<RelaxedRule> answers;
+    for (const RelaxedRule::Rule rule : {RelaxedRule::Rule::Friction, RelaxedRule::Rule::Bridging,
+                                         RelaxedRule::Rule::Extension, RelaxedRule::Rule::Pins}) {
         const double worth = worth_a_word(rule);
         const auto then = 1.0 - now > worth ? loosened(rules, rule) : std::nullopt;
         const double reachable =
             then ? reach_with(*then, samples, library.reached, library.judging, seed) : now;
         if (reachable - now > worth) {
-            answers.push_back({rule, rule == WhatIf::Rule::Pins ? 1.0 : kLooser, reachable});
+            answers.push_back({rule, rule == RelaxedRule::Rule::Pins ? 1.0 : kLooser, reachable});
         }
     }
-    std::stable_sort(answers.begin(), answers.end(),
-                     [](const WhatIf& a, const WhatIf& b) { return a.reachable > b.reachable; });
+    std::stable_sort(
+        answers.begin(), answers.end(),
+        [](const RelaxedRule& a, const RelaxedRule& b) { return a.reachable > b.reachable; });
     return answers;
 }
 

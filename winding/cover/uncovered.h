@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "winding/cover/grow.h"
+#include "winding/cover/grow_library.h"
 #include "winding/plan/plan.h"
 
 namespace meshwind {
@@ -17,13 +17,14 @@ namespace meshwind {
 [[nodiscard]] std::vector<Uncovered> uncovered_wall(const Surface& surface,
                                                     const CoverageSamples& samples,
                                                     const Library& library,
-                                                    std::span<const Rejection> rejection,
+                                                    std::span<const CourseFault> rejection,
                                                     std::span<const std::int32_t> layers);
 
 /// What courses would reach if one rule were looser, for all rules that are worth a word, the most
 /// useful first.
-[[nodiscard]] std::vector<WhatIf> ask_what_if(const CourseRules& rules,
-                                              const CoverageSamples& samples,
-                                              const Library& library, std::uint64_t seed);
+[[nodiscard]] std::vector<RelaxedRule> coverage_if_relaxed(const CourseRules& rules,
+                                                           const CoverageSamples& samples,
+                                                           const Library& library,
+                                                           std::uint64_t seed);
 
 }  // namespace meshwind

@@ -31,7 +31,7 @@ constexpr int kShares = 10;
 constexpr int kPlaces = 24;
 
 // More lines than this many times those that the bend needs would make it too thick.
-constexpr double kMostLines = 1.5;
+constexpr double kMaxLines = 1.5;
 
 // A line on a leg, outward from the bend; psi grows outward.
 struct LegLine {
@@ -304,7 +304,7 @@ ElbowCourse course_of(const ElbowTube& tube, const TorusElbow& bend, int count, 
 // With as many lines as the bend needs, or more while the legs have gaps.
 ElbowCourse closing_course(const ElbowTube& tube, const TorusElbow& bend, int needed,
                            double width_mm, double slip) {
-    const int most = static_cast<int>(kMostLines * needed);
+    const int most = static_cast<int>(kMaxLines * needed);
     for (int count = needed;;) {
         ElbowCourse course = course_of(tube, bend, count, width_mm, slip);
         const double widest = course.widest_mm();

@@ -31,7 +31,7 @@ constexpr double kFirstAbove_deg = 1.0;
 constexpr double kLastAngle_deg = 82.0;
 
 // Rims that lean by more than this are no ends of a leg: turns are laid on a coaxial cylinder.
-constexpr double kMostLean_rad = rad_from_deg(1.0);
+constexpr double kMaxLean_rad = rad_from_deg(1.0);
 
 // An elbow on its mandrel, and how fibres turn over its rims.
 struct Elbow {
@@ -74,7 +74,7 @@ std::optional<ElbowTube> elbow_of(const Tube& tube, std::string& why_not) {
     }
     shape.tube_radius_mm = tube.radius.front().radius_mm;
     const double lean = std::max(tube.lean_rad[0], tube.lean_rad[1]);
-    if (lean > kMostLean_rad) {
+    if (lean > kMaxLean_rad) {
         why_not = "a rim leans by " + degrees(lean) + " against the tube's end";
         return std::nullopt;
     }

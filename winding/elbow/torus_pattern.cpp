@@ -177,9 +177,9 @@ int lines_for_tape(const TorusElbow& elbow, double width_mm) {
     const double around_mm = (elbow.ring_radius_mm + elbow.tube_radius_mm) *
                              torus_cycle(elbow).theta_rad * std::sin(elbow.alpha0_rad);
     require(width_mm > 0.0, kRange, "width_mm", width_mm, "above", 0.0);
-    constexpr double kMostLines = 1e6;  // far more than can be wound
-    require(around_mm / width_mm <= kMostLines, kRange, "width_mm", width_mm, "at least",
-            around_mm / kMostLines);
+    constexpr double kMaxLines = 1e6;  // far more than can be wound
+    require(around_mm / width_mm <= kMaxLines, kRange, "width_mm", width_mm, "at least",
+            around_mm / kMaxLines);
     return static_cast<int>(std::ceil(around_mm / width_mm - kSameCount));
 }
 

@@ -13,9 +13,9 @@ namespace meshwind {
 namespace {
 
 // Neighbours are no further apart than this, nor at a greater angle.
-constexpr double kMostBands = 1.5;
-constexpr double kMostAngle_rad = 10.0 * kPi / 180.0;
-const auto kLeastCosine2 = static_cast<float>(std::cos(kMostAngle_rad) * std::cos(kMostAngle_rad));
+constexpr double kMaxBands = 1.5;
+constexpr double kMaxAngle_rad = 10.0 * kPi / 180.0;
+const auto kMinCosine2 = static_cast<float>(std::cos(kMaxAngle_rad) * std::cos(kMaxAngle_rad));
 
 // Of the places looked at on a course so large a share has the other course beside it.
 constexpr double kBesideShare = 0.7;
@@ -35,7 +35,7 @@ constexpr float kFarOff_mm = 1e9F;
 }  // namespace
 
 CourseShape::CourseShape(const SurfacePath& path, double band_mm)
-    : most_mm2_(static_cast<float>(kMostBands * band_mm * kMostBands * band_mm)) {
+    : most_mm2_(static_cast<float>(kMaxBands * band_mm * kMaxBands * band_mm)) {
     for (std::size_t k = 0; k < kPlaces; ++k) {
         const PathPoint& point = path[(2 * k + 1) * path.size() / (2 * kPlaces)];
         place_mm_[k] = point.position_mm.cast<float>();
@@ -85,7 +85,7 @@ bool CourseShape::passes(const Block& block, const Eigen::Vector3f& position_mm,
     const Lanes z = block.position_mm[2] - position_mm.z();
     const Lanes cosine = block.tangent[0] * tangent.x() + block.tangent[1] * tangent.y() +
                          block.tangent[2] * tangent.z();
-    return (x * x + y * y + z * z <= most_mm2_ && cosine * cosine >= kLeastCosine2).any();
+    return (x * x + y * y + z * z <= most_mm2_ && cosine * cosine >= kMinCosine2).any();
 }
 
 bool CourseShape::passes(const Eigen::Vector3f& position_mm, const Eigen::Vector3f& tangent,
@@ -185,7 +185,7 @@ std::vector<std::int32_t> Neighbourhood::families(std::optional<std::size_t> out
                 }
             }
         }
-        if (members.size() >= kLeastFamily) {
+        if (members.size() >= kMinFamily) {
             for (const std::size_t member : members) {
                 family[member] = families;
             }
@@ -206,7 +206,7 @@ int Neighbourhood::without_family(std::optional<std::size_t> out,
 class CourseIndex {
 public:
     CourseIndex(std::span<const SurfacePath* const> courses, double band_mm)
-        : cell_mm_(kCellSlack * kMostBands * band_mm) {
+        : cell_mm_(kCellSlack * kMaxBands * band_mm) {
         shape_.reserve(courses.size());
         for (const SurfacePath* course : courses) {
             shape_.emplace_back(*course, band_mm);
@@ -332,7 +332,7 @@ private:
             const float cosine =
                 tangent.x() * along.x() + tangent.y() * along.y() + tangent.z() * along.z();
             if (x * x + y * y + z * z <= shape_[course].most_mm2_ &&
-                cosine * cosine >= kLeastCosine2) {
+                cosine * cosine >= kMinCosine2) {
                 marks.seen[i] = static_cast<std::int32_t>(course);
                 std::int32_t& count = marks.count[i / kPlaces];
                 if (count++ == 0) {
@@ -368,7 +368,7 @@ std::vector<std::int32_t> families_of(std::span<const SurfacePath* const> course
                 }
             }
         }
-        if (members.size() >= kLeastFamily) {
+        if (members.size() >= kMinFamily) {
             for (const std::size_t member : members) {
                 family[member] = families;
             }

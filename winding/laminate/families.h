@@ -16,7 +16,7 @@
 namespace meshwind {
 
 /// A family has at least so many members.
-inline constexpr std::size_t kLeastFamily = 3;
+inline constexpr std::size_t kMinFamily = 3;
 
 /// A course as its neighbours see it: some places spread over it, and points close together.
 class CourseShape {

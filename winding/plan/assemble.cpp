@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 
 namespace meshwind {
 

@@ -24,7 +24,7 @@ struct Candidate {
 };
 
 /// An admissible course: from end 0 to end 1, each over a rim.
-struct Member {
+struct LibraryCourse {
     Candidate candidate;
     std::array<RimCrossing, 2> end;
     bool windable_forward = false;  ///< from end 0 to end 1
@@ -36,18 +36,18 @@ struct Member {
 };
 
 /// In one direction at least.
-[[nodiscard]] inline bool is_windable(const Member& member) {
+[[nodiscard]] inline bool is_windable(const LibraryCourse& member) {
     return member.windable_forward || member.windable_backward;
 }
 
 /// A candidate as the walk over the facets sees it: a first opinion, many times as fast as judge().
-struct Sketch {
-    Member course;     ///< windable neither way until that is looked into
-    SurfacePath path;  ///< from end 0 to end 1
+struct DraftCourse {
+    LibraryCourse course;  ///< windable neither way until that is looked into
+    SurfacePath path;      ///< from end 0 to end 1
 };
 
 /// A finished course, from end 0 to end 1.
-struct FollowedCourse {
+struct TracedCourse {
     SurfacePath path;
     TautString string;
     SlipMeasure slip;
@@ -55,7 +55,7 @@ struct FollowedCourse {
 
 /// A course in its place, with the way it is wound.
 struct PlacedCourse {
-    Member member;
+    LibraryCourse member;
     SurfacePath path;  ///< from end 0 to end 1
     bool backward = false;
     bool wound = false;  ///< its own program lays it as planned
@@ -66,19 +66,19 @@ struct PlacedCourse {
 };
 
 /// A course with the way it is wound.
-struct LaidCourse {
+struct DirectedCourse {
     std::int32_t member = -1;
     bool backward = false;  ///< from the member's end 1 to its end 0
 
-    auto operator<=>(const LaidCourse&) const = default;
+    auto operator<=>(const DirectedCourse&) const = default;
 };
 
 /// The end of `member` at which a course wound in this direction begins.
-[[nodiscard]] inline const RimCrossing& start_of(const Member& member, bool backward) {
+[[nodiscard]] inline const RimCrossing& start_of(const LibraryCourse& member, bool backward) {
     return member.end[backward ? 1 : 0];
 }
 /// The end of `member` at which a course wound in this direction arrives.
-[[nodiscard]] inline const RimCrossing& end_of(const Member& member, bool backward) {
+[[nodiscard]] inline const RimCrossing& end_of(const LibraryCourse& member, bool backward) {
     return member.end[backward ? 0 : 1];
 }
 
@@ -93,13 +93,13 @@ struct LaidCourse {
 
 /// Departure and arrival of a course wound in this direction.
 using NodePair = std::pair<std::size_t, std::size_t>;
-[[nodiscard]] inline NodePair nodes_of(const Member& member, bool backward) {
+[[nodiscard]] inline NodePair nodes_of(const LibraryCourse& member, bool backward) {
     return {departure_node(start_of(member, backward)), arrival_node(end_of(member, backward))};
 }
 
 /// One course in winding order.
 struct OrderedCourse {
-    LaidCourse course;
+    DirectedCourse course;
     bool cut_after = false;  ///< the fibre ends here; the next course starts a new one
 };
 

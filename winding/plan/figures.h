@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "winding/plan/rejection.h"
+#include "winding/plan/course_fault.h"
 
 namespace meshwind {
 
@@ -38,7 +38,7 @@ struct FibreUse {
 inline constexpr double kCoveredShare = 0.9;
 
 /// Share of a wall in reach that may be thinner than asked for.
-inline constexpr double kMostBelow = 0.01;
+inline constexpr double kMaxBelow = 0.01;
 
 /// Bare wall with the rule that keeps it bare.
 struct Uncovered {
@@ -49,7 +49,7 @@ struct Uncovered {
 };
 
 /// A rule that keeps wall bare, loosened: what courses would reach then.
-struct WhatIf {
+struct RelaxedRule {
     enum class Rule { Friction, Bridging, Extension, Pins } rule = Rule::Friction;
     double factor = 1.0;     ///< on the rule's number; 1 of turns on pins in place of friction
     double reachable = 0.0;  ///< share of the wall
@@ -76,7 +76,7 @@ struct PlanEffort {
     std::uint64_t seed = 0;
     double effort = 0.0;  ///< asked for
     std::int64_t candidates = 0;
-    std::array<std::int64_t, kRefusals> refusals{};
+    std::array<std::int64_t, kCandidateFaults> refusals{};
     std::int64_t proposals = 0;    ///< weighed while the courses were annealed
     std::int64_t taken = 0;        ///< of these
     int courses_out_of_reach = 0;  ///< chosen, but no fibre joins them; left out

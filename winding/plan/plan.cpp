@@ -14,14 +14,14 @@ std::size_t commonest(std::span<const std::int64_t> counts) {
 
 }  // namespace
 
-Rejection commonest_rejection(const PlanEffort& effort) {
-    return static_cast<Rejection>(commonest(effort.rejections));
+CourseFault commonest_rejection(const PlanEffort& effort) {
+    return static_cast<CourseFault>(commonest(effort.rejections));
 }
 
 std::string refused_most(const PlanEffort& effort) {
     const std::size_t most = commonest(effort.refusals);
     return std::to_string(effort.refusals[most]) + " of " + std::to_string(effort.candidates) +
-           " candidates: " + name_of(static_cast<Refusal>(most));
+           " candidates: " + name_of(static_cast<CandidateFault>(most));
 }
 
 std::string rejected_most(const PlanEffort& effort) {
@@ -29,7 +29,7 @@ std::string rejected_most(const PlanEffort& effort) {
     const std::int64_t all =
         std::accumulate(effort.rejections.begin(), effort.rejections.end(), std::int64_t{0});
     return std::to_string(effort.rejections[most]) + " of " + std::to_string(all) + ": " +
-           name_of(static_cast<Rejection>(most));
+           name_of(static_cast<CourseFault>(most));
 }
 
 }  // namespace meshwind

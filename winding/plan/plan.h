@@ -31,7 +31,7 @@ struct Plan {
     std::vector<char> reached;   ///< per place of a stage's ask (stage_ask.h): 1 or 0; or empty
     std::vector<char> joinable;  ///< of that, what the plan's fibres can join; or empty
     std::vector<double> face_layers;   ///< per face of the surface: mean layers
-    std::vector<WhatIf> what_if;       ///< where wall is out of reach, the most useful first
+    std::vector<RelaxedRule> what_if;  ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;     ///< per rim
     std::vector<PinRing> pins{};       ///< that the turns need, at most one ring per rim
     std::vector<std::int32_t> family;  ///< per course in winding order (families.h)
@@ -41,9 +41,9 @@ struct Plan {
     Places places;  ///< of junctions and hoops in the winding order
     PlanDetails details;
     PlanEffort effort;
-    bool goes_on = false;     ///< begins where the fibre of the layer before ends
-    std::string cut_because;  ///< in words why it does not, where there is a layer before
-    std::string failure;      ///< empty, or in words why nothing can be wound
+    bool continues_fibre = false;  ///< begins where the fibre of the layer before ends
+    std::string cut_reason;        ///< in words why it does not, where there is a layer before
+    std::string failure;           ///< empty, or in words why nothing can be wound
 
     /// Null where the plan is of another kind.
     [[nodiscard]] const LaidPattern* pattern() const { return std::get_if<LaidPattern>(&details); }
@@ -51,7 +51,7 @@ struct Plan {
 };
 
 /// The rejection that counts most.
-[[nodiscard]] Rejection commonest_rejection(const PlanEffort& effort);
+[[nodiscard]] CourseFault commonest_rejection(const PlanEffort& effort);
 
 /// In words, "123 of 456 candidates: reaches no rim" and "12 of 34: the head would come too near".
 [[nodiscard]] std::string refused_most(const PlanEffort& effort);

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "winding/plan/course_fault.h"
 #include "winding/plan/piece.h"
 #include "winding/plan/plan.h"
-#include "winding/plan/rejection.h"
 
 namespace meshwind {
 
@@ -35,15 +35,15 @@ public:
 
     /// Whether eye and axes can follow a stretch of fibre: None, or the first reason why not.
     /// Thread-safe.
-    [[nodiscard]] virtual Rejection follow(std::span<const Piece> pieces) const = 0;
+    [[nodiscard]] virtual CourseFault follow(std::span<const Piece> pieces) const = 0;
 
     /// Whether a program of the pieces alone, wound again, lays them as planned. Thread-safe; takes
     /// some hundred times as long as follow().
-    [[nodiscard]] virtual Rejection wind_alone(std::span<const Piece> pieces) const = 0;
+    [[nodiscard]] virtual CourseFault wind_alone(std::span<const Piece> pieces) const = 0;
 
     /// The same of the first circuits of a pattern, looking at every free length as wind_all()
     /// does: seconds.
-    [[nodiscard]] virtual Rejection wind_circuits(std::span<const Piece> pieces) const = 0;
+    [[nodiscard]] virtual CourseFault wind_circuits(std::span<const Piece> pieces) const = 0;
 
     /// Winds all of a plan, each piece in its place. Seconds.
     [[nodiscard]] virtual std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const = 0;

@@ -19,13 +19,13 @@ namespace {
 constexpr double kLongest_mm = 1e5;
 
 // A closed pattern may change the winding angle by so much.
-constexpr double kMostAngle_rad = rad_from_deg(3.0);
+constexpr double kMaxAngle_rad = rad_from_deg(3.0);
 
 constexpr double kSlope_rad = 1e-4;
 
 // Patterns whose bands, at the angle that closes them, leave gaps are looked for again so often. No
 // tow keeps its width to this share: what another angle changes is more.
-constexpr int kMostTries = 6;
+constexpr int kMaxTries = 6;
 constexpr double kNoGap = 1e-3;
 
 // Closure in rad: far below what any axis resolves.
@@ -154,11 +154,11 @@ double circuit_rad(const WallPass& wall, const MeridianPass& laid, const RimTurn
     return turn;
 }
 
-// How much the turn of a circuit changes within kMostAngle_rad, by its slope.
+// How much the turn of a circuit changes within kMaxAngle_rad, by its slope.
 double most_change_rad(const PatternTask& task, const WallPass& wall) {
     const double more = path_at(task, wall.angle_rad + kSlope_rad, wall.slip).turn_rad();
     const double less = path_at(task, wall.angle_rad - kSlope_rad, wall.slip).turn_rad();
-    return std::min(kPi, 2.0 * std::abs(more - less) / (2.0 * kSlope_rad) * kMostAngle_rad);
+    return std::min(kPi, 2.0 * std::abs(more - less) / (2.0 * kSlope_rad) * kMaxAngle_rad);
 }
 
 CircuitToClose circuit_to_close(const PatternTask& task, const WallPass& wall,
@@ -178,7 +178,7 @@ CircuitToClose circuit_to_close(const PatternTask& task, const WallPass& wall,
 FoundPattern pattern_of(const PatternOptions& options, const CircuitToClose& circuit,
                         RimTurns& turns) {
     try {
-        const auto find = [&](const PatternWish& wish) {
+        const auto find = [&](const PatternConstraints& wish) {
             return options.lattice ? find_wished_lattice(circuit, *options.lattice, wish)
                                    : find_wished_pattern(circuit, wish);
         };
@@ -194,13 +194,13 @@ double offset_mm(const PatternOptions& options) {
 }
 
 // The pass whose circuits turn the mandrel by just so much, by another winding angle; none where
-// none within kMostAngle_rad does. Where a polar winding is steered, both turns give way by the
+// none within kMaxAngle_rad does. Where a polar winding is steered, both turns give way by the
 // same length first, and the slip with them.
 std::optional<WallPass> closed_by_angle(const PatternTask& task, const WallPass& asked,
                                         double turn_rad) {
     WallPass wall = asked;
     if (task.options.kind == PatternKind::Polar && asked.slip.above != 0.0) {
-        const double most_mm = kMostAngle_rad * task.widest_radius_mm * std::cos(asked.angle_rad);
+        const double most_mm = kMaxAngle_rad * task.widest_radius_mm * std::cos(asked.angle_rad);
         const auto by_turns = [&](double off_mm) {
             const SteeringFinding steering = between_openings(task, off_mm);
             if (steering.found) {
@@ -219,7 +219,7 @@ std::optional<WallPass> closed_by_angle(const PatternTask& task, const WallPass&
         wall.path = path_at(task, wall.angle_rad, wall.slip);
         return 2.0 * wall.path.turn_rad() - turn_rad;
     };
-    const bool closed = secant_root(by_angle, kSlope_rad, kMostAngle_rad, 1e3 * kClosed_rad);
+    const bool closed = secant_root(by_angle, kSlope_rad, kMaxAngle_rad, 1e3 * kClosed_rad);
     const bool turns =
         wall.path.lower == MeridianStop::Hoop && wall.path.upper == MeridianStop::Hoop;
     if (!closed || !turns) {
@@ -237,7 +237,7 @@ ClosedCircuits best_closed_by_angle(const PatternTask& task, const WallPass& ask
     }
     std::optional<WallPass> wall = closed_by_angle(task, asked, found.pattern->turn_rad);
     if (!wall) {
-        return failed("no winding angle within " + degrees(kMostAngle_rad) + " of " +
+        return failed("no winding angle within " + degrees(kMaxAngle_rad) + " of " +
                       degrees(asked.angle_rad) + " closes a pattern of " +
                       std::to_string(found.pattern->circuits) +
                       " circuits; another angle or tow width would");
@@ -255,7 +255,7 @@ ClosedCircuits closed_without_gaps(const PatternTask& task, const WallPass& aske
                                    CircuitToClose circuit, RimTurns& turns) {
     ClosedCircuits best;
     bool closed = false;
-    for (int tries = 1; !closed && tries <= kMostTries; ++tries) {
+    for (int tries = 1; !closed && tries <= kMaxTries; ++tries) {
         ClosedCircuits found = best_closed_by_angle(task, asked, circuit, turns);
         if (!found.failure.empty()) {
             if (tries == 1) {

@@ -18,7 +18,7 @@ constexpr int kHalvings = 60;
 constexpr double kSame_mm = 1e-9;
 
 // From polar to hoop takes some ten passes on a slender vessel; far more circle for ever.
-constexpr int kMostPasses = 40;
+constexpr int kMaxPasses = 40;
 
 // A pass this long goes round more often than anyone would wind it.
 constexpr double kLongest_mm = 2e4;
@@ -37,8 +37,8 @@ public:
         double arc_mm = request_.from_arc_mm;
         end_ = arc_mm < 0.5 * meridian_.length_mm() ? 0 : 1;
         while (!arrived_at(arc_mm)) {
-            if (way_.passes.size() == kMostPasses) {
-                way_.failure = "after " + std::to_string(kMostPasses) +
+            if (way_.passes.size() == kMaxPasses) {
+                way_.failure = "after " + std::to_string(kMaxPasses) +
                                " passes with all the friction the fibre turns at radius " +
                                fixed(meridian_.at(arc_mm).radius_mm, 1) +
                                " mm, not where it should";
@@ -107,10 +107,10 @@ private:
             std::swap(at_low, at_high);
         }
         if (wanted_mm <= reach_mm(at_low)) {
-            return goes_on(at_low);
+            return continues_fibre(at_low);
         }
         if (wanted_mm >= reach_mm(at_high)) {
-            return goes_on(at_high);
+            return continues_fibre(at_high);
         }
         for (int i = 0; i < kHalvings; ++i) {
             const double middle = 0.5 * (low + high);
@@ -120,11 +120,11 @@ private:
             (beyond ? at_high : at_low) = std::move(half);
         }
         // Both stop at the parallel, but for rounding; the one short of it ends in itself.
-        return goes_on(at_low);
+        return continues_fibre(at_low);
     }
 
     // A pass after which another can follow.
-    [[nodiscard]] std::optional<MeridianPass> goes_on(const MeridianPass& pass) const {
+    [[nodiscard]] std::optional<MeridianPass> continues_fibre(const MeridianPass& pass) const {
         const bool upward = end_ == 0;
         const bool moved = pass.stations.size() > 1 && pass.length_mm() > request_.station_mm;
         const MeridianStop stop = upward ? pass.upper : pass.lower;
@@ -152,7 +152,7 @@ private:
     [[nodiscard]] std::optional<MeridianPass> farthest_pass(double arc_mm) const {
         std::optional<MeridianPass> best;
         for (const double slip : {request_.friction, -request_.friction, 0.0}) {
-            std::optional<MeridianPass> next = goes_on(pass(arc_mm, slip));
+            std::optional<MeridianPass> next = continues_fibre(pass(arc_mm, slip));
             if (next && (!best || reach_mm(*next) > reach_mm(*best))) {
                 best = std::move(next);
             }

@@ -12,7 +12,7 @@ namespace {
 constexpr int kHalvings = 60;
 
 // Stretches in the air have at least so many stations.
-constexpr int kLeastStations = 2;
+constexpr int kMinStations = 2;
 
 // A pass seen on its way out over one end: arc, z, azimuth and s grow towards the rim.
 class WayOut {
@@ -125,8 +125,7 @@ private:
     void go_straight(const MeridianStation& leaves, const MeridianStation& rim) {
         const Tangent t = tangent(leaves);
         const double length = sign_ * (rim.place.z_mm - leaves.place.z_mm) / t.axial;
-        const int steps =
-            std::max(kLeastStations, static_cast<int>(std::ceil(length / station_mm_)));
+        const int steps = std::max(kMinStations, static_cast<int>(std::ceil(length / station_mm_)));
         for (int i = 1; i <= steps; ++i) {
             const double share = static_cast<double>(i) / steps;
             const double along = share * length;
@@ -168,7 +167,7 @@ double rim_kink_rad(const Meridian& meridian, bool upper) {
 
 RimLift lift_over_rim(const Meridian& meridian, bool upper, double station_mm,
                       std::vector<MeridianStation>& stations) {
-    if (rim_kink_rad(meridian, upper) < kLeastRimKink_rad) {
+    if (rim_kink_rad(meridian, upper) < kMinRimKink_rad) {
         return RimLift::OnWall;
     }
     WayOut way(meridian, upper, station_mm, stations);

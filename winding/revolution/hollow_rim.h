@@ -16,7 +16,7 @@ namespace meshwind {
 
 /// Shallower rims count as straight: by as much the meridian of a fine mesh leans, and over them a
 /// turn steered by friction is off by less than 0.01 deg.
-inline constexpr double kLeastRimKink_rad = 1e-3;
+inline constexpr double kMinRimKink_rad = 1e-3;
 
 /// What a fibre does at a rim.
 enum class RimLift {

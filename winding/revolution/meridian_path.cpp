@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/units.h"
-#include "winding/revolution/hollow_edges.h"
+#include "winding/revolution/concave_creases.h"
 
 namespace meshwind {
 namespace {
@@ -174,7 +174,7 @@ private:
     double slip_ratio_;
     double sign_;
     std::vector<double> ends_;  // of the smooth stretches
-    HollowEdges hollow_;
+    ConcaveCreases hollow_;
     std::size_t stretch_ = 0;
     double low_mm_ = 0.0;
     double high_mm_ = 0.0;

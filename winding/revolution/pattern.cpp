@@ -20,9 +20,9 @@ constexpr double kTurn_rad = 2.0 * kPi;
 
 // More circuits than any mandrel has room for (a tank of 9 m around, wound with a band of 1 mm);
 // the search goes over the square of it.
-constexpr std::int64_t kMostCircuits = 10'000;
-constexpr double kMostCircuitTurns = 1e5;
-constexpr std::int64_t kMostUnits = 1'000'000'000'000;
+constexpr std::int64_t kMaxCircuits = 10'000;
+constexpr double kMaxCircuitTurns = 1e5;
+constexpr std::int64_t kMaxUnits = 1'000'000'000'000;
 
 // Overlaps and dwells within one step of these are as good as each other: a percent of the band is
 // less than its width varies, 5 degrees are 4 mm of fibre on a radius of 50 mm.
@@ -151,7 +151,7 @@ void require_band(double band_rad) {
 }
 
 void require_circuit(double turn_rad) {
-    const double most_rad = kTurn_rad * kMostCircuitTurns;
+    const double most_rad = kTurn_rad * kMaxCircuitTurns;
     require(turn_rad <= most_rad, kRange, "circuit_rad", turn_rad, "with all dwell at most",
             most_rad);
 }
@@ -191,11 +191,11 @@ void PatternRequest::validate() const {
     require(least_dwell_rad <= most_dwell_rad, kRange, "least_dwell_rad", least_dwell_rad,
             "at most", most_dwell_rad);
     require(circuits >= 0, kRange, "circuits", static_cast<double>(circuits), "at least", 0.0);
-    require(circuits <= kMostCircuits, kRange, "circuits", static_cast<double>(circuits), "at most",
-            static_cast<double>(kMostCircuits));
+    require(circuits <= kMaxCircuits, kRange, "circuits", static_cast<double>(circuits), "at most",
+            static_cast<double>(kMaxCircuits));
     require(starts >= 0, kRange, "starts", static_cast<double>(starts), "at least", 0.0);
     const double least_rad =
-        layers * kTurn_rad * (1.0 + most_overlap) / static_cast<double>(kMostCircuits);
+        layers * kTurn_rad * (1.0 + most_overlap) / static_cast<double>(kMaxCircuits);
     require(band_rad >= least_rad, "pattern.band_too_narrow", "band_rad", band_rad, "at least",
             least_rad);
 }
@@ -232,8 +232,8 @@ Pattern lattice(double circuit_rad, int circuits, double band_rad) {
     require_circuit(circuit_rad + kTurn_rad);
     require_band(band_rad);
     require(circuits >= 1, kRange, "circuits", circuits, "at least", 1.0);
-    require(circuits <= kMostCircuits, kRange, "circuits", circuits, "at most",
-            static_cast<double>(kMostCircuits));
+    require(circuits <= kMaxCircuits, kRange, "circuits", circuits, "at most",
+            static_cast<double>(kMaxCircuits));
     const double least = (circuit_rad - kSameTurn_rad) * circuits / kTurn_rad;
     auto turns = std::max<std::int64_t>(0, whole(std::ceil(least)));
     while (std::gcd<std::int64_t, std::int64_t>(circuits, turns) != 1) {
@@ -268,9 +268,9 @@ std::vector<std::int64_t> circuits_around(const Pattern& pattern) {
 }
 
 StepClosure closure_in_steps(const Pattern& pattern, const AxisStep& step) {
-    require(step.units_per_turn >= 1 && step.units_per_turn <= kMostUnits, kRange, "units_per_turn",
+    require(step.units_per_turn >= 1 && step.units_per_turn <= kMaxUnits, kRange, "units_per_turn",
             static_cast<double>(step.units_per_turn), "at least 1 and at most",
-            static_cast<double>(kMostUnits));
+            static_cast<double>(kMaxUnits));
     require(step.units_per_step >= 1 && step.units_per_step <= step.units_per_turn, kRange,
             "units_per_step", static_cast<double>(step.units_per_step), "at least 1 and at most",
             static_cast<double>(step.units_per_turn));

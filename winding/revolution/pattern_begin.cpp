@@ -33,7 +33,7 @@ struct BeginTask {
 
 PatternBegin cut(const std::string& because) {
     PatternBegin begin;
-    begin.cut_because = because;
+    begin.cut_reason = because;
     return begin;
 }
 
@@ -55,7 +55,7 @@ ConnectingPasses passes_from(const BeginTask& task, double arc_mm,
 // Of a pass that begins or ends at the rim of an end, over which it is to be turned: straight
 // through the air where the rim is a hollow. False where it cannot be turned so.
 bool lift(const BeginTask& task, std::size_t end, bool upward, std::vector<MeridianStation>& pass) {
-    if (rim_kink_rad(task.meridian, end == 1) < kLeastRimKink_rad) {
+    if (rim_kink_rad(task.meridian, end == 1) < kMinRimKink_rad) {
         return true;
     }
     const auto turned_round = [](std::vector<MeridianStation> stations) {
@@ -92,7 +92,7 @@ double add_passes(const RevolutionPieces& pieces,
 void add_turn_to(const BeginTask& task, std::size_t end, const RimCrossing& from,
                  const MeridianStation& first, PatternBegin& begin) {
     const RimCrossing to = task.pieces.crossing_of(end, first, -first.azimuth_rad);
-    begin.azimuth_rad = kLeastDwell_rad - dwell_rad(*task.pieces.rim_of(end), from, to, task.rule);
+    begin.azimuth_rad = kMinDwell_rad - dwell_rad(*task.pieces.rim_of(end), from, to, task.rule);
     begin.pieces.push_back(task.pieces.turn(
         end, from, task.pieces.crossing_of(end, first, begin.azimuth_rad - first.azimuth_rad)));
 }

@@ -29,7 +29,7 @@ struct PatternBegin {
     double azimuth_rad = 0.0;  ///< about +Z, of the pattern's first station
     /// From the fibre's end to there, in order: passes, and turns where they have a rim.
     std::vector<LaidTurn> pieces;
-    std::string cut_because;  ///< empty, or in words why the fibre cannot be led on
+    std::string cut_reason;  ///< empty, or in words why the fibre cannot be led on
 };
 
 /// Leads the fibre on: over the rim into the pattern, or by steered passes.

@@ -74,9 +74,9 @@ PatternStart lead_on(const PatternTask& task, const std::array<ConnectingGoal, 2
     }
     PatternBegin begin =
         begin_after(*task.options.before, task.body.meridian, task.pieces, goals, first, task.rule);
-    plan.cut_because = begin.cut_because;
-    plan.goes_on = plan.cut_because.empty();
-    if (!plan.goes_on) {
+    plan.cut_reason = begin.cut_reason;
+    plan.continues_fibre = plan.cut_reason.empty();
+    if (!plan.continues_fibre) {
         return {};
     }
     for (LaidTurn& laid : begin.pieces) {
@@ -198,10 +198,10 @@ std::string why_not_wound(const PatternTask& task, const ClosedCircuits& circuit
     std::vector<double> starts = circuit_starts_rad(circuits.pattern, circuits.lattice);
     starts.resize(std::min(kCircuits, starts.size()));
     lay_circuits(task, circuits, start, starts, turns, trial);
-    const Rejection why = task.options.winds(std::span(trial.pieces).subspan(plan.pieces.size()));
-    return why == Rejection::None ? std::string()
-                                  : "a circuit at " + degrees(circuits.wall.angle_rad, 1) +
-                                        " cannot be wound: " + name_of(why);
+    const CourseFault why = task.options.winds(std::span(trial.pieces).subspan(plan.pieces.size()));
+    return why == CourseFault::None ? std::string()
+                                    : "a circuit at " + degrees(circuits.wall.angle_rad, 1) +
+                                          " cannot be wound: " + name_of(why);
 }
 
 // From where the fibre ends, turned on over its last rim, to where its pattern began.

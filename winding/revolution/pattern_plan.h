@@ -11,13 +11,13 @@
 #include "core/units.h"
 #include "mesh/mandrel.h"
 #include "mesh/revolution/revolution.h"
+#include "winding/plan/course_fault.h"
 #include "winding/plan/piece.h"
 #include "winding/plan/plan.h"
-#include "winding/plan/rejection.h"
 #include "winding/plan/tow.h"
 #include "winding/revolution/meridian_path.h"
 #include "winding/revolution/pattern_begin.h"
-#include "winding/revolution/pattern_wish.h"
+#include "winding/revolution/pattern_constraints.h"
 #include "winding/revolution/rim_turns.h"
 #include "winding/turn/turn.h"
 
@@ -30,20 +30,20 @@ struct PatternOptions {
     double angle_rad = rad_from_deg(45.0);  ///< helical: at the widest place
     double layers = 1.0;  ///< covers; each lays a ply of either hand, of hoops one
     Tow tow{};
-    TurnRule turn{};                       ///< friction and band are taken from `tow`
-    PatternWish wish{};                    ///< helical, polar
-    RimTurnsMaker turns = friction_turns;  ///< helical, polar: how it turns over rims
-    std::optional<LatticeWish> lattice{};  ///< helical: ribs instead of a closed wall
+    TurnRule turn{};                              ///< friction and band are taken from `tow`
+    PatternConstraints wish{};                    ///< helical, polar
+    RimTurnsMaker turns = friction_turns;         ///< helical, polar: how it turns over rims
+    std::optional<LatticeConstraints> lattice{};  ///< helical: ribs instead of a closed wall
     /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
     /// place.
     std::optional<std::array<double, 2>> hoop_z_mm{};
     /// To go on with its fibre, by connecting passes (connecting_passes.h) or a turn; where that
-    /// cannot be, Plan::cut_because says why and the pattern begins anew.
+    /// cannot be, Plan::cut_reason says why and the pattern begins anew.
     std::optional<FibreEnd> before{};
     double least_covered = 0.0;  ///< helical, polar: of the wall; what cannot cover it is not laid
     /// Helical, polar: whether the machine winds the first circuits, of which the others are turned
     /// copies. A plan whose circuits it refuses fails, and is not measured. None: not asked.
-    std::function<Rejection(std::span<const Piece> circuits)> winds{};
+    std::function<CourseFault(std::span<const Piece> circuits)> winds{};
     RunContext context{};  ///< its seed is that of the samples that coverage is measured on
 };
 

@@ -18,7 +18,7 @@ constexpr double kRounding = 1e-7;
 
 }  // namespace
 
-PinnedEnds::PinnedEnds(const PinWish& wish, const Tow& tow, double extension_mm)
+PinnedEnds::PinnedEnds(const PinConstraints& wish, const Tow& tow, double extension_mm)
     : wish_(wish),
       tow_width_mm_(tow.width_mm),
       strand_mm_(strand_radius_mm(tow.width_mm, tow.thickness_mm)),
@@ -74,8 +74,8 @@ std::string PinnedEnds::fit(std::int64_t circuits) {
     return {};
 }
 
-FoundPattern PinnedEnds::find(const PatternWish& wish, const Find& find) {
-    PatternWish with_pins = wish;
+FoundPattern PinnedEnds::find(const PatternConstraints& wish, const Find& find) {
+    PatternConstraints with_pins = wish;
     FoundPattern found = find(with_pins);
     for (int round = 0; round < kRounds && found.pattern; ++round) {
         if (const std::string why = fit(found.pattern->circuits); !why.empty()) {
@@ -138,7 +138,8 @@ LaidTurn PinnedEnds::turn(std::size_t end, const RimCrossing& from, const RimCro
     return turn_on_pins(rim, from, shape, tow_width_mm_);
 }
 
-std::unique_ptr<RimTurns> pin_turns(const PinWish& wish, const Tow& tow, double extension_mm) {
+std::unique_ptr<RimTurns> pin_turns(const PinConstraints& wish, const Tow& tow,
+                                    double extension_mm) {
     return std::make_unique<PinnedEnds>(wish, tow, extension_mm);
 }
 

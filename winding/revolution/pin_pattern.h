@@ -22,7 +22,7 @@ namespace meshwind {
 class PinnedEnds final : public RimTurns {
 public:
     /// \param tow of whose width and thickness its strand follows
-    PinnedEnds(const PinWish& wish, const Tow& tow, double extension_mm);
+    PinnedEnds(const PinConstraints& wish, const Tow& tow, double extension_mm);
 
     [[nodiscard]] bool lifts_over_hollow_rims() const override { return false; }
 
@@ -35,7 +35,7 @@ public:
     [[nodiscard]] double least_dwell_rad() const override { return 0.0; }
 
     /// The pattern whose turns run behind enough pins for these to take hold one by one.
-    [[nodiscard]] FoundPattern find(const PatternWish& wish, const Find& find) override;
+    [[nodiscard]] FoundPattern find(const PatternConstraints& wish, const Find& find) override;
 
     /// Sets pins and distances.
     [[nodiscard]] std::string place(const Pattern& pattern, std::int64_t series) override;
@@ -55,7 +55,7 @@ private:
     [[nodiscard]] std::string fit(std::int64_t circuits);
     [[nodiscard]] double share() const { return end_[0] && end_[1] ? 0.5 : 1.0; }
 
-    PinWish wish_;
+    PinConstraints wish_;
     double tow_width_mm_;
     double strand_mm_;
     double extension_mm_;
@@ -66,7 +66,7 @@ private:
 };
 
 /// For a planner.
-[[nodiscard]] std::unique_ptr<RimTurns> pin_turns(const PinWish& wish, const Tow& tow,
+[[nodiscard]] std::unique_ptr<RimTurns> pin_turns(const PinConstraints& wish, const Tow& tow,
                                                   double extension_mm);
 
 }  // namespace meshwind

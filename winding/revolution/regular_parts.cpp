@@ -16,7 +16,7 @@ constexpr double kMarginTows = 2.0;
 constexpr double kSteep_rad = rad_from_deg(45.0);
 
 // Nearer to hoop layers have no number; two tow widths off a turn they are flatter.
-constexpr double kLeastCosine = 1e-3;
+constexpr double kMinCosine = 1e-3;
 
 // Rings of the wall whose areas are summed up.
 constexpr int kRings = 2000;
@@ -76,7 +76,7 @@ void regular_parts(const BodyOfRevolution& body, const MeridianPass& pass,
         const double arc = foot_of(meridian, position).arc_mm;
         const double radius = meridian.at(arc).radius_mm;
         const double sine = std::min(1.0, turning.at(arc) / radius);
-        return 1.0 / (radius * std::max(kLeastCosine, std::sqrt(1.0 - sine * sine)));
+        return 1.0 / (radius * std::max(kMinCosine, std::sqrt(1.0 - sine * sine)));
     };
 }
 

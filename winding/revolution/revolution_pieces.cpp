@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/units.h"
-#include "winding/cover/lay_out.h"
+#include "winding/cover/lay_out_plan.h"
 #include "winding/revolution/aim_pass.h"
 #include "winding/turn/laid_turn.h"
 

@@ -37,7 +37,7 @@ public:
         return positive_angle(-dwell_rad(end_[end]->rim, crossing, back, rule_));
     }
 
-    double least_dwell_rad() const override { return kLeastDwell_rad; }
+    double least_dwell_rad() const override { return kMinDwell_rad; }
 
     LaidTurn turn(std::size_t end, const RimCrossing& from, const RimCrossing& to) override {
         return turn_over(end_[end]->rim, from, to, rule_);
@@ -78,7 +78,7 @@ std::string RimTurns::why_no_ends(double /*angle_rad*/) const {
     return {};
 }
 
-FoundPattern RimTurns::find(const PatternWish& wish, const Find& find) {
+FoundPattern RimTurns::find(const PatternConstraints& wish, const Find& find) {
     return find(wish);
 }
 

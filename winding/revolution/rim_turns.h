@@ -12,7 +12,7 @@
 #include "winding/plan/assemble.h"
 #include "winding/plan/tow.h"
 #include "winding/plan/turns.h"
-#include "winding/revolution/pattern_wish.h"
+#include "winding/revolution/pattern_constraints.h"
 
 namespace meshwind {
 
@@ -49,10 +49,10 @@ public:
     /// What a turn dwells at least, whatever the pattern has.
     [[nodiscard]] virtual double least_dwell_rad() const = 0;
 
-    using Find = std::function<FoundPattern(const PatternWish&)>;
+    using Find = std::function<FoundPattern(const PatternConstraints&)>;
     /// The pattern that these turns can close.
     /// \param find the best one for a wish, whose least and most dwell are at each end
-    [[nodiscard]] virtual FoundPattern find(const PatternWish& wish, const Find& find);
+    [[nodiscard]] virtual FoundPattern find(const PatternConstraints& wish, const Find& find);
 
     /// Fits the turns to the pattern that was found. \param series of a lattice, else 1
     /// \return empty, or in words why they cannot be

@@ -6,7 +6,7 @@
 
 #include <boost/math/tools/roots.hpp>
 
-#include "winding/revolution/hollow_edges.h"
+#include "winding/revolution/concave_creases.h"
 
 namespace meshwind {
 namespace {
@@ -19,7 +19,7 @@ constexpr int kHalvings = 60;
 
 // A step of the meridian between two places is at least this share of a longer one: what is left
 // of a step by rounding is none.
-constexpr double kLeastStep_mm = 1e-12;
+constexpr double kMinStep_mm = 1e-12;
 
 // Radii of turns are met within this, by the pass: below what any axis resolves.
 constexpr double kSameTurn_mm = 1e-6;
@@ -34,7 +34,7 @@ constexpr std::uintmax_t kRootSteps = 100;
 // A path between two nodes of the meridian.
 class Stretch {
 public:
-    Stretch(const Meridian& meridian, const HollowEdges& hollow, double from_mm, double to_mm,
+    Stretch(const Meridian& meridian, const ConcaveCreases& hollow, double from_mm, double to_mm,
             double slip_ratio)
         : meridian_(meridian),
           hollow_(hollow),
@@ -76,7 +76,7 @@ private:
     }
 
     const Meridian& meridian_;
-    const HollowEdges& hollow_;
+    const ConcaveCreases& hollow_;
     double from_mm_;
     double to_mm_;
     double slip_ratio_;
@@ -92,7 +92,7 @@ bool follow(const Stretch& stretch, double to_mm, SteeredEnd& at) {
     for (int i = 0; i < steps; ++i) {
         const double arc = i + 1 == steps ? to_mm : from + sign * h * (i + 1);
         const double step = arc - at.arc_mm;
-        if (std::abs(step) < kLeastStep_mm) {
+        if (std::abs(step) < kMinStep_mm) {
             continue;
         }
         const double c = stretch.stepped(at.arc_mm, at.turning_mm, step);
@@ -213,7 +213,7 @@ SteeredEnd steer_from(const Meridian& meridian, double arc_mm, double turning_mm
     if (arc_mm == to_arc_mm) {
         return at;
     }
-    const HollowEdges hollow(meridian);
+    const ConcaveCreases hollow(meridian);
     for (const double to_mm : ways(meridian, arc_mm, to_arc_mm)) {
         if (follow(Stretch(meridian, hollow, at.arc_mm, to_mm, slip_ratio), to_mm, at)) {
             break;

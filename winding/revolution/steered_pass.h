@@ -1,4 +1,4 @@
-/// Passes over a body of revolution that a constant slip ratio leads from one turn to the other.
+/// Paths of constant slip ratio over a body of revolution, between two turning parallels.
 #pragma once
 
 #include <optional>
@@ -24,9 +24,9 @@ struct SteeredEnd {
 /// from the laws of meridian_path.h: with slip > 0 it falls with growing arc. On a cylinder that is
 /// d(1 / sin a)/dz = slip / R, on a cone r = r0 - t z d(1 / c)/d(1 / r) = slip / t: the sine's
 /// inverse is linear in r there. At creases c does not change, nor near bridges over hollow ones
-/// (hollow_edges.h). Fourth order in steps of 0.25 mm, which end at the meridian's nodes; the turn
-/// is found to rounding. \param arc_mm where the path is, with c = turning_mm <= r; at c = r it
-/// leaves from a turn \param to_arc_mm up to where it is followed, upward or downward
+/// (concave_creases.h). Fourth order in steps of 0.25 mm, which end at the meridian's nodes; the
+/// turn is found to rounding. \param arc_mm where the path is, with c = turning_mm <= r; at c = r
+/// it leaves from a turn \param to_arc_mm up to where it is followed, upward or downward
 [[nodiscard]] SteeredEnd steer_from(const Meridian& meridian, double arc_mm, double turning_mm,
                                     double slip_ratio, double to_arc_mm);
 

@@ -23,7 +23,7 @@ constexpr int kFewestPins = 3;
 // The widest angle to the axis at which fibre passes between pins is looked for in these steps.
 constexpr double kAngleStep_rad = kPi / 180.0;
 constexpr double kWidest_rad = 80.0 * kAngleStep_rad;
-constexpr double kLeastWidest_rad = 30.0 * kAngleStep_rad;  // under it hardly a course ends
+constexpr double kMinWidest_rad = 30.0 * kAngleStep_rad;  // under it hardly a course ends
 
 // Courses end at pins but for some thousandths of a mm. So that pins take hold of all of them, they
 // end by this farther on, around the rim, than where the fibre would only touch a pin.
@@ -102,7 +102,7 @@ std::array<Piece, 2> halves(const Rim& rim, const RimCrossing& from, const PinSt
 }
 
 // The widest fibre that passes between so many pins, and what pins that let it pass are like.
-PinStand stand_of(int count, const Rim& rim, const PinWish& wish, const Tow& tow,
+PinStand stand_of(int count, const Rim& rim, const PinConstraints& wish, const Tow& tow,
                   std::string& failure) {
     PinStand stand;
     PinTurnShape& shape = stand.shape;
@@ -113,7 +113,7 @@ PinStand stand_of(int count, const Rim& rim, const PinWish& wish, const Tow& tow
     shape.offset_mm = wish.offset_mm > 0.0 ? wish.offset_mm : tow.width_mm + wish.diameter_mm;
     shape.pitch_mm = 2.0 * kPi * rim.radius_mm / count;
     PinFit fit;
-    for (double angle = kWidest_rad; angle >= kLeastWidest_rad; angle -= kAngleStep_rad) {
+    for (double angle = kWidest_rad; angle >= kMinWidest_rad; angle -= kAngleStep_rad) {
         shape.angle_rad = angle;
         shape.back_rad = 0.0;  // the fibre that bends most when it leaves
         fit = fit_pins(shape, strand_mm, wish.height_mm);
@@ -137,7 +137,8 @@ PinStand stand_of(int count, const Rim& rim, const PinWish& wish, const Tow& tow
 
 // As many pins as are wanted; else the most between which enough passes, or those that let pass
 // most.
-PinStand choose_stand(const Rim& rim, const PinWish& wish, const Tow& tow, std::string& failure) {
+PinStand choose_stand(const Rim& rim, const PinConstraints& wish, const Tow& tow,
+                      std::string& failure) {
     if (wish.count > 0) {
         return stand_of(wish.count, rim, wish, tow, failure);
     }
@@ -162,8 +163,8 @@ PinStand choose_stand(const Rim& rim, const PinWish& wish, const Tow& tow, std::
 
 }  // namespace
 
-std::vector<PinStand> stand_pins(std::span<const Rim> rims, const PinWish& wish, const Tow& tow,
-                                 double extension_mm, std::string& failure) {
+std::vector<PinStand> stand_pins(std::span<const Rim> rims, const PinConstraints& wish,
+                                 const Tow& tow, double extension_mm, std::string& failure) {
     std::vector<PinStand> stands;
     for (const Rim& rim : rims) {
         stands.push_back(choose_stand(rim, wish, tow, failure));

@@ -31,9 +31,9 @@ struct CourseTurns {
 /// Rings that leave the free fibre most room, one for each rim.
 /// \return none, with the reason in `failure`, where pins cannot take hold of fibre at a rim or
 /// need more extension
-[[nodiscard]] std::vector<PinStand> stand_pins(std::span<const Rim> rims, const PinWish& wish,
-                                               const Tow& tow, double extension_mm,
-                                               std::string& failure);
+[[nodiscard]] std::vector<PinStand> stand_pins(std::span<const Rim> rims,
+                                               const PinConstraints& wish, const Tow& tow,
+                                               double extension_mm, std::string& failure);
 
 [[nodiscard]] bool can_turn(const Rim& rim, const RimCrossing& crossing, const CourseTurns& turns);
 

@@ -24,10 +24,10 @@ constexpr double kPassing_mm = 0.5;
 constexpr double kSwingShare = 0.3;
 
 // The landing point is at least so far behind the last pin when the eye swings.
-constexpr double kLeastLead_mm = 1.5;
+constexpr double kMinLead_mm = 1.5;
 
 // Largest angle around the extension of the lead: further on the fibre stands up too steeply.
-constexpr double kMostLead_rad = 1.0;
+constexpr double kMaxLead_rad = 1.0;
 
 // Heights that are tried where none is given.
 constexpr double kLowest_mm = 1.5;
@@ -125,8 +125,8 @@ double entry_room_mm(const PinTurnShape& shape, double height_mm) {
 
 // The lead at which both rooms are alike, or the least.
 double even_lead_mm(PinTurnShape shape, double strand_mm, double height_mm) {
-    double low = kLeastLead_mm;
-    double high = kMostLead_rad * shape.radius_mm;
+    double low = kMinLead_mm;
+    double high = kMaxLead_rad * shape.radius_mm;
     for (int i = 0; i < kHalvings; ++i) {
         shape.lead_mm = 0.5 * (low + high);
         const Room room = room_of(shape, strand_mm, height_mm);
@@ -404,11 +404,11 @@ PinFit fit_pins(const PinTurnShape& shape, double strand_mm, std::optional<doubl
             best = fit;
         }
     }
-    if (best.room_mm < kLeastPinRoom_mm) {
+    if (best.room_mm < kMinPinRoom_mm) {
         best.failure = "pins of " + fixed(shape.diameter_mm, 2) + " x " + fixed(best.height_mm, 2) +
                        " mm, " + fixed(shape.pitch_mm, 2) + " mm apart, leave the free fibre " +
                        fixed(best.room_mm, 2) + " mm to take one and pass the next where " +
-                       fixed(kLeastPinRoom_mm, 2) +
+                       fixed(kMinPinRoom_mm, 2) +
                        " mm are needed; thinner pins or fewer circuits leave more";
     }
     return best;

@@ -30,7 +30,7 @@
 namespace meshwind {
 
 /// What may be asked of the pins; 0 and none: chosen.
-struct PinWish {
+struct PinConstraints {
     int count = 0;  ///< >= 0: of a ring, a multiple of the circuits
     double diameter_mm = 2.0;
     std::optional<double> height_mm{};
@@ -75,7 +75,7 @@ struct PinFit {
 };
 
 /// Beyond this room a pin is sure to take hold, and no other.
-inline constexpr double kLeastPinRoom_mm = 0.2;
+inline constexpr double kMinPinRoom_mm = 0.2;
 
 /// The lead that leaves most room, and the height, where it is not given.
 /// \param shape radius, angle, held, pitch, diameter are read

@@ -23,7 +23,7 @@ constexpr double kMaxTurnAngle_rad = 84.0 * kPi / 180.0;
 constexpr double kLongestExtension_mm = 1e5;
 
 // Stretches in the air are drawn by at least so many steps.
-constexpr int kLeastAirSteps = 2;
+constexpr int kMinAirSteps = 2;
 
 double usable_run_mm(const TurnRule& rule) {
     return rule.extension_mm - 0.5 * rule.band_mm;
@@ -99,7 +99,7 @@ public:
         const double sine = std::sin(at.angle_rad);
         const double cosine = std::cos(at.angle_rad);
         const double length = rim_.radius_mm * std::tan(at.ahead_rad) / sine;
-        const int steps = std::max(kLeastAirSteps, static_cast<int>(std::ceil(length / step_mm_)));
+        const int steps = std::max(kMinAirSteps, static_cast<int>(std::ceil(length / step_mm_)));
         const double s0 = s_mm_;
         for (int i = back ? 1 : 0; i <= steps; ++i) {
             const double to_touch = length * (back ? i : steps - i) / steps;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "geodesic/surface_path.h"
 #include "mesh/mandrel.h"
 #include "winding/plan/friction.h"
@@ -16,7 +16,7 @@ namespace meshwind {
 
 /// A dwell is found as an angle of up to 2 pi; so much of it keeps rounding from making no dwell a
 /// whole turn.
-inline constexpr double kLeastDwell_rad = 1e-9;
+inline constexpr double kMinDwell_rad = 1e-9;
 
 struct TurnRule {
     Friction friction = 0.2;      ///< under the fibre on the extension

@@ -17,11 +17,11 @@ constexpr double kLeast_mm = 1e-3;
 constexpr double kMost_mm = 1e6;
 
 // Narrower openings are points beside the radius; their domes cannot be told from that of a pole.
-constexpr double kLeastOpening = 1e-4;
+constexpr double kMinOpening = 1e-4;
 
 // Pressures, strengths, stiffnesses and densities of anything that is wound, with room.
-constexpr double kLeastProperty = 1e-6;
-constexpr double kMostProperty = 1e9;
+constexpr double kMinProperty = 1e-6;
+constexpr double kMaxProperty = 1e9;
 
 // A count that comes out a whole number but for rounding is that number.
 constexpr double kWhole = 1e-9;
@@ -56,7 +56,7 @@ void require_length(const char* name, double value_mm) {
 }
 
 void require_property(const char* name, double value) {
-    require_between(name, value, kLeastProperty, kMostProperty);
+    require_between(name, value, kMinProperty, kMaxProperty);
 }
 
 void check_demand(const VesselDesign& design) {
@@ -152,13 +152,13 @@ IsotensoidDesign VesselDesign::dome() const {
 
 void VesselDesign::validate() const {
     require_length("radius", radius_mm);
-    require_between("opening", opening_radius_mm, kLeastOpening * radius_mm, kMost_mm);
+    require_between("opening", opening_radius_mm, kMinOpening * radius_mm, kMost_mm);
     require_length("length", cylinder_length_mm);
     require_length("band", band_mm);
     require_length("thickness", ply_mm);
     require_property("density", density_kg_m3);
     if (design_radius_mm != 0.0) {
-        require_between("design-radius", design_radius_mm, kLeastOpening * radius_mm, kMost_mm);
+        require_between("design-radius", design_radius_mm, kMinOpening * radius_mm, kMost_mm);
     }
     check_demand(*this);
     if (opening_radius_mm >= radius_mm) {

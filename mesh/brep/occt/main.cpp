@@ -24,10 +24,10 @@ namespace meshwind {
 namespace {
 
 // Enough for a part of 10,000 faces; a damaged file that asks for more is refused, not swapped for.
-constexpr rlim_t kMostMemory = rlim_t{6} << 30;
+constexpr rlim_t kMaxMemory = rlim_t{6} << 30;
 
 // Points that faces share may be so much off them: a fifth of a thin ply.
-constexpr double kMostOffFace_mm = 0.05;
+constexpr double kMaxOffFace_mm = 0.05;
 
 CadMesh mesh_of(const std::string& file, const std::string& solid, double edge_mm) {
     const OcctPart part = read_occt(file, solid);
@@ -42,11 +42,11 @@ CadMesh mesh_of(const std::string& file, const std::string& solid, double edge_m
                                   : " cannot be meshed") +
                              "; let the CAD program repair the part, or export it as .stl");
     }
-    if (first.off_face_mm > kMostOffFace_mm) {
+    if (first.off_face_mm > kMaxOffFace_mm) {
         throw InputError("mesh.cad_tolerance", file,
                          "an edge of face " + std::to_string(first.off_face + 1) + " is " +
                              fixed(first.off_face_mm, 2) + " mm off it, more than " +
-                             fixed(kMostOffFace_mm, 2) +
+                             fixed(kMaxOffFace_mm, 2) +
                              " mm; let the CAD program repair the part, or export it as .stl");
     }
     CadMesh mesh = even_part(first.soup, first.face, faces, edge_mm);
@@ -105,7 +105,7 @@ int main(int count, char** arguments) {
         std::cerr << "usage: meshwind-cad FILE SOLID EDGE_MM; meshwind starts it for CAD files\n";
         return 2;
     }
-    const rlimit memory{meshwind::kMostMemory, meshwind::kMostMemory};
+    const rlimit memory{meshwind::kMaxMemory, meshwind::kMaxMemory};
     setrlimit(RLIMIT_AS, &memory);
     // The kernel has words for standard output, whatever its printers are told.
     const int output = dup(STDOUT_FILENO);

@@ -34,7 +34,7 @@ using Eigen::Vector3d;
 
 // Newton's way to the nearest point ends when it moves by less, mm, or has made so many steps.
 constexpr double kFound_mm = 1e-10;
-constexpr int kMostSteps = 30;
+constexpr int kMaxSteps = 30;
 
 // Edges are looked along at so many places for the nearest point.
 constexpr int kEdgePlaces = 64;
@@ -119,7 +119,7 @@ struct OcctFaces::Face {
             return {};
         }
         Vector2d place = uv[static_cast<std::size_t>(known.nearest(p))];
-        for (int step = 0; step < kMostSteps; ++step) {
+        for (int step = 0; step < kMaxSteps; ++step) {
             const SurfacePlace s = evaluate(surface, place);
             const Vector3d off = s.at - p;
             Eigen::Matrix2d metric;
@@ -189,7 +189,7 @@ struct OcctFaces::Edge {
         }
         double place = t[best];
         Vector3d at = at_mm[best];
-        for (int step = 0; step < kMostSteps; ++step) {
+        for (int step = 0; step < kMaxSteps; ++step) {
             gp_Pnt point;
             gp_Vec first;
             gp_Vec second;

@@ -30,15 +30,15 @@ std::array<std::string, 2> refusal_of(const std::string& name, const std::string
     return {"none", ""};
 }
 
-struct Refusal {
+struct CandidateFault {
     const char* name;
     std::string bytes;
     const char* code;
     std::string place;
 };
 
-void expect_refusals(const std::vector<Refusal>& refusals) {
-    for (const Refusal& wanted : refusals) {
+void expect_refusals(const std::vector<CandidateFault>& refusals) {
+    for (const CandidateFault& wanted : refusals) {
         const auto [code, place] = refusal_of(wanted.name, wanted.bytes);
         EXPECT_EQ(code, wanted.code) << wanted.bytes.substr(0, 200);
         EXPECT_EQ(place, wanted.place) << wanted.bytes.substr(0, 200);

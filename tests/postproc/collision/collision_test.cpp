@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 const std::string kSource = MESHWIND_SOURCE_DIR;
 
-// Joints by letter; what is missing is zero.
+// RimJoints by letter; what is missing is zero.
 struct Pose {
     double c = 0.0, z = 0.0, y = 0.0, x = 0.0, a = 0.0, b = 0.0;
 };
@@ -161,7 +161,7 @@ TEST(CheckCollisions, TheLeastAloneIsTheLeastOfAll) {
         }
         scene.add_capsule('X', Vector3d::Zero(), {60.0, 0.0, 0.0}, 6.0);
         scene.add_capsule('B', {8.0, 0.0, 0.0}, {130.0, 0.0, 0.0}, 4.0);
-        scene.rule.told_mm = 25.0;
+        scene.rule.report_within_mm = 25.0;
         const CollisionReport all = scene.check(sphere);
         EXPECT_EQ(all.head_hits.empty(), nearest_mm > 50.0);
         scene.rule.least_only = true;

@@ -272,7 +272,7 @@ TEST(LandingPath, RefusesWhatIsNoPathOnThisWall) {
     }
     const std::string sparse = error_of(hoop, "import.sparse");
     EXPECT_EQ(sparse.find("points.csv:3: "), 0U) << sparse;
-    EXPECT_TRUE(test::tells(sparse, "45.8 deg")) << sparse;        // kMostLandingTurn_rad
+    EXPECT_TRUE(test::tells(sparse, "45.8 deg")) << sparse;        // kMaxLandingTurn_rad
     error_of(course_at({0.0, 10.0, 5.0, 20.0}), "import.sparse");  // out of order
     error_of(course_at({5.0, 5.0, 5.0}), "import.empty");
     LandingCourse turned = course_at({0.0, 5.0, 10.0});

@@ -12,7 +12,7 @@
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "geodesic/bridge.h"
-#include "geodesic/measure.h"
+#include "geodesic/slip_and_bridging.h"
 #include "mesh/shapes/make.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/exact_winding.h"
@@ -71,7 +71,7 @@ LaidPath lay(const Surface& surface, const EyePath& path,
              RedundancyPolicy policy = RedundancyPolicy::CentralAngle,
              const LaydownOptions& options = {}, double bridge_reach_mm = kBridgeReach_mm) {
     const Machine machine = test::fine_machine();
-    return lay_down(LaydownWall(surface, bridge_reach_mm), machine,
+    return lay_down(LaydownSurface(surface, bridge_reach_mm), machine,
                     test::program(machine, path, policy), path.front().landing_mm, options);
 }
 
@@ -171,7 +171,7 @@ TEST(LayDown, SamplesFollowTheBlocksInTime) {
     const BlockList list =
         test::program(machine, test::eye_path(curve, kFree_mm), RedundancyPolicy::CentralAngle);
     const LaidPath laid =
-        lay_down(LaydownWall(cylinder()), machine, list, curve.states[0].position_mm);
+        lay_down(LaydownSurface(cylinder()), machine, list, curve.states[0].position_mm);
     expect_sound(laid, list);
     EXPECT_NEAR(laid.time_s.back(), list.duration_s(), 1e-9);
     for (const EyePoint& sample : laid.samples) {
@@ -383,7 +383,7 @@ TEST(LayDown, SaysWhereTheFibreRunsOverTheEnd) {
     const BlockList list =
         test::program(machine, test::eye_path(curve, kFree_mm), RedundancyPolicy::CentralAngle);
     const LaidPath laid =
-        lay_down(LaydownWall(cylinder()), machine, list, curve.states[0].position_mm);
+        lay_down(LaydownSurface(cylinder()), machine, list, curve.states[0].position_mm);
     expect_sound(laid, list);
     EXPECT_EQ(laid.failure.substr(0, laid.failure.size() - 1),
               "the fibre runs over the end of the extension of rim ");
@@ -415,7 +415,7 @@ TEST(LayDown, SaysThatTheEyeIsInTheMandrel) {
     const Vector3d tie_on(50.0, 0.0, 0.0);
     const auto failure = [&](const std::vector<Vector3d>& eyes) {
         const BlockList list = eye_list(machine, eyes);
-        const LaidPath laid = lay_down(LaydownWall(cylinder()), machine, list, tie_on);
+        const LaidPath laid = lay_down(LaydownSurface(cylinder()), machine, list, tie_on);
         expect_sound(laid, list);
         return laid.failure;
     };
@@ -429,7 +429,7 @@ TEST(LayDown, RefusesATieOnOffTheMandrel) {
     const BlockList list = eye_list(machine, {{50.0, 100.0, 20.0}, {40.0, 100.0, 20.0}});
     for (const Vector3d& tie_on : {Vector3d(70.0, 0.0, 0.0), Vector3d(50.0, 0.0, 230.0)}) {
         try {
-            (void)lay_down(LaydownWall(cylinder()), machine, list, tie_on);
+            (void)lay_down(LaydownSurface(cylinder()), machine, list, tie_on);
             FAIL();
         } catch (const InputError& error) {
             EXPECT_EQ(error.code(), "verify.tie_on");
@@ -439,7 +439,7 @@ TEST(LayDown, RefusesATieOnOffTheMandrel) {
             }
         }
     }
-    EXPECT_THROW((void)lay_down(LaydownWall(Surface{}), machine, list, {50.0, 0.0, 0.0}),
+    EXPECT_THROW((void)lay_down(LaydownSurface(Surface{}), machine, list, {50.0, 0.0, 0.0}),
                  InputError);
 }
 
@@ -462,9 +462,9 @@ TEST(LayDown, EndsForAnyMotion) {
                 list.nano.push_back(std::llround(place[a] * 1e3) * list.axes[a].resolution_nano);
             }
         }
-        const LaidPath laid = lay_down(LaydownWall(surface), machine, list, tie_on);
+        const LaidPath laid = lay_down(LaydownSurface(surface), machine, list, tie_on);
         expect_sound(laid, list);
-        const LaidPath again = lay_down(LaydownWall(surface), machine, list, tie_on);
+        const LaidPath again = lay_down(LaydownSurface(surface), machine, list, tie_on);
         ASSERT_EQ(laid.failure, again.failure);
         ASSERT_EQ(laid.path.size(), again.path.size());
         ASSERT_EQ(laid.path.back().position_mm, again.path.back().position_mm);

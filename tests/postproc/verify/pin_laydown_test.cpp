@@ -64,7 +64,7 @@ struct PinnedPipe {
             set_eye(point, kFree_mm);
         }
         return lay_down(
-            LaydownWall(extended_surface(mandrel, kExtension_mm), kBridgeReach_mm, standing),
+            LaydownSurface(extended_surface(mandrel, kExtension_mm), kBridgeReach_mm, standing),
             machine, test::program(machine, path, RedundancyPolicy::CentralAngle),
             turn.piece.path.front().position_mm);
     }

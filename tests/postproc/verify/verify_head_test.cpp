@@ -38,7 +38,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 struct World {
     Machine machine = test::true_machine();
     Mandrel mandrel = test::made_cylinder(50.0, 200.0, 5.0);
-    LaydownWall wall{extended_surface(mandrel, 100.0)};
+    LaydownSurface wall{extended_surface(mandrel, 100.0)};
     RayQuery obstacles = test::obstacles_of(mandrel, 100.0);
     HeadEnvelope envelope = head_envelope(machine);
 };

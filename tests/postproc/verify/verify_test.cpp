@@ -33,8 +33,8 @@ const Mandrel& mandrel() {
     return kCylinder;
 }
 
-const LaydownWall& cylinder_wall() {
-    static const LaydownWall kWall(extended_surface(mandrel(), kExtension_mm));
+const LaydownSurface& cylinder_wall() {
+    static const LaydownSurface kWall(extended_surface(mandrel(), kExtension_mm));
     return kWall;
 }
 
@@ -81,7 +81,7 @@ struct Job {
     Machine machine;  // the program was made for it as it is in its file
     BlockList program;
     HeadEnvelope envelope;
-    const LaydownWall* wall = &cylinder_wall();
+    const LaydownSurface* wall = &cylinder_wall();
     const RayQuery* obstacles = &cylinder_obstacles();
     VerifyRules rules;
     PlannedFibre plan;
@@ -227,7 +227,7 @@ TEST(Verify, SeesSlipBeyondTheFriction) {
 // Up the hourglass' meridian: the fibre bridges 1.46 mm.
 TEST(Verify, SeesBridging) {
     const test::Hourglass shape;
-    const LaydownWall wall(shape.surface(1.5));
+    const LaydownSurface wall(shape.surface(1.5));
     const RayQuery nothing(
         std::vector<TriangleSoup>{test::box({9e3, 9e3, 9e3}, {9001.0, 9001.0, 9001.0})});
     Job job(test::eye_path(test::meridian(shape, 0.5), kFree_mm));

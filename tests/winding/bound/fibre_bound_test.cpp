@@ -16,9 +16,9 @@ namespace {
 constexpr double kNear = 0.011;
 
 // From rim `from` to rim `to`, which it circles the same way on arrival as on departure there.
-Member course(std::int32_t first, std::int32_t last, double length_mm, std::int32_t from = 0,
-              std::int32_t to = 1) {
-    Member member;
+LibraryCourse course(std::int32_t first, std::int32_t last, double length_mm, std::int32_t from = 0,
+                     std::int32_t to = 1) {
+    LibraryCourse member;
     member.length_mm = length_mm;
     member.windable_forward = true;
     member.end[0].rim = from;
@@ -32,7 +32,7 @@ Member course(std::int32_t first, std::int32_t last, double length_mm, std::int3
 }
 
 struct Problem {
-    std::vector<Member> members;
+    std::vector<LibraryCourse> members;
     std::vector<char> allowed = std::vector<char>(members.size(), 1);
     std::vector<std::int32_t> asked = std::vector<std::int32_t>(10, 1);
     std::vector<char> reached = std::vector<char>(asked.size(), 1);
@@ -51,7 +51,7 @@ double times_laid(const FibreBound& bound, std::size_t i) {
 TEST(FibreBound, TakesCoursesInFractions) {
     Problem problem{{course(0, 5, 100.0), course(3, 8, 100.0), course(6, 8, 100.0)}};
     problem.members[2].footprint = {0, 1, 2, 6, 7, 8};
-    for (Member& member : problem.members) {
+    for (LibraryCourse& member : problem.members) {
         member.end[1] = member.end[0];
         member.end[1].sense = 1;  // back to where it came from
     }
@@ -123,7 +123,7 @@ TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
     constexpr std::uint64_t kSeed = 5;
     Problem problem;
     for (std::uint64_t k = 0; k < 60; ++k) {
-        Member& member = problem.members.emplace_back(course(0, -1, 0.0, 0, 0));
+        LibraryCourse& member = problem.members.emplace_back(course(0, -1, 0.0, 0, 0));
         member.length_mm = 50.0 + 100.0 * random_unit(kSeed, 3 * k);
         const auto first = static_cast<std::int32_t>(random_bits(kSeed, 3 * k + 1) % 36);
         for (std::int32_t i = first; i < first + 5; ++i) {
@@ -133,7 +133,7 @@ TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
     problem.allowed.assign(problem.members.size(), 1);
     problem.asked.assign(40, 0);
     problem.reached.assign(40, 1);
-    for (const Member& member : problem.members) {
+    for (const LibraryCourse& member : problem.members) {
         for (const std::int32_t sample : member.footprint) {
             problem.asked[static_cast<std::size_t>(sample)] = 2;
         }
@@ -146,7 +146,7 @@ TEST(FibreBound, IsNoMoreThanAnyCoverTakes) {
         for (std::uint64_t draw = 0;
              std::any_of(lacks.begin(), lacks.end(), [](std::int32_t l) { return l > 0; });
              ++draw) {
-            const Member& member =
+            const LibraryCourse& member =
                 problem.members[random_bits(kSeed + 1, trial * 100'000 + draw) % 60];
             const auto gain = std::count_if(
                 member.footprint.begin(), member.footprint.end(),
@@ -175,7 +175,7 @@ TEST(FibreBound, CountsSamplesBetweenThoseOfTheRows) {
         problem.members.push_back(course(first, first + 49, 100.0, 0, 0));
     }
     for (std::int32_t first = 0; first < 4000; first += 500) {
-        Member& member = problem.members.emplace_back(course(0, -1, 100.0, 0, 0));
+        LibraryCourse& member = problem.members.emplace_back(course(0, -1, 100.0, 0, 0));
         for (std::int32_t i = first; i < first + 500; i += 10) {
             member.footprint.push_back(i);
         }
@@ -202,20 +202,20 @@ TEST(FibreBound, GoesOnWithoutWhatDoesNotHold) {
 }
 
 TEST(FibreBound, RoundsToWholeCoursesByTheirSum) {
-    const std::vector<Member> members(4, course(0, 1, 100.0, 0, 0));
+    const std::vector<LibraryCourse> members(4, course(0, 1, 100.0, 0, 0));
     FibreBound bound;
     bound.forward = {0.3, 0.3, 0.0, 2.0};
     bound.backward = {0.0, 0.3, 0.28, 0.0};
     // Those laid backward first: sums of 0.8, 1.08, 0.38, 0.68 and 2.68, from 0.5.
-    const std::vector<LaidCourse> all{{2, true}, {3, false}, {3, false}};
+    const std::vector<DirectedCourse> all{{2, true}, {3, false}, {3, false}};
     EXPECT_EQ(whole_courses(bound, members, 1.0), all);
-    EXPECT_EQ(whole_courses(bound, members, 0.0), std::vector<LaidCourse>{});
+    EXPECT_EQ(whole_courses(bound, members, 0.0), std::vector<DirectedCourse>{});
     EXPECT_EQ(whole_courses(bound, members, 10.0).size(), 32U);
 }
 
 // By angle, then around the rim.
 TEST(FibreBound, RoundsLikeCoursesTogether) {
-    std::vector<Member> members(4, course(0, 1, 100.0, 0, 0));
+    std::vector<LibraryCourse> members(4, course(0, 1, 100.0, 0, 0));
     members[0].end[0].angle_rad = 1.0;
     members[1].end[0].azimuth_rad = 2.0;
     members[2].end[0].azimuth_rad = 1.0;
@@ -223,8 +223,8 @@ TEST(FibreBound, RoundsLikeCoursesTogether) {
     FibreBound bound;
     bound.forward = {0.4, 0.4, 0.4, 0.4};
     bound.backward.assign(4, 0.0);
-    // Member 2, 1, 3 and 0; from 0.5, sums of 0.9, 1.3, 0.7 and 1.1.
-    const std::vector<LaidCourse> half{{1, false}, {0, false}};
+    // LibraryCourse 2, 1, 3 and 0; from 0.5, sums of 0.9, 1.3, 0.7 and 1.1.
+    const std::vector<DirectedCourse> half{{1, false}, {0, false}};
     EXPECT_EQ(whole_courses(bound, members, 1.0), half);
 }
 

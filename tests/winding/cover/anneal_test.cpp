@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "tests/support/fixtures.h"
-#include "winding/cover/balance.h"
+#include "winding/cover/balance_courses.h"
 #include "winding/laminate/coverage.h"
 #include "winding/laminate/wound_angle.h"
 
@@ -30,9 +30,10 @@ struct Scene : test::CourseScene {
     }
 
     [[nodiscard]] PlacedCourse placed(std::size_t member) const {
-        Sketch sketch;
+        DraftCourse sketch;
         FootprintFinder::Scratch scratch = footprints.make_scratch();
-        EXPECT_EQ(draw_sketch(rules, members[member].candidate, scratch, sketch), Refusal::None);
+        EXPECT_EQ(draw_sketch(rules, members[member].candidate, scratch, sketch),
+                  CandidateFault::None);
         return {members[member], sketch.path, !members[member].windable_forward, false};
     }
 
@@ -46,7 +47,7 @@ struct Scene : test::CourseScene {
         return measure_coverage(layers);
     }
 
-    std::vector<Member> members;
+    std::vector<LibraryCourse> members;
     std::vector<char> allowed;
 };
 
@@ -131,9 +132,9 @@ TEST(Anneal, LeavesCoursesThatKeepTheRules) {
     ASSERT_GT(courses.size(), 5U);
     FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
     for (const PlacedCourse& course : courses) {
-        Sketch sketch;
+        DraftCourse sketch;
         ASSERT_EQ(draw_sketch(scene.rules, course.member.candidate, scratch, sketch),
-                  Refusal::None);
+                  CandidateFault::None);
         EXPECT_EQ(sketch.course.footprint, course.member.footprint);
         EXPECT_EQ(sketch.course.length_mm, course.member.length_mm);
         EXPECT_LE(std::abs(course.member.candidate.slip_ratio), scene.rules.tow.friction.holds());
@@ -145,7 +146,8 @@ TEST(Anneal, LeavesCoursesThatKeepTheRules) {
     }
 }
 
-// What is left open is closed afterwards (balance.h); mostly that is nothing but the fibre's ends.
+// What is left open is closed afterwards (balance_courses.h); mostly that is nothing but the
+// fibre's ends.
 TEST(Anneal, MostlyLeavesOneFibre) {
     const Scene& scene = tee();
     std::vector<int> loose;

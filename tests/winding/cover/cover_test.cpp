@@ -62,8 +62,8 @@ const Mandrel& tee() {
     return mandrel;
 }
 
-// Joints within 0.2 mm and 0.5 degrees: a course ends on a chord of the rim, the turn begins on its
-// circle. The sagitta is up to edge^2 / (8 R), here 0.1 mm.
+// RimJoints within 0.2 mm and 0.5 degrees: a course ends on a chord of the rim, the turn begins on
+// its circle. The sagitta is up to edge^2 / (8 R), here 0.1 mm.
 void expect_continuous(const Plan& plan) {
     for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
         const Piece& piece = plan.pieces[i];
@@ -139,9 +139,9 @@ TEST(PlanCover, SaysWhatTurnsOnPinsWouldReach) {
     options.turns.rule.extension_mm = kShort_mm;
     const RayQuery obstacles = test::obstacles_of(tee(), kShort_mm, kTable_mm);
     const auto with_pins = [](const Plan& plan) {
-        const auto found =
-            std::find_if(plan.what_if.begin(), plan.what_if.end(),
-                         [](const WhatIf& what) { return what.rule == WhatIf::Rule::Pins; });
+        const auto found = std::find_if(
+            plan.what_if.begin(), plan.what_if.end(),
+            [](const RelaxedRule& what) { return what.rule == RelaxedRule::Rule::Pins; });
         return found == plan.what_if.end() ? 0.0 : found->reachable;
     };
     const Plan by_friction = plan_cover(tee(), obstacles, options).plan;
@@ -206,11 +206,12 @@ TEST(PlanCover, SaysWhyNothingIsAdmissible) {
     const Plan plan =
         plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0, kTable_mm), options).plan;
     EXPECT_NE(plan.failure, "");
-    const auto refused = [&](Refusal reason) {
+    const auto refused = [&](CandidateFault reason) {
         return plan.effort.refusals[static_cast<std::size_t>(reason)];
     };
-    EXPECT_EQ(refused(Refusal::NotTurnable) + refused(Refusal::NoRim), plan.effort.candidates);
-    EXPECT_GT(refused(Refusal::NotTurnable), refused(Refusal::NoRim));
+    EXPECT_EQ(refused(CandidateFault::NotTurnable) + refused(CandidateFault::NoRim),
+              plan.effort.candidates);
+    EXPECT_GT(refused(CandidateFault::NotTurnable), refused(CandidateFault::NoRim));
     EXPECT_TRUE(plan.pieces.empty());
 }
 
@@ -220,19 +221,19 @@ TEST(PlanCover, SaysWhenTheMachineRefusesEverything) {
     options.candidates = 200;
     options.rounds = 0;
     test::AnyMachine machine;
-    machine.follow_rule = [](std::span<const Piece>) { return Rejection::AxisTravel; };
+    machine.follow_rule = [](std::span<const Piece>) { return CourseFault::AxisTravel; };
     const Plan plan =
         plan_cover(cylinder(), test::obstacles_of(cylinder(), 100.0, kTable_mm), options, &machine)
             .plan;
-    const std::string reason = name_of(Rejection::AxisTravel);
+    const std::string reason = name_of(CourseFault::AxisTravel);
     EXPECT_NE(plan.failure.find(reason), std::string::npos) << plan.failure;
-    const auto refused = [&](Rejection why) {
+    const auto refused = [&](CourseFault why) {
         return plan.effort.rejections[static_cast<std::size_t>(why)];
     };
     // A few sketches do not hold before the machine is asked.
-    EXPECT_EQ(refused(Rejection::AxisTravel) + refused(Rejection::Path),
+    EXPECT_EQ(refused(CourseFault::AxisTravel) + refused(CourseFault::Path),
               plan.effort.rejected_courses);
-    EXPECT_GT(refused(Rejection::AxisTravel), 100 * refused(Rejection::Path));
+    EXPECT_GT(refused(CourseFault::AxisTravel), 100 * refused(CourseFault::Path));
     EXPECT_TRUE(plan.pieces.empty());
     double bare_mm2 = 0.0;
     for (const Uncovered& u : plan.uncovered) {
@@ -275,7 +276,7 @@ double steep() {
     return all[all.size() * 3 / 4];
 }
 
-void expect_no_course_steeper(const Plan& plan, double limit, Rejection reason) {
+void expect_no_course_steeper(const Plan& plan, double limit, CourseFault reason) {
     ASSERT_EQ(plan.failure, "");
     EXPECT_GT(plan.effort.rejections[static_cast<std::size_t>(reason)], 0);
     EXPECT_GT(plan.coverage.fraction, 0.9);
@@ -291,7 +292,7 @@ TEST(PlanCover, IsGivenUpWhereItCannotCoverEnough) {
     CoverOptions options = few_courses();
     options.least_covered = 0.5;
     test::AnyMachine machine;
-    machine.alone_rule = [](std::span<const Piece>) { return Rejection::Laydown; };
+    machine.alone_rule = [](std::span<const Piece>) { return CourseFault::Laydown; };
     const Plan lost = cover_cylinder(options, &machine);
     EXPECT_NE(lost.failure.find("courses cover only"), std::string::npos) << lost.failure;
     EXPECT_LT(lost.coverage.fraction, 0.5);
@@ -311,9 +312,9 @@ TEST(PlanCover, KeepsOnlyCoursesWhoseOwnProgramHolds) {
         const bool steep = std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
             return piece.kind == PieceKind::Course && steepness(piece) > limit;
         });
-        return steep ? Rejection::Laydown : Rejection::None;
+        return steep ? CourseFault::Laydown : CourseFault::None;
     };
-    expect_no_course_steeper(cover_cylinder(few_courses(), &machine), limit, Rejection::Laydown);
+    expect_no_course_steeper(cover_cylinder(few_courses(), &machine), limit, CourseFault::Laydown);
 }
 
 // Others that are as steep come in their place: replacing them has no end, leaving them out has.
@@ -329,7 +330,8 @@ TEST(PlanCover, LeavesOutWhatIsRefusedAgainAndAgain) {
         }
         return refused;
     };
-    expect_no_course_steeper(cover_cylinder(few_courses(), &machine), limit, Rejection::InItsPlace);
+    expect_no_course_steeper(cover_cylinder(few_courses(), &machine), limit,
+                             CourseFault::InItsPlace);
 }
 
 // By where it leaves and arrives.
@@ -361,10 +363,10 @@ TEST(PlanCover, TakesNoTurnThatTheMachineCannotFollow) {
     machine.follow_rule = [&](std::span<const Piece> pieces) {
         const bool turn = pieces.size() == 3 && pieces[1].kind == PieceKind::Transition;
         if (!turn || shut.count(places_of_turn(pieces[0], pieces[2])) == 0) {
-            return Rejection::None;
+            return CourseFault::None;
         }
         ++refused;
-        return Rejection::FreeLength;
+        return CourseFault::FreeLength;
     };
     const Plan plan = cover_cylinder(few_courses(), &machine);
     EXPECT_GE(refused, static_cast<int>(shut.size()));
@@ -400,8 +402,8 @@ TEST(PlanCover, CutsFibresWhereNoTurnCanBeFollowed) {
         test::AnyMachine machine;
         machine.follow_rule = [&](std::span<const Piece> pieces) {
             const bool turn = pieces.size() == 3 && pieces[1].kind == PieceKind::Transition;
-            return turn && shut.count(end_of_course(pieces[0])) != 0 ? Rejection::FreeLength
-                                                                     : Rejection::None;
+            return turn && shut.count(end_of_course(pieces[0])) != 0 ? CourseFault::FreeLength
+                                                                     : CourseFault::None;
         };
         const Plan plan = cover_cylinder(options, &machine);
         EXPECT_EQ(plan.courses, any.courses);
@@ -432,12 +434,12 @@ TEST(PlanCover, EndsWhereEveryPlanIsRefused) {
         return refused;
     };
     const Plan plan = cover_cylinder(few_courses(), &machine);
-    EXPECT_EQ(asked, kMostAttempts);
+    EXPECT_EQ(asked, kMaxAttempts);
     EXPECT_EQ(plan.failure, "");
     // Of the library's members, of which a plan may lay one twice.
-    const auto rejected = plan.effort.rejections[static_cast<std::size_t>(Rejection::InItsPlace)];
-    EXPECT_LE(rejected, 5 * (kMostAttempts - 1) + 1);
-    EXPECT_GT(rejected, 3 * (kMostAttempts - 1));
+    const auto rejected = plan.effort.rejections[static_cast<std::size_t>(CourseFault::InItsPlace)];
+    EXPECT_LE(rejected, 5 * (kMaxAttempts - 1) + 1);
+    EXPECT_GT(rejected, 3 * (kMaxAttempts - 1));
     EXPECT_GT(plan.coverage.fraction, 0.9);
     expect_continuous(plan);
 }

@@ -10,8 +10,8 @@ namespace {
 using Nodes = std::pair<std::size_t, std::size_t>;
 
 // A member that leads from one node to another, covering given samples, windable forward.
-Member leading(std::size_t from, std::size_t to, std::vector<std::int32_t> samples) {
-    Member member;
+LibraryCourse leading(std::size_t from, std::size_t to, std::vector<std::int32_t> samples) {
+    LibraryCourse member;
     member.end[0].rim = static_cast<std::int32_t>(from / 2);
     member.end[0].sense = from % 2 == 0 ? 1 : -1;  // departures count the other sense
     member.end[1].rim = static_cast<std::int32_t>(to / 2);
@@ -24,9 +24,9 @@ Member leading(std::size_t from, std::size_t to, std::vector<std::int32_t> sampl
 // Nodes 0 and 3 go round; so do 1 and 2; 4 leads only to itself. From 0 a link leads to 4, from 2
 // one to 0.
 struct Scene {
-    std::vector<Member> members{leading(0, 3, {0, 1, 2}), leading(3, 0, {2, 3}), leading(1, 2, {4}),
-                                leading(2, 1, {5}),       leading(4, 4, {6, 7}), leading(0, 4, {8}),
-                                leading(2, 0, {9})};
+    std::vector<LibraryCourse> members{
+        leading(0, 3, {0, 1, 2}), leading(3, 0, {2, 3}), leading(1, 2, {4}), leading(2, 1, {5}),
+        leading(4, 4, {6, 7}),    leading(0, 4, {8}),    leading(2, 0, {9})};
     std::map<Nodes, KnownWay> ways{{{0, 3}, {true, {{0, false}}}}, {{3, 0}, {true, {{1, false}}}},
                                    {{1, 2}, {true, {{2, false}}}}, {{2, 1}, {true, {{3, false}}}},
                                    {{4, 4}, {true, {{4, false}}}}, {{0, 4}, {false, {{5, false}}}},
@@ -110,7 +110,7 @@ TEST(BestRoutes, AreNoneWhereNothingHolds) {
 
 // Courses of 10, 20 and 30 mm; a cut behind the first and the second.
 TEST(LongestFibres, KeepTheirOrder) {
-    std::vector<Member> members(3);
+    std::vector<LibraryCourse> members(3);
     for (std::size_t i = 0; i < members.size(); ++i) {
         members[i].length_mm = 10.0 * static_cast<double>(i + 1);
     }

@@ -32,7 +32,7 @@ const Scene& tee_scene() {
     return scene;
 }
 
-void expect_ends_at_rims(const Scene& scene, const Member& member, const SurfacePath& path) {
+void expect_ends_at_rims(const Scene& scene, const LibraryCourse& member, const SurfacePath& path) {
     for (std::size_t e = 0; e < 2; ++e) {
         const RimCrossing& end = member.end[e];
         ASSERT_GE(end.rim, 0);
@@ -89,8 +89,8 @@ void expect_members_keep_the_rules(const Scene& scene, int candidates, std::size
     FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
     std::size_t admitted = 0;
     for (const Candidate& candidate : scene.candidates(candidates, 11, kSteered)) {
-        Member member;
-        if (judge(scene.rules, candidate, scratch, member) != Refusal::None) {
+        LibraryCourse member;
+        if (judge(scene.rules, candidate, scratch, member) != CandidateFault::None) {
             continue;
         }
         ++admitted;
@@ -139,14 +139,14 @@ void expect_sketches_like_courses(const Scene& scene, int candidates) {
     int both = 0;
     int apart = 0;
     for (std::size_t i = 0; i < tried.size(); ++i) {
-        Member exact;
-        const bool holds = judge(scene.rules, tried[i], scratch, exact) == Refusal::None;
-        const bool sketched = library.outcome[i] == Refusal::None;
+        LibraryCourse exact;
+        const bool holds = judge(scene.rules, tried[i], scratch, exact) == CandidateFault::None;
+        const bool sketched = library.outcome[i] == CandidateFault::None;
         (holds == sketched ? agreed : differed) += holds || sketched ? 1 : 0;
         if (!sketched) {
             continue;
         }
-        const Member& sketch = library.members[next++];
+        const LibraryCourse& sketch = library.members[next++];
         if (holds) {
             EXPECT_EQ(sketch.end[0].rim, exact.end[0].rim);
             EXPECT_EQ(sketch.end[1].rim, exact.end[1].rim);
@@ -213,23 +213,23 @@ TEST(Judge, LeavesTheMemberAsItWasOnRefusal) {
     const Eigen::Vector3d x = n.unitOrthogonal();
     const double axial =
         std::atan2(Eigen::Vector3d::UnitZ().dot(n.cross(x)), Eigen::Vector3d::UnitZ().dot(x));
-    Member member;
+    LibraryCourse member;
     member.length_mm = 42.0;
     FootprintFinder::Scratch scratch = scene.footprints.make_scratch();
     EXPECT_EQ(judge(scene.rules, {scene.samples.at[0], axial, 0.0}, scratch, member),
-              Refusal::NotTurnable);
+              CandidateFault::NotTurnable);
     EXPECT_EQ(member.length_mm, 42.0);
     // Exactly hoop: it meets no rim.
     EXPECT_EQ(judge(scene.rules, {scene.samples.at[0], axial + 0.5 * kPi, 0.0}, scratch, member),
-              Refusal::NoRim);
+              CandidateFault::NoRim);
 }
 
 TEST(RefusalNames, AreDistinctWords) {
     std::set<std::string> names;
-    for (std::size_t r = 0; r < kRefusals; ++r) {
-        names.insert(name_of(static_cast<Refusal>(r)));
+    for (std::size_t r = 0; r < kCandidateFaults; ++r) {
+        names.insert(name_of(static_cast<CandidateFault>(r)));
     }
-    EXPECT_EQ(names.size(), kRefusals);
+    EXPECT_EQ(names.size(), kCandidateFaults);
     EXPECT_EQ(names.count(""), 0U);
 }
 

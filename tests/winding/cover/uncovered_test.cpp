@@ -29,11 +29,12 @@ TEST(UncoveredWall, NamesWhatBecameOfMostCourses) {
         library.members[i].footprint = {6};
     }
     library.reached = {1, 1, 1, 1, 0, 0, 0};
-    library.closest_miss = {Refusal::None,     Refusal::None, Refusal::None,    Refusal::Slips,
-                            Refusal::Bridging, Refusal::None, Refusal::Bridging};
-    const std::vector<Rejection> rejection{
-        Rejection::HeadHit,    Rejection::Slip, Rejection::HeadHit, Rejection::None,
-        Rejection::FreeLength, Rejection::None, Rejection::None};
+    library.closest_miss = {CandidateFault::None,    CandidateFault::None,     CandidateFault::None,
+                            CandidateFault::Slips,   CandidateFault::Bridging, CandidateFault::None,
+                            CandidateFault::Bridging};
+    const std::vector<CourseFault> rejection{
+        CourseFault::HeadHit,    CourseFault::Slip, CourseFault::HeadHit, CourseFault::None,
+        CourseFault::FreeLength, CourseFault::None, CourseFault::None};
     const std::vector<std::int32_t> layers{1, 0, 0, 0, 0, 0, 0};
     std::map<std::string, double> bare;
     for (const Uncovered& u : uncovered_wall(surface, samples, library, rejection, layers)) {
@@ -43,9 +44,9 @@ TEST(UncoveredWall, NamesWhatBecameOfMostCourses) {
     const std::map<std::string, double> expected{
         {"the head would come too near (so with 2 courses that would cover it)", 4.0},
         {"a course for it would lay more fibre over covered wall than it gains", 2.0},
-        {name_of(Rejection::FreeLength) + std::string(" (so with 1 course that would cover it)"),
+        {name_of(CourseFault::FreeLength) + std::string(" (so with 1 course that would cover it)"),
          2.0},
-        {name_of(Refusal::Bridging), 2.0},
+        {name_of(CandidateFault::Bridging), 2.0},
         {"no candidate was tried here", 2.0}};
     EXPECT_EQ(bare, expected);
 }
@@ -53,7 +54,7 @@ TEST(UncoveredWall, NamesWhatBecameOfMostCourses) {
 TEST(RejectionNames, AreDistinctWords) {
     std::set<std::string> names;
     for (std::size_t r = 0; r < kRejections; ++r) {
-        names.insert(name_of(static_cast<Rejection>(r)));
+        names.insert(name_of(static_cast<CourseFault>(r)));
     }
     EXPECT_EQ(names.size(), kRejections);
     EXPECT_EQ(names.count(""), 0U);

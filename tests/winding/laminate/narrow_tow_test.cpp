@@ -121,7 +121,7 @@ TEST(NarrowTow, RibsOfALatticeHaveTheirMeanLayers) {
         PatternOptions options{.angle_rad = rad_from_deg(45.0)};
         options.tow = {.width_mm = width_mm, .thickness_mm = 0.1, .friction = 0.2};
         options.turn.extension_mm = 100.0;
-        options.lattice = LatticeWish{.circuits = 7};
+        options.lattice = LatticeConstraints{.circuits = 7};
         const Plan plan = plan_pattern(mandrel, *find_revolution(mandrel).body, options);
         ASSERT_EQ(plan.failure, "");
         const double bands = 2.0 * static_cast<double>(plan.pattern()->pattern.circuits) * width_mm;

@@ -211,7 +211,7 @@ std::int64_t crossings_of(const Plan& plan) {
 
 TEST(PatternPlan, LatticesAreRibsWithWallBetween) {
     PatternOptions options{.angle_rad = rad_from_deg(50.0), .tow = kTow};
-    options.lattice = LatticeWish{.circuits = 6};
+    options.lattice = LatticeConstraints{.circuits = 6};
     const Planned p = planned(test::made_cylinder(40.0, 200.0, 5.0), options);
     expect_one_fibre(p.plan);
     expect_closed(p.plan);
@@ -225,7 +225,7 @@ TEST(PatternPlan, LatticesAreRibsWithWallBetween) {
 
 TEST(PatternPlan, SeriesLieBesideOneAnotherAndPliesOnEachOther) {
     PatternOptions options{.angle_rad = rad_from_deg(50.0), .tow = kTow};
-    options.lattice = LatticeWish{.circuits = 5, .series = 2, .plies = 2};
+    options.lattice = LatticeConstraints{.circuits = 5, .series = 2, .plies = 2};
     const Planned p = planned(test::made_cylinder(40.0, 200.0, 5.0), options);
     expect_one_fibre(p.plan);
     const std::vector<PassAround> passes = passes_of(p.plan);
@@ -245,7 +245,7 @@ TEST(PatternPlan, SeriesLieBesideOneAnotherAndPliesOnEachOther) {
 
 TEST(PatternPlan, LatticesOnAVesselHaveNoSeries) {
     PatternOptions options{.angle_rad = rad_from_deg(40.0), .tow = kTow};
-    options.lattice = LatticeWish{.circuits = 9};
+    options.lattice = LatticeConstraints{.circuits = 9};
     const Mandrel vessel = test::made("vessel", kVessel, 5.0);
     const Planned one = planned(vessel, options);
     expect_one_fibre(one.plan);

@@ -35,8 +35,8 @@ public:
     }
     double shortest_rad(std::size_t end) const override { return inner_->shortest_rad(end); }
     double least_dwell_rad() const override { return kLeast_rad; }
-    FoundPattern find(const PatternWish& wish, const Find& find) override {
-        PatternWish longer = wish;
+    FoundPattern find(const PatternConstraints& wish, const Find& find) override {
+        PatternConstraints longer = wish;
         longer.least_dwell_rad = std::max(wish.least_dwell_rad, kLeast_rad);
         return find(longer);
     }

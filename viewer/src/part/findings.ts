@@ -8,8 +8,8 @@ import type { Colours } from './kinds';
 import { category, cssColour } from '../colour';
 import type { Hit } from './stage';
 
-const kMostRegions = 60; // rows; lettering that is kept makes hundreds
-const kMostInLegend = 8;
+const kMaxRegions = 60; // rows; lettering that is kept makes hundreds
+const kMaxInLegend = 8;
 
 const area = (mm2: number): string => withUnit(mm2 / 100, 'cm²', 4);
 
@@ -68,12 +68,12 @@ function regionRow(region: Region, by: Colours): string {
 
 export function regionRowsHtml(part: Part, by: Colours): string {
     const { regions } = part.inspected;
-    const rest = regions.slice(kMostRegions);
+    const rest = regions.slice(kMaxRegions);
     const sum = rest.reduce((total, r) => total + r.area_mm2, 0);
     const more = rest.length
         ? `<tr class="note"><td></td><td colspan="6">and ${rest.length} smaller ones, together ${fixed(sum, 2)} mm²</td></tr>`
         : '';
-    return regions.slice(0, kMostRegions).map((r) => regionRow(r, by)).join('') + more;
+    return regions.slice(0, kMaxRegions).map((r) => regionRow(r, by)).join('') + more;
 }
 
 function table(name: string, heads: [string, boolean][], rows: string): string {
@@ -169,10 +169,10 @@ export function legendHtml(part: Part, by: Colours): string {
         swatch(colour, words, hatched).replace('</span>', `<b>${area(mm2)}</b></span>`);
     const rows: string[] = [];
     if (by === 'region') {
-        for (const r of regions.slice(0, kMostInLegend)) {
+        for (const r of regions.slice(0, kMaxInLegend)) {
             rows.push(row(cssColour(category(r.id)), `region ${r.id}, ${r.kind}`, r.area_mm2));
         }
-        if (regions.length > kMostInLegend) rows.push('<span class="key">then again</span>');
+        if (regions.length > kMaxInLegend) rows.push('<span class="key">then again</span>');
     } else {
         for (const kind of kKinds) {
             const own = regions.filter((r) => kindOf(r) === kind);

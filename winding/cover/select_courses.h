@@ -1,0 +1,69 @@
+/// Choosing courses from the library: cover everything that can be covered, evenly and with little
+/// fibre.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "winding/laminate/stage_ask.h"
+#include "winding/plan/course.h"
+
+namespace meshwind {
+
+struct SelectOptions {
+    int target_layers = 1;  ///< each reachable sample is to be covered at least this often
+    /// The same per sample, below 0 where more than enough lies; empty: `target_layers` everywhere.
+    std::span<const std::int32_t> targets{};
+    /// What a sample already covered costs against what a new one earns: fibre laid over fibre is
+    /// wasted and makes the wall uneven.
+    double overlap_weight = 0.35;
+    /// What fibre off the wanted winding angle costs, against 1 for a layer too many.
+    double angle_weight = 4.0;
+
+    [[nodiscard]] std::int32_t target(std::int32_t sample) const {
+        return targets.empty() ? target_layers : targets[static_cast<std::size_t>(sample)];
+    }
+};
+
+/// Which members are laid, and how often each coverage sample is covered by them.
+struct Selection {
+    std::vector<std::int32_t> chosen;  ///< indices of members, in the order of choice
+    std::vector<std::int32_t> layers;  ///< per sample
+};
+
+/// Members that bring most samples to their target, for their fibre, until no more of those in
+/// reach than a share are short of it, or none helps. \param reached per sample \param layers per
+/// sample, what lies there \return members, each once
+[[nodiscard]] std::vector<std::int32_t> fill_thin_places(std::span<const LibraryCourse> members,
+                                                         std::span<const char> allowed,
+                                                         std::span<const char> reached,
+                                                         std::vector<std::int32_t> layers,
+                                                         const SelectOptions& options,
+                                                         double most_short);
+
+/// Courses to begin with, each the way that it is wound.
+struct FirstChoice {
+    std::vector<DirectedCourse> courses;
+    std::optional<double> least_fibre_mm;  ///< as in Plan
+};
+
+/// Says of courses whether they hold; asked of some again and again.
+using Holding = std::function<std::vector<char>(std::span<const DirectedCourse>)>;
+
+/// Whole courses for a stage's share of the fractions with which what is left of the wall takes
+/// least fibre (winding/bound/); none behind the last stage. Where some do not hold, the fractions
+/// are looked for without them, a few times. \param reached per sample \param nodes 2 for each rim
+/// No bound of fibre where an angle is wanted.
+[[nodiscard]] FirstChoice choose_first(std::span<const LibraryCourse> members,
+                                       std::span<const char> allowed, std::span<const char> reached,
+                                       std::span<const Eigen::Vector3d> position_mm,
+                                       std::size_t nodes, const SelectOptions& options,
+                                       const StageAsk& stage, const Holding& hold);
+
+}  // namespace meshwind
