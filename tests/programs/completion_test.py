@@ -42,7 +42,7 @@ class Completion(unittest.TestCase):
 
     def test_kinds_of_mandrels(self):
         self.assertEqual(sorted(self.offered("make", "")),
-                         sorted("cylinder cone vessel isotensoid elbow tee combination frame torus ellipsoid".split()))
+                         sorted("cylinder cone vessel isotensoid elbow tee wye cross combination frame torus ellipsoid".split()))
 
     def test_options(self):
         self.assertEqual(self.offered("--mac"), ["--machine"])
