@@ -7,8 +7,8 @@ import xml.etree.ElementTree
 
 import program
 
-KINDS = ("cylinder", "cone", "vessel", "isotensoid", "elbow", "tee", "combination", "frame",
-         "torus", "ellipsoid")
+KINDS = ("cylinder", "cone", "vessel", "isotensoid", "elbow", "tee", "wye", "cross", "combination",
+         "frame", "torus", "ellipsoid")
 PATH_HEADER = ("point,s_mm,x_mm,y_mm,z_mm,nx,ny,nz,tx,ty,tz,kn_per_mm,kg_per_mm,slip,bridge_mm"
                .split(","))
 
