@@ -1,5 +1,5 @@
-/// The path between two places of the surface that keeps the directions at both: two stretches of
-/// constant slip ratio.
+/// Biarc on a surface: a path between two places with given directions at both. It has two
+/// stretches, each of constant slip ratio.
 #pragma once
 
 #include "geodesic/trace.h"
@@ -16,17 +16,17 @@ struct BiarcOptions {
 
 struct Biarc {
     bool found = false;
-    SurfacePath path;           ///< of the nearest try; may be empty
+    SurfacePath path;           ///< of the closest attempt; may be empty
     double slip_ratio = 0.0;    ///< kg / kn of the first half of its length
     double slip_ratio_2 = 0.0;  ///< and of the second
     double miss_mm = 0.0;
     double miss_rad = 0.0;
 };
 
-/// From `from` along its tangent to `to`, arriving along its tangent: kg = slip_ratio * kn over the
-/// first half of the length and slip_ratio_2 * kn over the second; on concave places too, which the
-/// caller may not want. Three unknowns, the ratios and the length, by Newton's method for the three
-/// conditions, place and direction at the end, from the geodesic between both places.
+/// Path from `from` to `to` along both tangents: kg = slip_ratio * kn over the first half of the
+/// length and slip_ratio_2 * kn over the second, on concave places too, which the caller may not
+/// want. Newton's method finds the three unknowns, both ratios and the length, from three
+/// conditions, place and direction at the end. It starts from the geodesic between both places.
 /// Accuracy: that of the tracer on patches; tests/geodesic/biarc_test.cpp.
 [[nodiscard]] Biarc biarc(const Surface& surface, const PathPoint& from, const PathPoint& to,
                           const BiarcOptions& options = {});

@@ -26,11 +26,11 @@ enum class ConnectStop {
 
 struct ConnectOptions {
     TraceOptions trace{};        ///< of every shot; its max_length_mm bounds the path
-    double tolerance_mm = 1e-6;  ///< > 0, of the miss: far below what a trace is good for
+    double tolerance_mm = 1e-6;  ///< > 0, of the miss: far below the accuracy of a trace
     int max_iterations = 100;    ///< > 0; bisection to the tolerance alone takes about 40
 };
 
-/// Where to shoot first.
+/// Start values of the shooting.
 struct ConnectGuess {
     Eigen::Vector3d direction;  ///< any length, projected into the tangent plane
     double length_mm = 0.0;     ///< > 0; the target is looked for near this arc length
@@ -61,10 +61,10 @@ struct ConnectResult {
                                     const SurfacePoint& to, const ConnectGuess& guess,
                                     double slip_ratio = 0.0, const ConnectOptions& options = {});
 
-/// The same from the shortest way over the facets as guess. Where that fails at once (a start angle
-/// that matters a great deal, as after a long run along a saddle), the target is approached by
-/// stages: paths to points ever farther along the way, each the guess for the next. The iterations
-/// are those of all stages.
+/// The same with the shortest way over the facets as guess. Where that fails at once (the end
+/// depends strongly on the start angle, as after a long run along a saddle), the target is
+/// approached by stages: paths to points ever farther along the way, each the guess for the next.
+/// The iterations are those of all stages.
 [[nodiscard]] ConnectResult connect(const Surface& surface, const SurfacePoint& from,
                                     const SurfacePoint& to, const PolyhedralPath& way,
                                     double slip_ratio = 0.0, const ConnectOptions& options = {});

@@ -10,11 +10,11 @@
 
 namespace meshwind {
 
-/// Where a field leads from a place.
+/// Value of a direction field at a place.
 struct Aim {
     Eigen::Vector3d direction;  ///< its part in the tangent plane is followed; any length
     double beyond = 0.0;        ///< the walk ends where this rises to zero
-    /// What `beyond` rises by per mm of the walk: per_length + per_curvature * kn.
+    /// Rise of `beyond` per mm of the walk: per_length + per_curvature * kn.
     double per_length = 0.0;
     double per_curvature = 0.0;
 };
@@ -33,9 +33,9 @@ struct FieldWalk {
     std::int32_t rim = -1;  ///< where FieldStop::Rim
 };
 
-/// A place on the patches that walks. Steps are of fourth order (Runge-Kutta) and end on the edges
-/// of faces. Where the two patches at an edge disagree on which of them the field leads into, the
-/// walk slides along the edge.
+/// A point that walks over the patches. Steps are of fourth order (Runge-Kutta) and end on the
+/// edges of faces. Where the two patches at an edge disagree on which of them the field leads into,
+/// the walk slides along the edge.
 class FieldWalker {
 public:
     /// Called at every edge: the station on its near side, and on its far side where it is a
@@ -46,11 +46,11 @@ public:
 
     void move_to(const SurfacePoint& place);
 
-    /// Goes over the faces to the place nearest to a point, by Newton's method on the patches;
+    /// Moves over the faces to the place nearest to a point, by Newton's method on the patches;
     /// false where that is beyond a rim, or not found.
     bool move_under(const Eigen::Vector3d& point_mm);
 
-    /// \param longest_step_mm a step is no longer, for fields that bend more than the surface
+    /// \param longest_step_mm longest step, for fields that bend more than the surface
     FieldWalk walk(const AimField& field, double longest_mm, double longest_step_mm,
                    const Visit& visit = {});
 
@@ -58,7 +58,7 @@ public:
     [[nodiscard]] const Eigen::Vector3d& normal() const { return normal_; }
     [[nodiscard]] std::int32_t face() const { return face_; }
 
-    /// Here, into `direction`, which is projected.
+    /// The station here, with the tangent `direction`, which is projected.
     [[nodiscard]] PathPoint station(const Eigen::Vector3d& direction) const;
 
 private:

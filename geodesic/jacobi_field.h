@@ -1,4 +1,4 @@
-/// How a path's neighbours with another start angle run beside it.
+/// The Jacobi field of a path: distance of neighbouring paths with another start angle.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace meshwind {
 /// corners. Accuracy: second order in edge length (tests/geodesic/jacobi_field_test.cpp).
 [[nodiscard]] double gaussian_curvature_per_mm2(const Surface& surface, const SurfacePoint& point);
 
-/// The surface's curvature at a station, in the path's tangent t and binormal b: what bends
+/// The surface's curvature at a station, in the path's tangent t and binormal b. It bends
 /// neighbouring paths apart or together.
 struct CurvatureAlong {
     double gaussian_per_mm2 = 0.0;
@@ -30,7 +30,7 @@ struct CurvatureAlong {
 ///     j = y exp(lambda * integral of tau ds),   y'' + (1 + lambda^2) K y = 0,   y(0) = 0, y'(0) =
 ///     1
 ///
-/// which is Jacobi's equation for lambda = 0; docs/geometry.md has the derivation. It does not see
+/// which is Jacobi's equation for lambda = 0; docs/geometry.md has the derivation. It leaves out
 /// the bend of neighbours at a feature edge that is curved within the surface.
 /// \param slip_ratio the same constant lambda that the path was steered with, concave places too
 /// Accuracy: second order in edge length (tests/geodesic/jacobi_field_test.cpp).

@@ -1,4 +1,4 @@
-/// Facets over the smooth wall: what passes over them passes over the wall.
+/// Facets lifted over the smooth wall, for a quick ray test that a straight fibre is clear of it.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,18 @@
 namespace meshwind {
 
 /// The facets of a surface, moved outward until none of its patches stands over them. One ray then
-/// tells that a straight fibre keeps off the wall, which takes a walk of many steps along it else.
+/// shows that a straight fibre is clear of the wall. Otherwise that takes a walk of many steps
+/// along the fibre.
 class LiftedWall {
 public:
     /// \param surface outside = along its normals
     explicit LiftedWall(const Surface& surface);
 
-    /// Nothing of the facets is higher over the wall, mm.
+    /// Upper bound of the facets' height over the wall, mm.
     [[nodiscard]] double height_mm() const { return height_mm_; }
 
-    /// True where a straight fibre meets no wall: it begins higher over it than the facets are, and
-    /// passes none of them. False says nothing.
+    /// True where a straight fibre meets no wall: it begins higher over the wall than the facets
+    /// and crosses none of them. False decides nothing.
     /// \pre `from` is outside
     [[nodiscard]] bool is_free(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 

@@ -1,4 +1,4 @@
-/// Places on the surface: where they are and which way the wall faces there.
+/// Position and smooth normal of a surface point.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// Exact shortest ways over the flat facets from one source to many targets (CGAL).
+/// Exact shortest paths over the flat facets from one source to many targets (CGAL).
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-/// A point on the surface, a path over it, and what the fibre along the path does.
+/// Surface points, paths over the surface, and the taut string and slip of a path.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct TautString {
     std::size_t worst_station = 0;
 };
 
-/// Where the fibre of a station really is and leaves to: on the taut string over the path.
+/// Position and direction of the fibre at a station, on the taut string over the path.
 struct StringPoint {
     Eigen::Vector3d position_mm;
     Eigen::Vector3d tangent;
@@ -58,8 +58,8 @@ struct SlipMeasure {
     std::size_t worst_station = 0;
 };
 
-/// The cubic between two places with unit tangents, as long as their chord, beside a point. Of two
-/// places that are one, as on a crease, it is the first.
+/// A place beside a point on the Hermite cubic between two places, whose unit tangents are scaled
+/// by the chord. Where both places coincide, as on a crease, it is the first.
 struct CubicPlace {
     double share;  ///< of the chord, 0..1
     Eigen::Vector3d position_mm;

@@ -1,4 +1,4 @@
-/// Fibre paths over the triangles: the tangent is carried in the smooth normal field and steered.
+/// Traces geodesics and steered fibre paths over the triangles.
 #pragma once
 
 #include <limits>
@@ -10,8 +10,8 @@
 
 namespace meshwind {
 
-/// Why a trace ended. Every value is a normal outcome, none is an error. Folded: on curved patches
-/// alone, where the mesh is so coarse that a patch turns over; the path ends before it.
+/// Why a trace ended. Every value is a normal outcome, none is an error. Folded: only on curved
+/// patches, where the mesh is so coarse that a patch turns over; the path ends before it.
 enum class TraceStop { Length, Rim, FaceLimit, Folded };
 
 /// "length", "rim", "face-limit", "folded".
@@ -34,8 +34,8 @@ struct TraceOptions {
     double max_length_mm = 1e5;  ///< > 0; the path is cut exactly here
     int max_faces = 1'000'000;   ///< > 0; reached gives TraceStop::FaceLimit: a trace always ends
     TraceMethod method = TraceMethod::Walk;
-    /// > 0; by Patches no step is longer. Without it steps go from edge to edge, or where the
-    /// surface turns by 0.2 rad.
+    /// > 0; longest step by Patches. By default steps go from edge to edge, or where the surface
+    /// turns by 0.2 rad.
     double max_step_mm = std::numeric_limits<double>::infinity();
 };
 
@@ -57,8 +57,8 @@ struct TraceResult {
 /// TraceMethod::Patches: t' = kg b - kn n in the parameters of each curved patch
 /// (mesh/smooth/patch.h); edges are crossed by unfolding about the edge's tangent. Where two
 /// patches meet with slightly different normals, the turn of the normal there is part of kn and is
-/// steered for, so that what is steered for adds up to the turn of the normal along the whole path.
-/// Positions lie on the patches. Order 4 in edge length on smooth surfaces. Accuracy of both:
+/// steered for. So the sum of all that is steered for is the turn of the normal along the whole
+/// path. Positions lie on the patches. Order 4 in edge length on smooth surfaces. Accuracy of both:
 /// tests/geodesic/trace_order_test.cpp.
 [[nodiscard]] TraceResult trace(const Surface& surface, const SurfacePoint& start,
                                 const Eigen::Vector3d& direction, const Steering& steering = {},

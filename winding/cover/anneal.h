@@ -1,4 +1,4 @@
-/// Making a choice of courses even: each is moved, turned and steered until all lie side by side.
+/// Simulated annealing of courses: each is moved, turned and steered until all lie side by side.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@ namespace meshwind {
 
 struct AnnealOptions {
     SelectOptions select{};      ///< its targets are those of the ground's samples
-    double beyond_layers = 1.0;  ///< an even cover has so many more than its target
-    int fibres = 1;              ///< that may lay the courses
-    double fibre_share = 1.2;  ///< what each beyond them costs, as a share of what a course covers
+    double beyond_layers = 1.0;  ///< layers that an even cover has beyond its target
+    int fibres = 1;              ///< number that may lay the courses
+    double fibre_share = 1.2;    ///< cost of each further one, as a share of what a course covers
     std::uint64_t seed = 1;
     std::int64_t proposals = 100'000;
     /// Chance of a change for the worse: 1/e where it costs this share of what a course covers. It
     /// falls from `hot` to `cold`, by the same factor in equal numbers of proposals.
     double hot = 0.1;
     double cold = 0.002;
-    /// What a layer short of the target costs, against 1 for a layer too many or too few; it rises
-    /// as the chance falls: first all is made even, then the last holes are closed.
+    /// Cost of a layer short of the target, against 1 for a layer too many or too few; it rises as
+    /// the chance falls: first all is made even, then the last holes are closed.
     double bare_hot = 45.0;
     double bare_cold = 180.0;
-    /// What fibre in turns costs, against 1 for a layer too many.
+    /// Cost of fibre in turns, against 1 for a layer too many.
     double turn_share = 1.5;
     /// True where courses may lead; empty: anywhere.
     std::function<bool(const NodePair&)> way{};
@@ -38,7 +38,7 @@ struct AnnealOptions {
     std::function<void(double share)> progress{};
 };
 
-/// What it took; for reports.
+/// Effort of an annealing; for reports.
 struct AnnealEffort {
     std::int64_t proposals = 0;
     std::int64_t accepted = 0;
@@ -46,12 +46,12 @@ struct AnnealEffort {
 
 /// Simulated annealing over the courses themselves, not over a fixed library: courses are moved
 /// sideways, turned, steered otherwise, replaced, set one band beside another, added and dropped.
-/// The objective is the square of the layers' distance from `beyond_layers` more than the target,
-/// summed over the samples, with `bare` for each layer short of the target, the fibre of the turns,
-/// and what keeps the courses from being joined to so few fibres. Bare places are mended by members
-/// of the library, too. \param courses changed in place; footprints are those of `rules` again at
-/// the end Proposals are drawn and judged in parallel, in groups; the same for any number of
-/// threads.
+/// The objective is the squared distance of the layers from `beyond_layers` more than the target,
+/// summed over the samples. It adds `bare` for each layer short of the target, the fibre of the
+/// turns, and a cost for what keeps the courses from being joined to at most `fibres` fibres.
+/// Members of the library fill bare places, too. Proposals are drawn and judged in parallel, in
+/// groups; the same for any number of threads.
+/// \param courses changed in place; footprints are those of `rules` again at the end
 AnnealEffort anneal(const CourseRules& rules, const AnnealGround& ground,
                     std::span<const LibraryCourse> library, std::span<const char> allowed,
                     std::vector<PlacedCourse>& courses, const AnnealOptions& options);

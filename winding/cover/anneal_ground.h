@@ -25,8 +25,8 @@
 
 namespace meshwind {
 
-/// What courses are weighed on: samples of its own, others than those that coverage is measured on,
-/// so that what is found to be even was not made so for the very places that are measured.
+/// Samples and tables on which courses are weighed. The samples are others than those that coverage
+/// is measured on, so that courses are not made even just for the places that are measured.
 struct AnnealGround {
     /// \param weighed the samples \param measured those of the members' footprints
     AnnealGround(const CourseRules& rules, CoverageSamples weighed, const CoverageSamples& measured,
@@ -51,14 +51,14 @@ public:
     /// Lays a footprint, or takes it away: -1 times.
     void lay(std::span<const std::int32_t> footprint, int times);
 
-    /// A sample, rather one short of layers.
+    /// A random sample, preferably one short of layers.
     [[nodiscard]] std::size_t needy_place(Draws& draws) const;
 
 private:
     std::vector<std::int32_t> over_;  // per sample
 };
 
-/// What layers cost at a sample: the square of their distance from the even cover, and more where
+/// Cost of the layers at a sample: the square of their distance from the even cover, and more where
 /// they are short of the target.
 class LayerCosts {
 public:
@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    // Layers off the target from which on more make no difference.
+    // Distance from the target, in layers, from which on more make no difference.
     static constexpr std::int32_t kMaxOff = 64;
 
     std::array<double, 2 * kMaxOff + 1> cost_{};  // by layers over the target, from -kMaxOff
@@ -87,7 +87,7 @@ struct AnnealScratch {
     std::vector<std::int32_t> shift;  ///< of layers, while a change is weighed; else 0
 };
 
-/// As many as there are tasks at a time; all are alike while they lie here. Thread-safe.
+/// Pool of scratch, one for each concurrent task; all are alike while they are idle. Thread-safe.
 class AnnealScratchPool {
 public:
     explicit AnnealScratchPool(const AnnealGround& ground) : ground_(ground) {}
@@ -109,8 +109,7 @@ struct CourseExchange {
     std::vector<char> beside{};          ///< neighbours of `in`, per course
 };
 
-/// The courses as they are, with their layers, joints and neighbours. Const functions are
-/// thread-safe.
+/// The current courses, with their layers, joints and neighbours. Const functions are thread-safe.
 class AnnealedCourses {
 public:
     /// \param courses changed in place; footprints become those of the ground
@@ -128,7 +127,7 @@ public:
     [[nodiscard]] const GroundLayers& layers() const { return layers_; }
     [[nodiscard]] const RimJoints& joints() const { return joints_; }
 
-    /// How many more belong to no family (families.h). Looks for the neighbours of what is put in.
+    /// Increase in courses without a family (families.h). Finds the neighbours of `in`.
     [[nodiscard]] int more_alone(CourseExchange& exchange) const;
 
     /// \pre more_alone() was asked of these courses
@@ -148,7 +147,7 @@ private:
     int alone_ = 0;  // courses without a family
 };
 
-/// A way between nodes by where it arrives.
+/// A way between nodes, with the node at which it arrives.
 struct ArrivingWay {
     const Way* way = nullptr;
     std::size_t arrival = 0;

@@ -1,4 +1,4 @@
-/// Which courses of a fibre come early and which late.
+/// Rearranges the courses of a fibre: junctions early, hoops late.
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@
 
 namespace meshwind {
 
-/// Brings courses over junctions forward and hoops back, so that hoops clamp what lies under them:
-/// stretches of a fibre that begin and end at one node change places, as long as what is gained is
-/// worth the fibre in turns: a course that comes later by the whole plan for being hoop instead of
-/// junction is worth six rounds of the rim. Fibres stay what they are. \param lateness per entry of
-/// the order \param closed turns that are not taken where the fibre has another way
+/// Brings courses over junctions forward and hoops back, so that hoops clamp the fibre under them.
+/// Stretches of a fibre that begin and end at one node change places, as long as the gain is worth
+/// the fibre in turns: a course that comes later by the whole plan for being hoop instead of
+/// junction is worth six rounds of the rim. Each fibre keeps its courses. \param lateness per entry
+/// of the order \param closed turns that are not taken where the fibre has another way
 void arrange(std::span<const Rim> rims, std::span<const LibraryCourse> members,
              const CourseTurns& turns, std::span<const double> lateness,
              std::vector<OrderedCourse>& order, const ClosedTurns& closed = {});

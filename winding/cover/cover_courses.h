@@ -1,4 +1,4 @@
-/// The courses of a cover: chosen, made even, and replaced where they do not hold.
+/// Chooses the courses of a cover, makes them even, and replaces those that do not hold.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@
 
 namespace meshwind {
 
-/// What courses are to cover, and by which rules. References must outlive it.
+/// Task of a cover: what to cover, and by which rules. References must outlive it.
 struct CoverTask {
     /// \param machine null: none
     CoverTask(const Mandrel& mandrel, const RayQuery& obstacles, const CoverOptions& options,
@@ -31,9 +31,9 @@ struct CoverTask {
     CoverTask(const CoverTask&) = delete;
     CoverTask& operator=(const CoverTask&) = delete;
 
-    /// At which fibres are joined: two for each rim.
+    /// Number of nodes, at which fibres are joined: two for each rim.
     [[nodiscard]] std::size_t nodes() const { return 2 * mandrel.rims.size(); }
-    /// Of a wall: thin places are filled.
+    /// True in the last stage of a wall, in which thin places are filled.
     [[nodiscard]] bool is_last_stage() const { return stage.stages_left < 2; }
     void report_progress(const char* step, double share) const {
         options.context.report_progress(step, share);
@@ -51,7 +51,7 @@ struct CoverTask {
     CourseProver prover;
 };
 
-/// Where the plan's fibres lead.
+/// Routes and reach of the plan's fibres.
 struct FibreReach {
     PlanRoutes routes;
     std::vector<char> joinable;  ///< per sample: in reach of the fibres
@@ -61,22 +61,22 @@ struct FibreReach {
 struct PlanCourses {
     std::vector<PlacedCourse> placed;
     std::vector<std::vector<DirectedCourse>>
-        spare_links;               ///< per link: in its place, the best last
+        spare_links;               ///< per link: courses to replace it, the best last
     std::uint64_t annealings = 0;  ///< so far
 };
 
-/// Leaves of the courses those that hold, and adds those to begin with (select_courses.h).
+/// Keeps the courses that hold, and adds those to begin with (select_courses.h).
 /// \return the least fibre, as in Plan
 [[nodiscard]] std::optional<double> choose_courses(const CoverTask& task,
                                                    const std::vector<char>& joinable,
                                                    ProvenLibrary& library, PlanCourses& courses);
 
-/// Anneals the courses, and adds others for the sake of the last thin places. Behind the last stage
-/// nothing is made even.
+/// Anneals the courses, and adds others to fill the last thin places. After the last stage nothing
+/// is made even.
 void make_courses_even(const CoverTask& task, const AnnealGround& ground, const FibreReach& reach,
                        ProvenLibrary& library, PlanCourses& courses);
 
-/// Takes courses out, and strikes them off the library. Another comes in place of a link.
+/// Removes courses, and strikes them off the library. A link is replaced by another.
 /// \param refused the numbers of the courses, in order, each once
 void give_up_courses(const CoverTask& task,
                      const std::vector<std::pair<std::size_t, CourseFault>>& refused,

@@ -1,4 +1,4 @@
-/// The ways that continuous fibres take among the nodes (see balance_courses.h) of a library.
+/// Routes of continuous fibres among the nodes (see balance_courses.h) of a library.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,15 @@
 
 namespace meshwind {
 
-/// The fibres of an order with the most course length, at most so many, in their order.
+/// The fibres of an order with the most course length, at most `most`, in their order.
 [[nodiscard]] std::vector<OrderedCourse> longest_fibres(std::span<const LibraryCourse> members,
                                                         std::span<const OrderedCourse> order,
                                                         std::size_t most);
 
-/// Stages of nodes between which the fibre goes round and round, one stage after the other; from
-/// each a single course leads on to the next, and none back. A branch too slim for the head to pass
-/// on the way back makes such a stage: the fibre may end there.
+/// A route leads through stages, one after the other. A stage is a set of nodes between which the
+/// fibre goes round and round; from each a single course leads on to the next, and none back. A
+/// branch too slim for the head to pass on the way back makes such a stage: the fibre may end
+/// there.
 struct FibreRoute {
     std::vector<int> stage;             ///< per node; -1 where the fibre never comes
     std::vector<DirectedCourse> links;  ///< links[i] leads from stage i to stage i + 1
@@ -54,7 +55,7 @@ struct PlanRoutes {
     }
 };
 
-/// What is known of the way between two nodes.
+/// Known courses of the way between two nodes.
 struct KnownWay {
     bool abounds = false;                ///< many courses lead there
     std::vector<DirectedCourse> proven;  ///< courses that hold, in the library's order
@@ -62,14 +63,14 @@ struct KnownWay {
 
 using KnownWays = std::map<NodePair, KnownWay>;
 
-/// The routes of at most so many fibres, one after the other the one whose stages' courses cover
-/// most samples that those before it do not; none that covers less than kWorthAFibre of all. \param
-/// nodes their number: two for each rim
+/// Routes of at most `most` fibres, chosen one after the other: each covers, by the courses of its
+/// stages, most samples that those before it do not, and no less than kWorthAFibre of all.
+/// \param nodes their number: two for each rim
 [[nodiscard]] std::vector<FibreRoute> best_routes(std::span<const LibraryCourse> members,
                                                   const KnownWays& ways, std::size_t nodes,
                                                   std::size_t samples, std::size_t most);
 
-/// Share of the wall that makes it worth to cut the fibre and tie on another.
+/// Share of the wall that makes it worth cutting the fibre and tying on another.
 inline constexpr double kWorthAFibre = 0.005;
 
 }  // namespace meshwind

@@ -1,5 +1,5 @@
-/// Shifts a course into the gap between its neighbours, or to the pins that it turns on: by how
-/// much it has to move, turn and be steered.
+/// Shifts a course into the gap between its neighbours, or to the pins that it turns on. A fit says
+/// how far it is moved, turned and steered.
 #pragma once
 
 #include <cstddef>
@@ -24,11 +24,11 @@ inline constexpr double kStripBands = 1.0 + 2.0 * kFitBands;
 /// unit of the steering ahead of the seed and behind.
 using CourseFields = Eigen::Matrix<double, Eigen::Dynamic, 4>;
 
-/// Of each part of a move from the seed's station, to first order.
+/// Displacements by each part of a move from the seed's station, to first order.
 [[nodiscard]] CourseFields displacements(const Surface& surface, const SurfacePath& path,
                                          const Candidate& candidate, std::size_t seed);
 
-/// A move, and what the course saves after it, to first order.
+/// A move, and the saving of the course after it, to first order.
 struct Fit {
     CourseMove move;
     double saved = 0.0;
@@ -36,17 +36,16 @@ struct Fit {
 
 /// The move that saves most, to first order: the displacement of every place is the sum of four
 /// **Jacobi fields**, one for each part of the move (geodesic/jacobi_field.h; steering adds kn as a
-/// source), and the band covers what then lies within half its width. No place moves by more than
-/// kFitBands, and steering stays within what moved() allows. Where fibre turns on pins only moves
-/// count that leave both ends at theirs, to first order. \param strip of the course's path,
-/// kStripBands wide \param saving per entry of the strip: what covering it saves, negative where it
-/// costs \return the move from seed_station(); nothing where none saves more than the course does
-/// now
+/// source), and the band covers the samples that then lie within half its width. No place moves by
+/// more than kFitBands, and steering stays within what moved() allows. Where fibre turns on pins
+/// only moves count that leave both ends at theirs, to first order. \param strip of the course's
+/// path, kStripBands wide \param saving per entry of the strip: saving by covering it, negative
+/// where it costs \return the move from seed_station(); nothing where none saves more than the
+/// course does now
 [[nodiscard]] Fit fit_course(const CourseRules& rules, const PlacedCourse& course,
                              const Strip& strip, std::span<const float> saving);
 
-/// Whether both ends are as near as `within_mm` to where pins take hold of them; so are ends that
-/// turn by friction.
+/// True when both ends are within `within_mm` of where pins take hold of them, or turn by friction.
 [[nodiscard]] bool ends_at_pins(const CourseRules& rules, const LibraryCourse& member,
                                 double within_mm);
 

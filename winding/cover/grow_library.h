@@ -1,4 +1,4 @@
-/// Growing the library: candidates over the whole wall, then where they are still needed.
+/// Grows the library of courses: candidates over the whole wall, then where they are still needed.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace meshwind {
 
-/// The members with what became of every candidate.
+/// The members, with the outcome of all candidates.
 struct Library {
     std::vector<LibraryCourse> members;
     std::vector<char> reached;  ///< per sample: 1 where a member passes

@@ -1,4 +1,4 @@
-/// Joining courses to few fibres by further members of the library.
+/// Joins courses to few fibres by adding members of the library.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 
 namespace meshwind {
 
-/// What joining needs of a plan.
+/// Input of the joining.
 struct JoinTask {
-    std::vector<LibraryCourse>& members;  ///< the library, behind which the plan's courses are put
+    std::vector<LibraryCourse>& members;  ///< the library; the plan's courses are put behind it
     std::size_t first_placed = 0;         ///< where these begin
     std::span<const char> allowed;        ///< per member of the library
     std::size_t rims = 0;
@@ -26,7 +26,7 @@ struct JoinTask {
     int most_fibres = 1;  ///< that are taken where they cover more
     /// Puts a member of the library in its place and proves it. Thread-safe.
     std::function<CourseFault(const DirectedCourse&, PlacedCourse&)> place;
-    /// Told of an allowed member that holds neither way.
+    /// Called with an allowed member that holds neither way.
     std::function<void(std::size_t member, CourseFault)> strike_off;
 };
 
@@ -34,7 +34,7 @@ struct JoinTask {
 void gather(std::span<const PlacedCourse> courses, std::size_t library_size,
             std::vector<LibraryCourse>& members);
 
-/// Keeps what it has proven for the next time.
+/// Joins courses, and keeps proven ones for the next call.
 class CourseJoiner {
 public:
     /// Adds members that hold until as many courses arrive as depart, wherever there is a way

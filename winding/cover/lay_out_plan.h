@@ -1,4 +1,4 @@
-/// From courses in their order to the pieces of a plan.
+/// Lays out ordered courses and their turns as the pieces of a plan.
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,8 @@ void add_half_turns(const CourseRules& rules, const LibraryCourse& member, bool 
                     std::vector<Piece>& pieces);
 
 /// Courses of a plan that a trial refuses: by their place behind the library's members, in order,
-/// each once. Of a turn that it refuses, the course at which more turns are closed.
-/// \param order what the plan was laid out from \param closed turns between those courses
+/// each once. For a refused turn it is the course at which more turns are closed.
+/// \param order from which the plan was laid out \param closed turns between those courses
 [[nodiscard]] std::vector<std::pair<std::size_t, CourseFault>> refused_courses(
     const TrialWinding& trial, const Plan& plan, std::span<const OrderedCourse> order,
     const ClosedTurns& closed, std::size_t library_size);

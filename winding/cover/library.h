@@ -1,4 +1,4 @@
-/// The library of admissible courses: what can be wound at all, before anything is chosen.
+/// The library of admissible courses: traces candidates and judges which can be wound at all.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace meshwind {
 
-/// All that judging a candidate needs; references must outlive it.
+/// Rules by which candidates are judged; references must outlive it.
 struct CourseRules {
     const Mandrel& mandrel;
     const RayQuery& obstacles;
@@ -32,7 +32,7 @@ struct CourseRules {
     double max_half_length_mm =
         1e4;  ///< a candidate that meets no rim within this circles for ever
     std::optional<double> angle_rad{};   ///< wanted winding angle
-    const LiftedWall* lifted = nullptr;  ///< of the mandrel's surface, where it is at hand
+    const LiftedWall* lifted = nullptr;  ///< of the mandrel's surface, or null
 };
 
 /// Length of half a candidate beyond which it circles without meeting a rim, on this surface.
@@ -45,8 +45,8 @@ struct CourseRules {
 /// `normal`.
 [[nodiscard]] double direction_angle(const Eigen::Vector3d& normal, const Eigen::Vector3d& tangent);
 
-/// A direction for a candidate through a place: with a wanted winding angle two in three draws lead
-/// there, one hand or the other, where the wall is like a pipe; else any direction.
+/// A direction for a candidate through a place. With a wanted winding angle, two in three draws
+/// have it, by one hand or the other, where the wall is like a pipe; else any direction.
 /// \param unit, choice drawn from [0, 1)
 [[nodiscard]] double draw_direction_rad(const CourseRules& rules, const SurfacePoint& place,
                                         double unit, double choice);
@@ -74,7 +74,7 @@ struct CourseRules {
                                        DraftCourse& sketch);
 
 /// Judges a candidate by the walk: ends, turns and bridges. On CandidateFault::None `sketch` is
-/// filled, on others it is of no use. Slip is not measured: the candidate is steered within the
+/// filled, on others it is unusable. Slip is not measured: the candidate is steered within the
 /// friction.
 [[nodiscard]] CandidateFault draw_sketch(const CourseRules& rules, const Candidate& candidate,
                                          FootprintFinder::Scratch& scratch, DraftCourse& sketch);
@@ -84,7 +84,7 @@ struct CourseRules {
 [[nodiscard]] bool is_windable(const CourseRules& rules, const SurfacePath& path,
                                const TautString& string, double step_mm);
 
-/// Distance of the places at which a sketch is looked into.
+/// Distance of the places at which a sketch is checked.
 inline constexpr double kSketchStep_mm = 12.0;
 
 /// How candidates are judged: by the walk alone, or where that admits them by all rules as well.

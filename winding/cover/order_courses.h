@@ -1,4 +1,4 @@
-/// Putting chosen courses in order, so that as few continuous fibres as can be lay them all.
+/// Orders courses so that as few continuous fibres as possible lay them all.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ namespace meshwind {
 /// Turns that the machine cannot follow, each from one course to another.
 using ClosedTurns = std::set<std::pair<DirectedCourse, DirectedCourse>>;
 
-/// What it costs that one course follows another: the fibre of the turn as an angle about the rim,
-/// rad, and for a closed turn more than all of any plan. Worked out once for each pair.
+/// Cost of one course following another: the fibre of the turn as an angle about the rim, rad, and
+/// for a closed turn more than all of any plan. Worked out once for each pair.
 class TurnCosts {
 public:
-    /// All is referred to, and must stay as it is.
+    /// All arguments are kept by reference, and must not change.
     TurnCosts(std::span<const Rim> rims, std::span<const LibraryCourse> members,
               const CourseTurns& turns, const ClosedTurns& closed)
         : rims_(rims),
@@ -42,10 +42,10 @@ private:
 };
 
 /// An Eulerian trail through the nodes: a fibre that arrives circling an extension one way leaves
-/// circling it the same way, and the turns' fibre is kept little. Separate trails that share no
-/// node are tried the other way round, if their courses allow it. Closed turns are taken only where
-/// the fibre has no other way. \return every course once; the last one has cut_after set; more cuts
-/// only where the ends of the courses leave no other way
+/// circling it the same way, and the fibre of the turns is kept short. Separate trails that share
+/// no node are tried the other way round, if their courses allow it. Closed turns are taken only
+/// where the fibre has no other way. \return every course once; the last one has cut_after set;
+/// more cuts only where the ends of the courses leave no other way
 [[nodiscard]] std::vector<OrderedCourse> order_courses(std::span<const Rim> rims,
                                                        std::span<const LibraryCourse> members,
                                                        std::span<const DirectedCourse> laid,

@@ -1,4 +1,4 @@
-/// The winding order of courses on a machine.
+/// Orders courses so that the machine can follow the turns between them.
 #pragma once
 
 #include <span>
@@ -13,14 +13,14 @@ namespace meshwind {
 
 struct FollowedOrder {
     std::vector<OrderedCourse> courses;
-    int turns_refused = 0;  ///< left in the order although the machine cannot follow them
-    ClosedTurns closed{};   ///< all that it was found not to follow
+    int turns_refused = 0;  ///< turns left in the order although the machine cannot follow them
+    ClosedTurns closed{};   ///< all turns that it was found not to follow
 };
 
 /// Orders and arranges courses (order_courses.h, arrange_courses.h). Where the machine cannot
-/// follow a turn from one course to the next, they are put in another order: of those that are
-/// tried, the one with the fewest cuts, and then with the fewest such turns. As far as more fibres
-/// are allowed they are cut at those that are left. \param machine null: each turn can be followed
+/// follow a turn from one course to the next, other orders are tried. The one with the fewest cuts
+/// is taken, and then the one with the fewest such turns. As far as more fibres are allowed, they
+/// are cut at the turns that are left. \param machine null: each turn can be followed
 /// \param members proven \param lateness per entry of `laid` \param fibres that may be tied on, >=
 /// 1
 [[nodiscard]] FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machine,

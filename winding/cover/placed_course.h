@@ -1,4 +1,4 @@
-/// A course in its place on the wall, and how it is moved to another.
+/// Moves of a course from its place on the wall to another.
 #pragma once
 
 #include <cstddef>

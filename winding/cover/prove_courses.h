@@ -1,5 +1,5 @@
-/// Checks courses with every rule and the machine, before they enter a plan; finds which ways
-/// between nodes (balance_courses.h) and which scarce places are open to the machine.
+/// Checks courses by every rule and on the machine, before they enter a plan. Finds the ways
+/// between nodes (balance_courses.h) and the scarce places that are open to the machine.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ namespace meshwind {
 
 /// Follows a course accurately, by every rule, and asks the machine to follow the course between
 /// the halves of turns that lead to it and on from it; without one (null) a free length must be
-/// found all along the course. On CourseFault::None the course becomes what was found, its
-/// footprint that of `rules`, windable in this direction alone; on others it is unchanged.
+/// found all along the course. On CourseFault::None the course becomes the one found, its footprint
+/// that of `rules`, windable in this direction alone; on others it is unchanged.
 [[nodiscard]] CourseFault prove_course(const CourseRules& rules, const Windability* machine,
                                        PlacedCourse& course);
 
@@ -36,7 +36,7 @@ public:
         return prove_course(rules_, machine_, course);
     }
 
-    /// Of a proven course that is to stay; once.
+    /// Winds the program of a proven course that is to stay; once.
     [[nodiscard]] CourseFault wind(PlacedCourse& course) const;
 
     [[nodiscard]] CourseFault prove_and_wind(PlacedCourse& course) const;
@@ -54,15 +54,15 @@ private:
     const Windability* machine_;
 };
 
-/// The library with the verdict on its members, and courses besides that were refused. What is
-/// refused is counted in the plan's effort.
+/// The library with the verdict on its members, and refused courses that are no members. Refusals
+/// are counted in the plan's effort.
 class ProvenLibrary {
 public:
     /// \param effort of the plan; must outlive it
     ProvenLibrary(Library library, PlanEffort& effort);
 
     [[nodiscard]] const Library& library() const { return library_; }
-    /// Of the library itself.
+    /// Number of members of the library itself.
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::span<LibraryCourse> members() {
         return std::span(library_.members).first(size_);
@@ -90,7 +90,7 @@ public:
     /// Strikes off all members, which are not counted.
     void strike_off_all(CourseFault reason);
 
-    /// Notes a course besides the library. Thread-safe.
+    /// Notes a refused course that is no member. Thread-safe.
     void note_refused(std::vector<std::int32_t> footprint, CourseFault reason);
 
     /// Strikes off the member that the course is, if that is still allowed; else notes the course.
@@ -115,13 +115,13 @@ struct ProvenWays {
 };
 
 /// Proves a few courses of each way, and more of those of which none holds. \param ways of the
-/// members \param prove the last word on a course; thread-safe \param progress told a share
+/// members \param prove final check of a course; thread-safe \param progress told a share
 [[nodiscard]] ProvenWays prove_ways(std::span<const LibraryCourse> members, const Ways& ways,
                                     const std::function<CourseFault(PlacedCourse&)>& prove,
                                     const std::function<void(double share)>& progress);
 
-/// Which places are reached by members that hold: at a place that few members pass all of
-/// them are proven, elsewhere one after the other until one holds, so many at most.
+/// Finds the places reached by members that hold. At a place that few members pass all of them are
+/// proven, elsewhere one after the other until one holds, up to a fixed number.
 class ReachProver {
 public:
     /// \param samples their number \param prove thread-safe
@@ -130,7 +130,7 @@ public:
 
     /// Members that are proven have the footprint that was found, and are windable in the
     /// directions that hold. Called again, with directions taken away or more members, it proves
-    /// what that leaves to prove. \return per sample, 1 where a member that holds passes
+    /// only the rest. \return per sample, 1 where a member that holds passes
     [[nodiscard]] std::vector<char> prove(std::span<LibraryCourse> members);
 
     /// Members that the last call found to hold in no direction.

@@ -1,4 +1,4 @@
-/// How the courses of a plan join the rims' nodes.
+/// Arrivals, departures and connected parts of the rims' nodes, joined by the courses of a plan.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace meshwind {
 
-/// How many courses lead from node to node (see balance_courses.h).
+/// Numbers of courses that lead from node to node (see balance_courses.h).
 class RimJoints {
 public:
     explicit RimJoints(std::size_t nodes, std::span<const PlacedCourse> courses = {});
@@ -19,10 +19,11 @@ public:
     /// Arrivals less departures.
     [[nodiscard]] int excess(std::size_t node) const;
 
-    /// Which way a windable member leaves arrivals and departures the evener.
+    /// True when a windable member, of the ways it can be wound, leaves arrivals and departures
+    /// more even wound backward.
     [[nodiscard]] bool evener_backward(const LibraryCourse& member) const;
 
-    /// Per node the lowest one that courses join it to; its own number where there are none.
+    /// Per node the lowest node that courses connect it to; its own number where there are none.
     [[nodiscard]] std::vector<std::size_t> part_of() const;
 
     [[nodiscard]] bool has_courses(std::size_t node) const;

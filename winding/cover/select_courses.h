@@ -1,5 +1,4 @@
-/// Choosing courses from the library: cover everything that can be covered, evenly and with little
-/// fibre.
+/// Selects courses from the library that cover everything in reach, evenly and with little fibre.
 #pragma once
 
 #include <cstddef>
@@ -20,10 +19,10 @@ struct SelectOptions {
     int target_layers = 1;  ///< each reachable sample is to be covered at least this often
     /// The same per sample, below 0 where more than enough lies; empty: `target_layers` everywhere.
     std::span<const std::int32_t> targets{};
-    /// What a sample already covered costs against what a new one earns: fibre laid over fibre is
+    /// Cost of a sample already covered, against the gain of a new one: fibre laid over fibre is
     /// wasted and makes the wall uneven.
     double overlap_weight = 0.35;
-    /// What fibre off the wanted winding angle costs, against 1 for a layer too many.
+    /// Cost of fibre off the wanted winding angle, against 1 for a layer too many.
     double angle_weight = 4.0;
 
     [[nodiscard]] std::int32_t target(std::int32_t sample) const {
@@ -37,9 +36,10 @@ struct Selection {
     std::vector<std::int32_t> layers;  ///< per sample
 };
 
-/// Members that bring most samples to their target, for their fibre, until no more of those in
-/// reach than a share are short of it, or none helps. \param reached per sample \param layers per
-/// sample, what lies there \return members, each once
+/// Members that bring most samples to their target, per length of their fibre, until at most the
+/// share `most_short` of those in reach is short of it, or no member helps. \param reached per
+/// sample
+/// \param layers per sample, laid already \return members, each once
 [[nodiscard]] std::vector<std::int32_t> fill_thin_places(std::span<const LibraryCourse> members,
                                                          std::span<const char> allowed,
                                                          std::span<const char> reached,
@@ -53,13 +53,13 @@ struct FirstChoice {
     std::optional<double> least_fibre_mm;  ///< as in Plan
 };
 
-/// Says of courses whether they hold; asked of some again and again.
+/// Tells of courses whether they hold; called for some of them repeatedly.
 using Holding = std::function<std::vector<char>(std::span<const DirectedCourse>)>;
 
-/// Whole courses for a stage's share of the fractions with which what is left of the wall takes
-/// least fibre (winding/bound/); none behind the last stage. Where some do not hold, the fractions
-/// are looked for without them, a few times. \param reached per sample \param nodes 2 for each rim
-/// No bound of fibre where an angle is wanted.
+/// Chooses whole courses for a stage's share of the fractional solution with the least fibre for
+/// the rest of the wall (winding/bound/); none after the last stage. Where some do not hold, the
+/// fractions are found again without them, a few times. No bound of fibre where an angle is wanted.
+/// \param reached per sample \param nodes 2 for each rim
 [[nodiscard]] FirstChoice choose_first(std::span<const LibraryCourse> members,
                                        std::span<const char> allowed, std::span<const char> reached,
                                        std::span<const Eigen::Vector3d> position_mm,

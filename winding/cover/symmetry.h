@@ -14,14 +14,14 @@
 namespace meshwind {
 
 /// Finds planes in which a mandrel is its own mirror image. The mesh need not be: it is the surface
-/// that counts. Planes are looked for through the wall's centre, square to the rims' axes, to the
-/// principal axes, and to what is square to those.
+/// that counts. The planes tried pass through the wall's centre, square to the rims' axes, to the
+/// principal axes, and to the directions square to those.
 class MirrorImages {
 public:
     /// \param tolerance_mm how far the image of a point of the wall may be off the wall
     MirrorImages(const Mandrel& mandrel, const CoverageSamples& samples, double tolerance_mm);
 
-    /// Images of a place besides itself; as many for each.
+    /// Number of images of a place besides itself; the same for each place.
     [[nodiscard]] std::size_t size() const { return maps_.size(); }
 
     /// An image of a candidate. It runs near that of the candidate's course, as near as the mesh is

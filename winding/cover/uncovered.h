@@ -1,4 +1,4 @@
-/// Why wall is bare, and what looser rules would bring.
+/// Reasons for bare wall, and the coverage in reach if one rule were relaxed.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace meshwind {
 
-/// Groups the samples without a layer by region and reason: what became of most courses that pass
-/// there, with how many courses that is, or where none passes the last check that a candidate
-/// failed. \param rejection per member; None where it could have been laid
+/// Groups the samples without a layer by region and reason: the commonest fault of the courses that
+/// pass there, with their number, or where none passes the last check that a candidate failed.
+/// \param rejection per member; None where it could have been laid
 /// \param layers per sample
 [[nodiscard]] std::vector<Uncovered> uncovered_wall(const Surface& surface,
                                                     const CoverageSamples& samples,
@@ -20,8 +20,8 @@ namespace meshwind {
                                                     std::span<const CourseFault> rejection,
                                                     std::span<const std::int32_t> layers);
 
-/// What courses would reach if one rule were looser, for all rules that are worth a word, the most
-/// useful first.
+/// Coverage in reach if one rule were relaxed, for all rules worth reporting, the most useful
+/// first.
 [[nodiscard]] std::vector<RelaxedRule> coverage_if_relaxed(const CourseRules& rules,
                                                            const CoverageSamples& samples,
                                                            const Library& library,

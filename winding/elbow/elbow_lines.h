@@ -1,5 +1,5 @@
-/// The fibres of an elbow of straight leg, bend and straight leg, without a mesh: geodesics through
-/// the bend, steered on the legs until they run evenly.
+/// Fibre lines on an elbow of straight leg, bend and straight leg, without a mesh. They are
+/// geodesics through the bend, steered on the legs until they run evenly.
 ///
 /// Places on the tube: `along_mm` of the centre line, and phi about it, from the outer equator,
 /// unwrapped. All lines here wind with phi growing along the tube; the other hand is their mirror
@@ -39,12 +39,11 @@ struct ElbowStation {
     double kn_per_mm = 0.0;  ///< of the tube; where leg and bend meet that of the bend
 };
 
-/// What becomes of the lines on a leg, from the bend outward.
+/// The lines on a leg, from the bend outward.
 struct ElbowLeg {
     double run_mm = 0.0;     ///< over which they are steered; beyond it they are helices
     double angle_rad = 0.0;  ///< of all lines beyond it, where `even` is 1
-    /// Share of the way from geodesics (0) to one angle and even distances (1) that the slip
-    /// allows.
+    /// Evenness that the slip allows, from geodesics (0) to one angle and even distances (1).
     double even = 0.0;
     double slip = 0.0;       ///< largest |slip ratio|
     double widest_mm = 0.0;  ///< largest distance of neighbours, square to them
@@ -77,7 +76,7 @@ struct ElbowLines {
 ///     du/dz = -slip / r,   dphi/dz = 1 / (r sqrt(u^2 - 1))
 ///
 /// so u at half the run decides, and the way around is (acosh(u1) - acosh(u0)) / (u1 - u0) dz / r.
-/// Of the runs and angles that the slip allows those are taken that leave no gap with the least
+/// Among the runs and angles that the slip allows it takes those that leave no gap with the least
 /// fibre, or else the least gaps. M is eq. (18), or more where lines on the legs are farther apart
 /// than the width; at most half as many again, and then `closed_mm` says how far the legs are
 /// closed. Accuracy: tests/winding/elbow/elbow_lines_test.cpp. \throws InputError

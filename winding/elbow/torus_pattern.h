@@ -1,4 +1,4 @@
-/// Geodesics around the tube of a torus elbow in closed form, and how many of them a tape needs.
+/// Geodesics around the tube of a torus elbow in closed form, and the number of them for a tape.
 ///
 /// The ring lies around z, as make_torus() has it, but theta counts from the middle of the elbow,
 /// at +x, towards +y; phi counts around the tube from the outer equator towards +z, unwrapped:
@@ -65,7 +65,7 @@ struct TorusLine {
 /// \param count > 0 \throws InputError pattern.out_of_range
 [[nodiscard]] std::vector<TorusLine> torus_lines(const TorusElbow& elbow, int count);
 
-/// Where a line is after phi has grown from 0 (may be negative): theta, length, and alpha there.
+/// Place of a line at phi, counted from phi = 0 (may be negative): theta, length, and alpha there.
 struct TorusStation {
     double theta_rad = 0.0;  ///< since phi = 0, signed; eq. (16)
     double length_mm = 0.0;  ///< since phi = 0, signed

@@ -1,4 +1,4 @@
-/// What a course does for the laminate: over junctions, as hoop, clamping what lies under it.
+/// Role of a course in the laminate: over junctions, as hoop, clamping the fibre under it.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace meshwind {
 
-/// What a course has to do with what holds the laminate together.
+/// Lengths of a course by their role in holding the laminate together.
 struct CourseCharacter {
     double length_mm = 0.0;
     double junction_mm =
-        0.0;                ///< of it, where the wall is not like a pipe: blends, knuckles, domes
+        0.0;                ///< the part where the wall is not like a pipe: blends, knuckles, domes
     double hoop_mm = 0.0;   ///< over pipes within 20 degrees of hoop
     double clamp_mm = 0.0;  ///< over pipes, weighed by how far it presses on: sin^2 of the angle
     /// From -1, all in junctions, to 1, all hoop.

@@ -1,4 +1,4 @@
-/// How often the wall is covered, in numbers and per triangle.
+/// Coverage of the wall in figures, use of fibre, and mean layers per triangle.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ namespace meshwind {
 [[nodiscard]] FibreUse fibre_use(const Plan& plan, double tow_width_mm, double wall_mm2,
                                  double layers);
 
-/// Mean layers per face of the surface; for a face without a sample speak those of the nearest
-/// faces with samples.
+/// Mean layers per face of the surface; a face without a sample takes those of the nearest faces
+/// with samples.
 [[nodiscard]] std::vector<double> layers_per_face(const Surface& surface,
                                                   const CoverageSamples& samples,
                                                   std::span<const std::int32_t> layers);

@@ -1,4 +1,4 @@
-/// Families of parallel courses: what makes a plan readable, and a winding even.
+/// Finds families of parallel courses, which make a plan readable and a winding even.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@
 
 namespace meshwind {
 
-/// A family has at least so many members.
+/// Least number of members of a family.
 inline constexpr std::size_t kMinFamily = 3;
 
-/// A course as its neighbours see it: some places spread over it, and points close together.
+/// Shape of a course for finding neighbours: some places spread over it, and points close together.
 class CourseShape {
 public:
     /// \param path at least two points \param band_mm > 0
@@ -65,14 +65,14 @@ public:
     /// Per course: 1 where it and `shape` are neighbours.
     [[nodiscard]] std::vector<char> beside(const CourseShape& shape) const;
 
-    /// \param row what beside() says of the shape
+    /// \param row answer of beside() for the shape
     void add(CourseShape shape, const std::vector<char>& row);
     void replace(std::size_t course, CourseShape shape, const std::vector<char>& row);
     void remove(std::size_t course);
 
     /// Per course its family, numbered by their first members; -1 where it belongs to none.
     [[nodiscard]] std::vector<std::int32_t> families() const { return families({}, nullptr); }
-    /// How many belong to none, with one taken out and one with `row` put in.
+    /// Number of courses without a family, with one taken out and one with `row` put in.
     [[nodiscard]] int without_family(std::optional<std::size_t> out = {},
                                      const std::vector<char>* row = nullptr) const;
 
@@ -85,8 +85,8 @@ private:
 };
 
 /// The family of every course, -1 where it belongs to none; numbered by their first members. A
-/// family is joined by neighbours. Time grows with the courses' length and with how many of them
-/// come near each other, not with their number squared.
+/// family is joined by neighbours. Time grows with the courses' length and the number of those near
+/// each other, not with their number squared.
 /// \param courses in winding order \param band_mm > 0
 [[nodiscard]] std::vector<std::int32_t> families_of(std::span<const SurfacePath* const> courses,
                                                     double band_mm);

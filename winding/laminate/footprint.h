@@ -1,4 +1,4 @@
-/// Which coverage samples the band of a path covers.
+/// Footprints: the coverage samples that the band of a path covers.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ private:
     struct Slab {
         Eigen::Vector3d start_mm;
         float length_mm;
-        float half_height_mm;  // how far off its plane the wall is looked for
+        float half_height_mm;  // distance from its plane within which the wall is sought
         Eigen::Vector3f along;
         Eigen::Vector3f across;
         Eigen::Vector3f up;
@@ -84,7 +84,7 @@ private:
 
     // True where all samples of a slab are near a group.
     [[nodiscard]] bool holds(std::size_t group, const Slab& slab) const;
-    // Those near a slab that lies elsewhere; `centre_mm` is what they are offsets from.
+    // Samples near a slab that lies elsewhere, as offsets from `centre_mm`.
     [[nodiscard]] std::vector<Block> blocks_about(const Slab& slab,
                                                   const Eigen::Vector3d& centre_mm) const;
 

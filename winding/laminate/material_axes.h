@@ -1,4 +1,4 @@
-/// From which direction fibre angles count on each triangle.
+/// Material axes: the direction on each triangle from which fibre angles count.
 #pragma once
 
 #include <vector>

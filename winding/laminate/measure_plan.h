@@ -1,4 +1,4 @@
-/// What a plan that was not made from coverage samples covers.
+/// Measures coverage and figures of a plan that was not made from coverage samples.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@
 
 namespace meshwind {
 
-/// Parts of a surface by position; an empty one is all of it.
+/// Parts of a surface by position; an empty zone is all of it.
 struct PlanZones {
     using Zone = std::function<bool(const Eigen::Vector3d& position_mm)>;
 
-    /// What is to be covered. Wall elsewhere is left out of mean, maximum and scatter, and
+    /// The zone to be covered. Wall elsewhere is left out of mean, maximum and scatter, and
     /// Coverage::reachable is the share of this zone; without one it is left at 0.
     Zone asked_for{};
     /// Where the winding is regular: Coverage::regular_cv is measured there; none without one.
@@ -35,8 +35,8 @@ struct PlanZones {
 [[nodiscard]] CoverageSamples plan_samples(const Surface& surface, double tow_width_mm,
                                            std::uint64_t seed, Stream stream = Stream::Sampling);
 
-/// The path of course `i` with as much of the turns before and after it as its band still covers
-/// wall from.
+/// The path of course `i`, with those parts of the turns before and after it from which its band
+/// still covers wall.
 [[nodiscard]] SurfacePath course_with_ends(std::span<const Piece> pieces, std::size_t i,
                                            double tow_width_mm);
 
@@ -47,7 +47,7 @@ struct PlanZones {
                                                           std::span<const Piece> pieces,
                                                           double tow_width_mm);
 
-/// Coverage by a fibre as it lies, with its turns. \param wall what the stations' faces are of, as
+/// Coverage by a fibre as it lies, with its turns. \param wall surface of the stations' faces, as
 /// in measure_plan() \return `reachable` is left at 0
 [[nodiscard]] Coverage coverage_of_fibre(const Surface& surface, const Surface& wall,
                                          double tow_width_mm, std::uint64_t seed,
@@ -59,8 +59,8 @@ void describe_courses(const Surface& wall, double tow_width_mm, std::optional<do
                       Plan& plan);
 
 /// Fills in coverage, layers per face, winding angles and places of a plan's courses.
-/// \param surface what is to be covered \param wall what the stations' faces are of: the surface,
-/// or the surface with more faces after its own \param seed of the samples
+/// \param surface to be covered \param wall surface of the stations' faces: `surface`, or `surface`
+/// with more faces after its own \param seed of the samples
 void measure_plan(const Surface& surface, const Surface& wall, double tow_width_mm,
                   std::uint64_t seed, const PlanZones& zones, Plan& plan);
 

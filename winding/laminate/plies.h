@@ -1,4 +1,4 @@
-/// What lies on each triangle of the wall: the bands over it, from the bottom to the top.
+/// The plies on each triangle of the wall: the bands over it, from the bottom to the top.
 #pragma once
 
 #include <cstdint>
@@ -41,11 +41,13 @@ struct PliesOptions {
 
 /// Measures plies as coverage is measured: by the samples of measure_plan() and the footprints on
 /// them, so that the shares of a triangle's plies add up to Plan::face_layers, and the covered
-/// shares of all samples to Coverage::fraction. A triangle without a sample has the plies of those
-/// that speak for it (sampled_faces()). A course that comes back over a triangle more than two
-/// bands later lays another ply. The cover planner counts on stations that lie closer than those of
-/// the plan; its sums differ by what lies at the bands' edges (docs/files.md, "layup.json"). \param
-/// wall what the stations' faces are of: the surface, or the surface with more faces after its own
+/// shares of all samples to Coverage::fraction. A triangle without a sample has the plies of the
+/// triangles that speak for it (sampled_faces()). A course that comes back over a triangle more
+/// than two bands later lays another ply. The cover planner counts on stations that lie closer than
+/// those of the plan; its sums differ by the samples at the bands' edges (docs/files.md,
+/// "layup.json").
+/// \param wall surface of the stations' faces: `surface`, or `surface` with more faces after its
+/// own
 [[nodiscard]] Plies plies_of(const Surface& surface, const Surface& wall,
                              std::span<const Piece> pieces, const PliesOptions& options);
 

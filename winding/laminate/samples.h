@@ -33,8 +33,9 @@ struct CoverageSamples {
 /// Samples that speak for each face: of how many and of which faces.
 struct SampledFaces {
     std::vector<std::int32_t> samples;  ///< per face: how many lie on it
-    /// Per face: itself where it has a sample, else its neighbours that have one, else what speaks
-    /// for its neighbour nearest to those; kNoFace behind the last. None in a piece without any.
+    /// Per face: itself where it has a sample, else its neighbours that have one, else the faces
+    /// that speak for its neighbour nearest to those; kNoFace behind the last. None in a piece
+    /// without any.
     std::vector<std::array<std::int32_t, 3>> speaks;
 };
 [[nodiscard]] SampledFaces sampled_faces(const Surface& surface, const CoverageSamples& samples);

@@ -22,7 +22,7 @@ namespace meshwind {
 [[nodiscard]] std::optional<double> axial_direction_rad(const Surface& surface,
                                                         const SurfacePoint& place);
 
-/// How a course keeps to a wanted winding angle.
+/// Deviation of a course from a wanted winding angle.
 struct AngleKept {
     double measured_mm = 0.0;  ///< length over pipes
     double off_mm = 0.0;       ///< of that, weighed by how far off: all of it from 10 degrees on

@@ -1,4 +1,4 @@
-/// Pieces of a plan from finished paths, and how they are put together.
+/// Builds pieces of a plan from finished paths and appends them to the plan.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,15 @@
 
 namespace meshwind {
 
-/// Distance of the stations of a plan, as the other planners have it.
+/// Distance of the stations of a plan, the same for all planners.
 inline constexpr double kPatternStation_mm = 4.0;
 
-/// On walls of less than 25 mm radius so much of it: what a cubic between two stations is off is
-/// the same share of the radius everywhere.
+/// Distance on walls of less than 25 mm radius, as a share of the radius: the error of a cubic
+/// between two stations is the same share of the radius everywhere.
 inline constexpr double kStationShare = 0.16;
 
-/// And there no more than so much of the tow, as a tow of 6 mm has it on larger ones: bands are
-/// followed beyond a rim by as much as they are wide.
+/// Its upper bound there in tow widths, as for a tow of 6 mm on larger walls: bands are followed
+/// beyond a rim by as much as they are wide.
 inline constexpr double kStationTows = 2.0 / 3.0;
 
 [[nodiscard]] inline double station_on_mm(double radius_mm, double tow_mm) {
@@ -33,17 +33,17 @@ inline constexpr double kStationTows = 2.0 / 3.0;
 /// \param path on the patches or the ideal body, with normals, tangents, kn and arc lengths
 [[nodiscard]] Piece course_along(const Surface& surface, SurfacePath path, Friction friction);
 
-/// A turn over a rim, and what it asks of the rim's extension.
+/// A turn over a rim, with its demands on the rim's extension.
 struct LaidTurn {
     Piece piece;
     TurnsAtRim asks;
     std::int32_t rim = -1;
 };
 
-/// Puts a piece at the plan's end and adds its length, slip, bridging and joint to the plan's.
+/// Appends a piece to the plan and adds its length, slip, bridging and joint to the plan's.
 void add_piece(Piece piece, Plan& plan);
 
-/// The same of a turn, with what it asks of its rim. \pre plan.turns has an entry for the rim
+/// Appends a turn, with its demands on its rim. \pre plan.turns has an entry for the rim
 void add_turn(LaidTurn turn, Plan& plan);
 
 }  // namespace meshwind

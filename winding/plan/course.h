@@ -1,4 +1,4 @@
-/// A course in each of its states: candidate, sketch, member of the library, followed, placed on
+/// Courses, one type for each state: candidate, sketch, member of the library, followed, placed on
 /// the wall, laid one way or the other, in winding order.
 #pragma once
 
@@ -14,13 +14,13 @@
 
 namespace meshwind {
 
-/// A path by what determines it: traced both ways from a seed until it meets a rim.
+/// A path by its parameters: traced both ways from a seed until it meets a rim.
 struct Candidate {
     SurfacePoint seed;
     double angle_rad =
         0.0;  ///< direction in the tangent plane, from a fixed but arbitrary reference
     double slip_ratio = 0.0;   ///< steering where the surface is convex along the path
-    double more_behind = 0.0;  ///< added to it from the seed back to end 0
+    double more_behind = 0.0;  ///< added to slip_ratio from the seed back to end 0
 };
 
 /// An admissible course: from end 0 to end 1, each over a rim.
@@ -35,14 +35,14 @@ struct LibraryCourse {
     std::vector<std::int32_t> footprint;  ///< coverage samples
 };
 
-/// In one direction at least.
+/// True when it is windable in at least one direction.
 [[nodiscard]] inline bool is_windable(const LibraryCourse& member) {
     return member.windable_forward || member.windable_backward;
 }
 
-/// A candidate as the walk over the facets sees it: a first opinion, many times as fast as judge().
+/// A candidate traced by the walk over the facets: a first estimate, many times as fast as judge().
 struct DraftCourse {
-    LibraryCourse course;  ///< windable neither way until that is looked into
+    LibraryCourse course;  ///< windable neither way until that is checked
     SurfacePath path;      ///< from end 0 to end 1
 };
 
@@ -59,10 +59,10 @@ struct PlacedCourse {
     SurfacePath path;  ///< from end 0 to end 1
     bool backward = false;
     bool wound = false;  ///< its own program lays it as planned
-    /// Which of the courses that lead from stage to stage (fibre_routes.h) it is: such a one stays
-    /// as it is. -1 for all others.
+    /// Its number among the courses that lead from stage to stage (fibre_routes.h), which are not
+    /// moved. -1 for all others.
     std::int32_t link = -1;
-    std::int32_t of_library = -1;  ///< the member that it is; -1: it was moved
+    std::int32_t of_library = -1;  ///< its member of the library; -1: it was moved
 };
 
 /// A course with the way it is wound.
@@ -82,7 +82,7 @@ struct DirectedCourse {
     return member.end[backward ? 0 : 1];
 }
 
-/// A place where fibres are joined: a rim's extension, circled in one sense. A fibre that arrives
+/// A node is a rim's extension, circled in one sense; fibres are joined there. A fibre that arrives
 /// at a node leaves from the same node.
 [[nodiscard]] inline std::size_t arrival_node(const RimCrossing& end) {
     return 2 * static_cast<std::size_t>(end.rim) + (end.sense > 0 ? 1U : 0U);

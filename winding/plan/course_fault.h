@@ -1,4 +1,4 @@
-/// Why courses are not laid.
+/// Reasons why a candidate is not admissible or a course is not laid.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ enum class CandidateFault : std::uint8_t {
     NoRim,
     NotTurnable,  ///< by friction
     TouchesPins,  ///< on its way between two of them
-    MissesPins,   ///< none beside it ends where pins take hold of it
+    MissesPins,   ///< no course beside it ends where pins take hold of it
     Bridging,
     Slips,
     NotWindable
@@ -25,13 +25,13 @@ inline constexpr std::size_t kCandidateFaults = 8;
 /// Why a course that the library admits is not laid after all, or not in one direction.
 enum class CourseFault : std::uint8_t {
     None,
-    Path,  ///< followed accurately it bridges, or ends where it cannot be turned
+    Path,  ///< traced accurately, it bridges or ends where it cannot be turned
     Slip,
     FreeLength,
     AxisTravel,
     FibreHit,
     HeadHit,
-    Laydown,     ///< wound again its program does not lay it as planned
+    Laydown,     ///< its program, wound again, does not lay it as planned
     InItsPlace,  ///< the machine refuses it, or a turn next to it, between its neighbours
     Apart,       ///< no single fibre joins it to the others
     NotPlanned,  ///< too little of the wall is in reach

@@ -1,4 +1,4 @@
-/// Who made a plan, and of what: the pattern of a body of revolution, the lines of an elbow.
+/// Planner and details of a plan: the pattern of a body of revolution, the lines of an elbow.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ enum class Planner { None, Cover, Pattern, Elbow, Imported };
 /// "cover", "pattern", ...; "" for None.
 [[nodiscard]] const char* name_of(Planner planner);
 
-/// Whether the band that comes to lie beside the first one lies ahead of it, seen in the direction
-/// in which circuits advance, or behind it.
+/// Side of the first band on which its neighbour is laid, in the direction in which circuits
+/// advance: ahead of it or behind it.
 enum class BandOrder { Leading, Lagging };
 
 /// A closed pattern.
 struct Pattern {
     std::int64_t circuits = 0;  ///< N
     std::int64_t turns = 0;     ///< K: of the mandrel in N circuits; gcd(N, K) = 1
-    /// n, the pattern number: after so many circuits a band lies beside the first one. It is also
-    /// the number of diamonds of crossing bands around the mandrel. At most N / 2 for N > 1.
+    /// n, the pattern number: circuits after which a band lies beside the first one. It is also the
+    /// number of diamonds of crossing bands around the mandrel. At most N / 2 for N > 1.
     std::int64_t starts = 0;
     std::int64_t skip = 0;  ///< k: whole turns in n circuits, n K = k N +- 1; gcd(n, k) = 1
     BandOrder order = BandOrder::Leading;  ///< + or - there; Leading where both hold (N <= 2)
@@ -74,7 +74,7 @@ struct LaidPattern {
     std::optional<LaidLattice> lattice{};
 };
 
-/// What becomes of the lines on a leg of an elbow, see winding/elbow/elbow_lines.h.
+/// The lines on a leg of an elbow, see winding/elbow/elbow_lines.h.
 struct LaidElbowLeg {
     double length_mm = 0.0;
     double run_mm = 0.0;     ///< over which they are steered, from the bend on
@@ -98,7 +98,7 @@ struct LaidElbow {
     std::optional<CentreLine> line{};   ///< of the tube, from the first rim to the second
 };
 
-/// Nothing where a planner has nothing to add to the courses, or failed.
+/// Empty where a planner adds nothing to the courses, or failed.
 using PlanDetails = std::variant<std::monostate, LaidPattern, LaidElbow>;
 
 }  // namespace meshwind

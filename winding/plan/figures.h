@@ -1,4 +1,4 @@
-/// Figures of a plan: coverage, winding angles, places in the order, what the planning took.
+/// Figures of a plan: coverage, winding angles, places in the order, planning effort.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@ namespace meshwind {
 /// How the wall is covered, measured on the coverage samples.
 struct Coverage {
     double fraction = 0.0;   ///< share of the wall under at least one layer
-    double reachable = 0.0;  ///< share that courses pass which hold
-    /// Of covers: share that courses pass which hold and which the plan's fibres can join.
+    double reachable = 0.0;  ///< share passed by courses that hold
+    /// Of covers: share passed by courses that hold and that the plan's fibres can join.
     std::optional<double> joinable{};
     double mean_layers = 0.0;
     int max_layers = 0;
-    int p1_layers = 0;  ///< 99 % of the wall in reach has at least so many: the first percentile
+    int p1_layers = 0;  ///< first percentile: 99 % of the wall in reach has at least this many
     double cv = 0.0;    ///< standard deviation of the layers over their mean
     /// The same where a pattern is regular, of the layers averaged over a tow width.
     std::optional<double> regular_cv{};
@@ -26,11 +26,12 @@ struct Coverage {
     std::optional<double> thickest_layers{};
 };
 
-/// What becomes of a plan's fibre.
+/// Use of a plan's fibre.
 struct FibreUse {
-    /// All fibre over that of the layers asked for without a gap, an overlap or a turn: 1 at best.
+    /// All fibre divided by that of the layers asked for without a gap, an overlap or a turn; at
+    /// best 1.
     double factor = 0.0;
-    double turn_share = 0.0;  ///< of all fibre, what lies in turns and is cut off
+    double turn_share = 0.0;  ///< share of all fibre that lies in turns and is cut off
 };
 
 /// Share of the wall that a pattern must cover for `auto` to take it, and of what is in reach that
@@ -48,7 +49,7 @@ struct Uncovered {
     std::string rule;
 };
 
-/// A rule that keeps wall bare, loosened: what courses would reach then.
+/// Coverage in reach if one rule were relaxed.
 struct RelaxedRule {
     enum class Rule { Friction, Bridging, Extension, Pins } rule = Rule::Friction;
     double factor = 1.0;     ///< on the rule's number; 1 of turns on pins in place of friction
@@ -59,9 +60,9 @@ struct RelaxedRule {
 struct WoundAngles {
     double measured_mm = 0.0;  ///< over pipes; 0 where the wall has none
     double mean_rad = 0.0;
-    std::optional<double> wish_rad{};  ///< what was wanted, if anything
+    std::optional<double> wish_rad{};  ///< wanted winding angle, if any
     double rms_off_rad = 0.0;          ///< from the wish
-    double off_share = 0.0;  ///< of the fibre over pipes: 10 degrees off or more counts all
+    double off_share = 0.0;  ///< of the fibre over pipes; from 10 degrees off on all counts
 };
 
 /// Where in the order the fibre of each kind lies: 0 first, 1 last, 0.5 where the order does not
@@ -71,7 +72,7 @@ struct Places {
     double hoop = 0.5;
 };
 
-/// What planning took; for reports.
+/// Effort of the planning; for reports.
 struct PlanEffort {
     std::uint64_t seed = 0;
     double effort = 0.0;  ///< asked for

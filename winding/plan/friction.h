@@ -1,4 +1,4 @@
-/// What friction holds a fibre with.
+/// Friction between fibre and wall: the largest slip ratio that holds.
 #pragma once
 
 #include "core/margins.h"
@@ -6,14 +6,14 @@
 namespace meshwind {
 
 /// Friction under one layer. It is made in one place (pipeline/job/job_friction.h) and carried by
-/// Setup, Tow, TurnRule and VerifyRules; who lays or judges fibre asks it what holds.
+/// Setup, Tow, TurnRule and VerifyRules; code that lays or judges fibre asks it for the limit.
 ///
 /// A layer has one number. The closed forms of turns (winding/turn/turn.h) want one for a turn, and
-/// what is steered with a constant slip ratio one for a pass. A law that varies along the path
-/// therefore answers planners with the least that holds anywhere on the layer, and `holds()` is
-/// asked with the station only where single stations are judged: SlipOptions and the check `slip`
-/// of postproc/verify/laid_checks.cpp, courses of a cover in winding/cover/library.cpp, and what
-/// the blocks may add in pipeline/block_time.cpp.
+/// steering with a constant slip ratio wants one for a pass. A law that varies along the path
+/// therefore gives planners its least value on the layer, and `holds()` is asked with the station
+/// only where single stations are judged: SlipOptions and the check `slip` of
+/// postproc/verify/laid_checks.cpp, courses of a cover in winding/cover/library.cpp, and what the
+/// blocks may add in pipeline/block_time.cpp.
 class Friction {
 public:
     /// \param ratio >= 0, |kg / kn|
@@ -22,11 +22,11 @@ public:
     /// The largest |slip ratio| that holds at all: verify judges the laid fibre by it.
     [[nodiscard]] constexpr double holds() const { return ratio_; }
 
-    /// A part of what holds. \param part a stage's share (core/margins.h); negative: to the other
+    /// A share of the limit. \param part a stage's share (core/margins.h); negative: to the other
     /// side
     [[nodiscard]] constexpr double share(double part) const { return part * ratio_; }
 
-    /// What planners have as theirs: the rest is for what the blocks of a program add.
+    /// The share for planners; the rest is for the slip that the blocks of a program add.
     [[nodiscard]] constexpr Friction planned() const { return share(margin::kPlannedFriction); }
 
 private:

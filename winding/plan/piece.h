@@ -1,4 +1,4 @@
-/// A stretch of the fibre: a course, or what leads from one course to the next.
+/// Pieces of a plan's fibre: courses, and the transitions between them.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ namespace meshwind {
 
 enum class PieceKind { Course, Transition };
 
-/// Where the straight free fibre begins that leads to the eye, when that is not where the fibre is
-/// laid: on the flank of a pin ahead (pin_turn.h).
+/// Start of the straight free fibre that leads to the eye, where that is not the place where the
+/// fibre is laid but the flank of a pin ahead (pin_turn.h).
 struct FreeStart {
     Eigen::Vector3d from_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
@@ -36,9 +36,9 @@ struct Piece {
     bool starts_fibre = false;  ///< tied on before this piece
 };
 
-/// Keeps stations at least `step_mm` apart, or as many as tell the direction in between to 0.03
-/// deg; both ends, both sides of a feature edge, and where the fibre leaves the wall or meets it
-/// again the stations on either side of that place.
+/// Removes stations: those left are at least `step_mm` apart, or as many as give the direction in
+/// between to 0.03 deg. Kept are both ends, both sides of a feature edge, and the stations on
+/// either side of a place where the fibre leaves the wall or meets it again.
 void thin_out(Piece& piece, double step_mm);
 
 /// Per piece the number of its course in winding order: its own, or of the one before the turn.

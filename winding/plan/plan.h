@@ -1,4 +1,4 @@
-/// What is wound: courses and the turns that join them, in order, with what they cover.
+/// A winding plan: courses and the turns that join them, in order, with their coverage.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ struct Plan {
     std::vector<Piece> pieces;
     int courses = 0;
     int fibres = 0;  ///< continuous fibres, one after the other
-    /// Share of the wall that courses of one fibre reach, of two, ... as far as more reach more.
+    /// Share of the wall that courses of one fibre reach, of two, ... as long as another one adds
+    /// to it.
     std::vector<double> reach_of_fibres;
     double fibre_length_mm = 0.0;
     double worst_slip = 0.0;
@@ -29,14 +30,14 @@ struct Plan {
     Coverage coverage;
     std::vector<Uncovered> uncovered;
     std::vector<char> reached;   ///< per place of a stage's ask (stage_ask.h): 1 or 0; or empty
-    std::vector<char> joinable;  ///< of that, what the plan's fibres can join; or empty
+    std::vector<char> joinable;  ///< of those, the ones that the plan's fibres can join; or empty
     std::vector<double> face_layers;   ///< per face of the surface: mean layers
     std::vector<RelaxedRule> what_if;  ///< where wall is out of reach, the most useful first
     std::vector<TurnsAtRim> turns;     ///< per rim
     std::vector<PinRing> pins{};       ///< that the turns need, at most one ring per rim
     std::vector<std::int32_t> family;  ///< per course in winding order (families.h)
     WoundAngles angle;                 ///< of the courses
-    /// Of a stage of a wall: what is left of it takes no less fibre (winding/bound/).
+    /// Of a stage of a wall: lower bound of the fibre for the rest of the wall (winding/bound/).
     std::optional<double> least_fibre_mm;
     Places places;  ///< of junctions and hoops in the winding order
     PlanDetails details;
@@ -50,7 +51,7 @@ struct Plan {
     [[nodiscard]] const LaidElbow* elbow() const { return std::get_if<LaidElbow>(&details); }
 };
 
-/// The rejection that counts most.
+/// The commonest rejection.
 [[nodiscard]] CourseFault commonest_rejection(const PlanEffort& effort);
 
 /// In words, "123 of 456 candidates: reaches no rim" and "12 of 34: the head would come too near".

@@ -1,4 +1,4 @@
-/// Where fibre leaves the wall and comes back: crossings of rims, and what turns ask of them.
+/// Crossings of rims by courses, and the demands of turns on the rims' extensions.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ struct RimCrossing {
     double azimuth_rad = 0.0;  ///< about the axis, counter-clockwise, from `rim_reference`
     double angle_rad = 0.0;    ///< beta between fibre and axis, 0 = axial, pi/2 = hoop
     int sense = 0;             ///< +1 when the fibre leaves the mandrel counter-clockwise, else -1
-    /// >= 0: about the axis, that the fibre goes on straight through the air before it lies on the
-    /// extension; above 0 over hollow rims (hollow_rim.h).
+    /// >= 0: angle about the axis over which the fibre runs straight through the air before it lies
+    /// on the extension; above 0 over hollow rims (hollow_rim.h).
     double ahead_rad = 0.0;
 };
 
-/// What the turns of a plan ask of one rim's extension.
+/// Demands of a plan's turns on one rim's extension.
 struct TurnsAtRim {
     int turns = 0;
     double extension_mm = 0.0;  ///< axial length that they and the band need

@@ -1,4 +1,4 @@
-/// What planners ask of the machine.
+/// The planners' interface to the machine: whether pieces and plans can be wound.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@
 
 namespace meshwind {
 
-/// A whole plan, wound on trial. The machine's side derives from it and keeps there what it made,
-/// so that a plan that stands need not be wound once more.
+/// A whole plan, wound on trial. The machine's side derives from it and keeps its results there, so
+/// that an accepted plan need not be wound once more.
 struct TrialWinding {
     TrialWinding() = default;
     TrialWinding(const TrialWinding&) = delete;
@@ -41,8 +41,8 @@ public:
     /// some hundred times as long as follow().
     [[nodiscard]] virtual CourseFault wind_alone(std::span<const Piece> pieces) const = 0;
 
-    /// The same of the first circuits of a pattern, looking at every free length as wind_all()
-    /// does: seconds.
+    /// The same for the first circuits of a pattern, with every free length tried as by wind_all():
+    /// seconds.
     [[nodiscard]] virtual CourseFault wind_circuits(std::span<const Piece> pieces) const = 0;
 
     /// Winds all of a plan, each piece in its place. Seconds.

@@ -1,4 +1,4 @@
-/// How far a helical pass is steered so that it reaches both ends of a body of revolution.
+/// Slip ratios with which a helical pass reaches both ends of a body of revolution.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@ namespace meshwind {
 
 struct AimTask {
     double angle_rad = 0.0;  ///< at the widest place, 0 to pi / 2
-    double most_slip = 0.0;  ///< >= 0: what the friction holds
+    double most_slip = 0.0;  ///< >= 0: largest that the friction holds
     /// Per end: a turn nearer to the axis would put the band over the opening or the pole.
     std::array<double, 2> touching_mm{};
 };
 
 struct PassAim {
     HalfSlips slip;
-    std::string failure;  ///< not empty: no slip leads there; how far it comes and what would
+    std::string failure;  ///< not empty: no slip leads there; says how far it comes and what would
 };
 
 /// The slip ratios below and above the widest place with which a pass comes to both ends.
@@ -26,8 +26,8 @@ struct PassAim {
 ///    45 deg or more, where that one narrows to the end and is convex, but for a hollow lip. A pass
 ///    that turns there, or runs over its opening, needs no steering.
 ///  - To any other end it must come at no more than the angle asked for or 70 deg, whichever is
-///    more: beyond, layers pile up as 1 / cos. Of the slips with which it is no steeper on its way
-///    either, the least is taken; where the friction does not suffice for that, all of it, and the
+///    more: beyond, layers pile up as 1 / cos. The least slip is taken with which it is no steeper
+///    on its way either. Where the friction does not suffice for that, all of it is used, and the
 ///    corner of a neck may be crossed at up to 85 deg.
 ///  - Where a pass would turn before a cap it is steered as far into it as the friction and the
 ///    band's touching the opening allow: most of the wall is wound.

@@ -1,4 +1,4 @@
-/// Circuits over a body of revolution that close: the pass that they repeat, and their pattern.
+/// Finds closed circuits over a body of revolution: the pass that they repeat, and their pattern.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace meshwind {
 
-/// What a pattern is planned for; references must outlive it.
+/// Input of a pattern plan; references must outlive it.
 struct PatternTask {
     const Mandrel& mandrel;
     const BodyOfRevolution& body;

@@ -1,5 +1,5 @@
-/// How a fibre gets from one pattern to the next on a body of revolution: steered passes from end
-/// to end, each turning a little nearer to where the next pattern turns.
+/// Leads a fibre from one pattern to the next on a body of revolution by steered passes. They run
+/// from end to end, each turning a little nearer to where the next pattern turns.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace meshwind {
 
-/// What the fibre is to do at an end of the body.
+/// Goal of the fibre at an end of the body.
 struct ConnectingGoal {
     enum class Kind {
         None,      ///< turn by itself and go on to the other end
@@ -41,13 +41,14 @@ struct ConnectingPasses {
 };
 
 /// Each pass has one constant slip ratio, found by halving, with which it arrives exactly; where
-/// the friction is too little for that, the whole friction towards it, and another pass follows.
+/// the friction is too little for that, the pass takes all of it towards the goal, and another pass
+/// follows.
 /// Accuracy: arrives within 1e-9 mm of the parallel
 /// (tests/winding/revolution/connecting_passes_test.cpp). \pre from_arc_mm is between the ends
 [[nodiscard]] ConnectingPasses connecting_passes(const Meridian& meridian,
                                                  const ConnectingRequest& request);
 
-/// The same way the other way round: from its end to its beginning, azimuth growing from 0.
+/// The same passes reversed: from their end to their beginning, azimuth growing from 0.
 [[nodiscard]] std::vector<std::vector<MeridianStation>> other_way_round(
     const ConnectingPasses& way);
 

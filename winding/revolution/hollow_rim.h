@@ -1,5 +1,5 @@
-/// Hollow rims: a wall that narrows towards a rim, and the extension beyond, make a concave crease,
-/// which a fibre goes straight over.
+/// Leads passes straight over hollow rims. At these a wall that narrows towards the rim and the
+/// extension beyond make a concave crease.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace meshwind {
 
-/// By how much the wall narrows towards the extension at an end; <= 0: the rim is no hollow.
+/// Angle by which the wall narrows towards the extension at an end; <= 0: the rim is no hollow.
 [[nodiscard]] double rim_kink_rad(const Meridian& meridian, bool upper);
 
-/// Shallower rims count as straight: by as much the meridian of a fine mesh leans, and over them a
+/// Shallower rims count as straight: the meridian of a fine mesh leans by as much, and over them a
 /// turn steered by friction is off by less than 0.01 deg.
 inline constexpr double kMinRimKink_rad = 1e-3;
 
-/// What a fibre does at a rim.
+/// The ways of a fibre at a rim.
 enum class RimLift {
     OnWall,      ///< the rim is no hollow: it lies on the wall up to it
     Straight,    ///< it leaves the wall before the rim and touches the extension beyond
@@ -44,7 +44,7 @@ enum class RimLift {
 
 struct LiftOptions {
     double angle_rad = 0.0;    ///< of the pass at its widest place; for words
-    double most_gap_mm = 0.5;  ///< a tow may be so high over the rim
+    double most_gap_mm = 0.5;  ///< largest height of a tow over the rim
     double station_mm = 4.0;
 };
 
@@ -58,14 +58,14 @@ struct LaidPass {
 [[nodiscard]] LaidPass lifted_over_rims(const Meridian& meridian, const MeridianPass& on_wall,
                                         const LiftOptions& options);
 
-/// The way of a fibre's first pass, from an end to the other: as the others, but for where it is
-/// tied on, on the wall at the rim; azimuths are those of `laid`, or of way_back(laid).
+/// The way of a fibre's first pass, from one end to the other: as the other passes, but tied on at
+/// the rim, on the wall; azimuths are those of `laid`, or of way_back(laid).
 [[nodiscard]] std::vector<MeridianStation> tied_on_way(const Meridian& meridian,
                                                        const MeridianPass& on_wall,
                                                        const MeridianPass& laid, std::size_t from,
                                                        double station_mm);
 
-/// By how much azimuth it begins ahead of where the others come back over that rim.
+/// Azimuth by which it begins ahead of the place where the others come back over that rim.
 [[nodiscard]] double tied_on_beside_rad(const MeridianPass& on_wall, const MeridianPass& laid,
                                         std::size_t from);
 

@@ -17,13 +17,13 @@ struct CylinderPart {
 /// The cylinder about a place of a meridian; empty (from = to) where it is curved or slopes there.
 [[nodiscard]] CylinderPart cylinder_at(const Meridian& meridian, double arc_mm);
 
-/// The stretch of a meridian between two heights, as wide as at its widest place: what is left of a
-/// cylinder that layers lie on. \param low_z_mm, high_z_mm beyond the meridian: as far as it goes
+/// The stretch of a meridian between two heights, as wide as at its widest place: the rest of a
+/// cylinder under layers. \param low_z_mm, high_z_mm beyond the meridian: as far as it goes
 [[nodiscard]] CylinderPart cylinder_between(const Meridian& meridian, double low_z_mm,
                                             double high_z_mm);
 
-/// What of a part hoops hold on: between the places nearest to its ends where, half a band further
-/// in, a hoop is no steeper than so. Empty where its middle is steeper.
+/// The stretch of a part on which hoops hold: between the places nearest to its ends where, half a
+/// band further in, a hoop is no steeper than `most_slope`. Empty where its middle is steeper.
 /// \param most_slope tan(slope) of the meridian, the slip ratio with which a hoop holds, > 0
 [[nodiscard]] CylinderPart level_part(const Meridian& meridian, const CylinderPart& part,
                                       double band_mm, double most_slope);

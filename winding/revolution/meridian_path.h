@@ -74,8 +74,8 @@ struct HalfSlips {
 /// grows on. It begins at azimuth 0 and s = 0.
 [[nodiscard]] std::vector<MeridianStation> way_back(const MeridianPass& pass);
 
-/// Of a station, turned by `turn_rad` about +Z: position, normal and tangent of the surface that
-/// the meridian sweeps. kn is the surface's, kg is left at 0, the face at kNoFace.
+/// The path point of a station, turned by `turn_rad` about +Z: position, normal and tangent of the
+/// surface that the meridian sweeps. kn is the surface's, kg is left at 0, the face at kNoFace.
 [[nodiscard]] PathPoint swept(const MeridianStation& station, double turn_rad);
 
 }  // namespace meshwind

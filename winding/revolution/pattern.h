@@ -1,5 +1,5 @@
-/// Winding patterns by arithmetic: how often a circuit is repeated, with which dwell, until its
-/// bands close around the mandrel, and in which order they come. No meshes here.
+/// Finds closed winding patterns by arithmetic, without meshes: the number of circuits and the
+/// dwell with which the bands close around the mandrel, and the order of the bands.
 ///
 /// A **circuit** leads to one end, to the other and back to its reference circle. With the turn T
 /// of the mandrel per circuit, N circuits close after K whole turns when N T = 2 pi K. For N and K
@@ -19,22 +19,22 @@ namespace meshwind {
 /// axis (0.001 deg is 1.7e-5 rad), far above the rounding of turns in closed form.
 inline constexpr double kSameTurn_rad = 1e-9;
 
-/// What a pattern is wanted for.
+/// Request for a pattern.
 struct PatternRequest {
     double circuit_rad = 0.0;      ///< >= 0, any size: turn per circuit without dwell
     double band_rad = 0.0;         ///< > 0: the band around the circle, width / (R cos(alpha))
     double most_dwell_rad = 0.0;   ///< >= 0: may be added per circuit, for both ends together
-    double most_change_rad = 0.0;  ///< >= 0: `circuit_rad` itself may be off by so much, either way
+    double most_change_rad = 0.0;  ///< >= 0: largest change of `circuit_rad` itself, either way
     /// >= 1: bands over each other, in each of both directions, when the pattern closes. The bands
     /// of all layers are spaced evenly; a pattern for 1 wound twice puts band upon band instead.
     int layers = 1;
-    double least_overlap = 0.0;  ///< > -1: share of the band; below 0 gaps are allowed
-    double most_overlap = 0.1;   ///< >= least; the least N is tried even where it has more
-    int wanted_starts = 0;       ///< >= 0: of patterns as good those of nearly so many starts first
-    int most_patterns = 100;     ///< > 0: only so many, the best
-    double least_dwell_rad = 0.0;      ///< 0 .. most_dwell_rad: is added per circuit at any rate
+    double least_overlap = 0.0;        ///< > -1: share of the band; below 0 gaps are allowed
+    double most_overlap = 0.1;         ///< >= least; the least N is tried even where it has more
+    int wanted_starts = 0;             ///< >= 0: equally good patterns are ranked by nearness to it
+    int most_patterns = 100;           ///< > 0: only the best, at most this many
+    double least_dwell_rad = 0.0;      ///< 0 .. most_dwell_rad: always added per circuit
     std::int64_t circuits = 0;         ///< > 0: only this N, however much its bands overlap or gape
-    std::int64_t starts = 0;           ///< > 0: only patterns of so many starts
+    std::int64_t starts = 0;           ///< > 0: only patterns of this many starts
     std::optional<BandOrder> order{};  ///< only these; N <= 2 is both
 
     /// \throws InputError pattern.out_of_range, pattern.band_too_narrow
@@ -44,7 +44,8 @@ struct PatternRequest {
 /// All patterns that close with the dwell and change allowed, leading and lagging ones; the best
 /// first, at most `most_patterns`. Best is the least |overlap|, by whole percents; then no gap;
 /// then the least dwell and change, in steps of 5 degrees; then the number of starts nearest to the
-/// wish. What is equal so far is ranked by the exact overlap, then by dwell and change, then by K.
+/// wish. Patterns equal so far are ranked by the exact overlap, then by dwell and change, then by
+/// K.
 /// \return empty where nothing closes
 /// \throws InputError as validate()
 /// Sources: N T = 2 pi K is andrianov_2022_machine_path, eq. (5) to (7), for any N; leading and
@@ -83,14 +84,14 @@ struct AxisStep {
     std::int64_t units_per_step = 1;        ///< 1 .. units_per_turn
 };
 
-/// What rounding to steps does to a pattern.
+/// Effect of rounding to steps on a pattern.
 struct StepClosure {
     std::vector<std::int64_t> increments;  ///< N: from circuit to circuit, differences of the
                                            ///< rounded sums
-    /// Of their sum from K turns: 0 where a step divides the turn, else at most half a step.
+    /// Error of their sum from K turns: 0 where a step divides the turn, else at most half a step.
     double closure_rad = 0.0;
     double worst_rad = 0.0;  ///< largest error of any circuit's place, at most half a step
-    /// What the sum would be off if each increment were rounded by itself: up to N / 2 steps.
+    /// Error of the sum if each increment were rounded by itself: up to N / 2 steps.
     double separate_rad = 0.0;
 };
 

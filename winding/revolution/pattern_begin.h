@@ -1,4 +1,4 @@
-/// Where a pattern begins that goes on with the fibre of the layer before.
+/// Start of a pattern that continues the fibre of the layer before.
 #pragma once
 
 #include <array>
@@ -13,15 +13,16 @@
 
 namespace meshwind {
 
-/// Where the fibre of the layer before ends, over a rim or along a parallel.
+/// End of the fibre of the layer before, over a rim or along a parallel.
 struct FibreEnd {
     Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();
-    std::int32_t rim = -1;  ///< it leaves over; -1: it does not
+    std::int32_t rim = -1;  ///< that it leaves over; -1: none
     bool in_air = false;    ///< there, on its way over a hollow rim (hollow_rim.h)
 };
 
-/// Of a plan: as its last course leaves it, before it runs out behind a hollow rim (turn.h).
+/// Fibre end of a plan, as its last course leaves it, before it runs out behind a hollow rim
+/// (turn.h).
 [[nodiscard]] FibreEnd fibre_end_of(const Plan& plan);
 
 struct PatternBegin {

@@ -37,19 +37,19 @@ struct PatternOptions {
     /// Where hoops shall lie, a part that is nearly a cylinder; none: the cylinder at the widest
     /// place.
     std::optional<std::array<double, 2>> hoop_z_mm{};
-    /// To go on with its fibre, by connecting passes (connecting_passes.h) or a turn; where that
-    /// cannot be, Plan::cut_reason says why and the pattern begins anew.
+    /// Fibre to go on with, by connecting passes (connecting_passes.h) or a turn; where that is not
+    /// possible, Plan::cut_reason says why and the pattern begins anew.
     std::optional<FibreEnd> before{};
-    double least_covered = 0.0;  ///< helical, polar: of the wall; what cannot cover it is not laid
+    double least_covered = 0.0;  ///< helical, polar: of the wall; a pattern below it is not laid
     /// Helical, polar: whether the machine winds the first circuits, of which the others are turned
     /// copies. A plan whose circuits it refuses fails, and is not measured. None: not asked.
     std::function<CourseFault(std::span<const Piece> circuits)> winds{};
     RunContext context{};  ///< its seed is that of the samples that coverage is measured on
 };
 
-/// Circuits that lead from the lower turn to the upper one and back. Each is the one before, turned
-/// on by the same angle, so that after all of them the fibre is back where it began and the bands
-/// lie side by side.
+/// Plans circuits that lead from the lower turn to the upper one and back. Each is the one before,
+/// turned on by the same angle, so that after all of them the fibre is back where it began and the
+/// bands lie side by side.
 ///  - Where the body narrows to r = c the path turns by itself (Clairaut); such ends have no dwell,
 ///    and the winding angle gives way by the little that closes the pattern.
 ///  - Where it runs over a rim it turns as rim_turns.h has it: by friction on the extension, where

@@ -1,5 +1,5 @@
-/// Pins and pattern together: how many pins a ring has, how many of them a turn runs behind, and
-/// how far from the rim they stand, so that the circuits close.
+/// Turns on pins that close a pattern. Sets the number of pins in a ring, the number that a turn
+/// runs behind, and their distance from the rim.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@
 namespace meshwind {
 
 /// The ends of a body at which the fibre turns on pins. Each place of the pattern has its own pin,
-/// so a ring has as many pins as the pattern circuits, or a multiple. What a turn is to be longer
-/// than the shortest is made up by whole pins to run behind and, for what is left, by standing them
-/// further from the rim: by z more, the turn is 2 z tan(alpha) longer.
+/// so a ring has as many pins as the pattern circuits, or a multiple. The length of a turn beyond
+/// the shortest is made up by whole pins to run behind and, for the rest, by setting them further
+/// from the rim: by z more, the turn is 2 z tan(alpha) longer.
 class PinnedEnds final : public RimTurns {
 public:
     /// \param tow of whose width and thickness its strand follows
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] std::string add(const RimEnd& end) override;
     [[nodiscard]] std::string why_no_ends(double angle_rad) const override;
 
-    /// Of a turn at the least distance from the rim that runs behind no pins.
+    /// Angle of a turn at the least distance from the rim that runs behind no pins.
     [[nodiscard]] double shortest_rad(std::size_t end) const override;
     [[nodiscard]] double least_dwell_rad() const override { return 0.0; }
 
@@ -65,7 +65,7 @@ private:
     std::vector<PinRing> rings_;
 };
 
-/// For a planner.
+/// Makes turns on pins, for a planner.
 [[nodiscard]] std::unique_ptr<RimTurns> pin_turns(const PinConstraints& wish, const Tow& tow,
                                                   double extension_mm);
 

@@ -1,4 +1,4 @@
-/// Where the winding of a body of revolution is regular, and how thick it is there.
+/// Zones of regular winding on a body of revolution, and the layers there.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace meshwind {
 
-/// Sets `regular` and `meant` of the zones. Regular are the cylinders and the cones that lean by
-/// less than 45 deg, but for two tow widths at either end of each and at the turns. The bands that
+/// Sets `regular` and `meant` of the zones. The cylinders and the cones that lean by less than 45
+/// deg are regular, but for two tow widths at either end of each and at the turns. The bands that
 /// cross a parallel of radius r at the angle a take 1 / (2 pi r cos(a)) of it each, so the layers
 /// go as 1 / (r cos(a)) of the pass: that is `meant`, in 1/mm. Hoops have the same everywhere.
 /// \param pass without stations: hoops \param wound_mm arc lengths between which there is fibre

@@ -1,4 +1,4 @@
-/// Stations of a meridian's path as pieces of a plan on the mandrel's mesh.
+/// Makes pieces of a plan on the mandrel's mesh from paths by the meridian.
 #pragma once
 
 #include <cstddef>
@@ -17,20 +17,21 @@ namespace meshwind {
 /// The lower end of a body is 0, the upper 1. Const functions are thread-safe.
 class RevolutionPieces {
 public:
-    /// All are kept by reference. \param rule its friction is what pieces are judged by
+    /// All are kept by reference. \param rule pieces are judged by its friction
     RevolutionPieces(const Mandrel& mandrel, const BodyOfRevolution& body, const TurnRule& rule);
 
-    /// The stations, turned about +Z, with the faces under them: they stay on the body that the
-    /// meridian sweeps, from which the mesh is off by BodyOfRevolution::residual_mm. Slip is
+    /// A course of stations, turned about +Z, with the faces under them: they stay on the body that
+    /// the meridian sweeps, from which the mesh is off by BodyOfRevolution::residual_mm. Slip is
     /// measured, where the fibre is on the wall.
     [[nodiscard]] Piece course(const std::vector<MeridianStation>& stations, double turn_rad) const;
 
-    /// Over the rim of an end, from where a course leaves it to where the next one comes back.
+    /// The turn over the rim of an end, from where a course leaves it to where the next one comes
+    /// back.
     /// \pre both can be turned (can_turn)
     [[nodiscard]] LaidTurn turn(std::size_t end, const RimCrossing& from,
                                 const RimCrossing& to) const;
 
-    /// The end of a fibre behind a hollow rim, so far on along the extension (turn.h).
+    /// The end of a fibre behind a hollow rim, `length_mm` on along the extension (turn.h).
     [[nodiscard]] LaidTurn run_out(std::size_t end, const RimCrossing& from,
                                    double length_mm) const;
 
@@ -38,10 +39,10 @@ public:
     /// opening of a dome, where that is less.
     [[nodiscard]] double station_mm() const { return station_mm_; }
 
-    /// Of an end; none at a pole.
+    /// The rim of an end; null at a pole.
     [[nodiscard]] const Rim* rim_of(std::size_t end) const;
 
-    /// How a path over an end's rim crosses it. \param place its first or last station; seen
+    /// The crossing of a path over an end's rim. \param place its first or last station; seen
     /// backwards where the path comes from there
     [[nodiscard]] RimCrossing crossing_of(std::size_t end, const MeridianStation& place,
                                           double turn_rad) const;

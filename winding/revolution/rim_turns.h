@@ -1,4 +1,4 @@
-/// How the fibre of a pattern turns round beyond the rims of its body: a class for each way.
+/// Turns of a pattern's fibre beyond the rims of its body: a class for each kind.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +27,9 @@ struct RimEnd {
     [[nodiscard]] std::string name() const { return end == 0 ? "lower" : "upper"; }
 };
 
-/// The planner adds the ends, finds the pattern, has it placed, and then asks for each turn. What
-/// leads on from the layer before (pattern_begin.h) turns by friction whatever the pattern does.
+/// The planner adds the ends, finds the pattern, has it placed, and then asks for each turn. Fibre
+/// that leads on from the layer before (pattern_begin.h) turns by friction whatever the pattern
+/// does.
 class RimTurns {
 public:
     virtual ~RimTurns() = default;
@@ -46,7 +47,7 @@ public:
     /// Angle about the axis, >= 0, of a turn without dwell. \pre the end was added, as below
     [[nodiscard]] virtual double shortest_rad(std::size_t end) const = 0;
 
-    /// What a turn dwells at least, whatever the pattern has.
+    /// Least dwell of a turn, whatever the pattern has.
     [[nodiscard]] virtual double least_dwell_rad() const = 0;
 
     using Find = std::function<FoundPattern(const PatternConstraints&)>;
@@ -58,7 +59,7 @@ public:
     /// \return empty, or in words why they cannot be
     [[nodiscard]] virtual std::string place(const Pattern& pattern, std::int64_t series);
 
-    /// From where a course leaves over the rim to where the next one comes back.
+    /// The turn from where a course leaves over the rim to where the next one comes back.
     [[nodiscard]] virtual LaidTurn turn(std::size_t end, const RimCrossing& from,
                                         const RimCrossing& to) = 0;
 
@@ -69,10 +70,10 @@ public:
 /// Makes the turns of a plan. \param extension_mm axial length of the extension
 using RimTurnsMaker = std::function<std::unique_ptr<RimTurns>(const Tow& tow, double extension_mm)>;
 
-/// By friction on the extension (turn.h).
+/// Turns by friction on the extension (turn.h).
 [[nodiscard]] std::unique_ptr<RimTurns> friction_turns(const Tow& tow, double extension_mm);
 
-/// None: the fibre turns on the wall itself, about poles.
+/// No turns over rims: the fibre turns on the wall itself, about poles.
 [[nodiscard]] std::unique_ptr<RimTurns> no_rim_turns();
 
 }  // namespace meshwind

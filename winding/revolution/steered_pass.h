@@ -8,7 +8,7 @@
 
 namespace meshwind {
 
-/// How far a path of constant slip ratio comes along the meridian.
+/// End of a path of constant slip ratio along the meridian.
 struct SteeredEnd {
     double arc_mm = 0.0;
     double turning_mm = 0.0;  ///< c = r sin(a) there
@@ -35,11 +35,11 @@ struct SteeredEnd {
 [[nodiscard]] std::optional<double> narrow_place_mm(const Meridian& meridian, double radius_mm,
                                                     bool upper);
 
-/// What a pass leads between.
+/// Both ends of a steered pass, and its limits.
 struct SteeringTask {
     double lower_mm = 0.0;   ///< > 0: radius of the parallel at which it turns below
     double upper_mm = 0.0;   ///< > 0: and above
-    double most_slip = 0.0;  ///< >= 0: the slip ratio may be so much, either way
+    double most_slip = 0.0;  ///< >= 0: largest slip ratio, either way
     double station_mm = 4.0;
     double longest_mm = 1e5;  ///< of either half of the pass
 };

@@ -1,5 +1,5 @@
-/// How single courses turn round over rims: by friction, or on rings of pins that stand evenly,
-/// whatever the courses are. A course that turns on pins has to end where a pin takes hold of it.
+/// Turns of single courses over rims, by friction or on rings of evenly spaced pins. The pins are
+/// the same for all courses. A course that turns on pins has to end where a pin takes hold of it.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@
 
 namespace meshwind {
 
-/// A ring of pins at a rim. Any of them may begin a turn, and any end it that is far enough on.
+/// A ring of pins at a rim. Any of them may begin a turn, and any that is far enough on may end it.
 struct PinStand {
-    PinRing ring;             ///< `skip`: pins that a turn runs behind at least
+    PinRing ring;             ///< `skip`: least number of pins that a turn runs behind
     PinTurnShape shape;       ///< of every turn; the courses have its angles and its skip
     double widest_rad = 0.0;  ///< between fibre and axis; wider, fibre touches the next pin
 };
@@ -51,7 +51,7 @@ struct CourseTurns {
 [[nodiscard]] double off_pins_mm(const Rim& rim, const RimCrossing& crossing,
                                  const CourseTurns& turns);
 
-/// Of that distance per angle of the crossing.
+/// Derivative of that distance by the angle of the crossing.
 [[nodiscard]] double off_pins_mm_per_rad(const Rim& rim, const RimCrossing& crossing,
                                          const CourseTurns& turns);
 
@@ -59,7 +59,8 @@ struct CourseTurns {
 [[nodiscard]] LaidTurn turn_between(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                                     const CourseTurns& turns, double station_mm);
 
-/// The half of a turn that leads on from a course's end, and that which leads to a course's start.
+/// The half of a turn that leads on from a course's end, and the half that leads to a course's
+/// start.
 [[nodiscard]] Piece half_turn_from(const Rim& rim, const RimCrossing& end, const CourseTurns& turns,
                                    double station_mm);
 [[nodiscard]] Piece half_turn_to(const Rim& rim, const RimCrossing& start, const CourseTurns& turns,

@@ -1,4 +1,4 @@
-/// Turns over rims as pieces of a plan.
+/// Friction turns over rims as pieces of a plan.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace meshwind {
 /// A turn at a rim as a piece.
 [[nodiscard]] Piece piece_of_turn(Turn&& turn, std::int32_t rim);
 
-/// From where a course leaves over a rim to where the next one comes back.
+/// The turn from where a course leaves over a rim to where the next one comes back.
 /// \pre both can be turned (can_turn)
 [[nodiscard]] LaidTurn turn_over(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                                  const TurnRule& rule);

@@ -34,11 +34,10 @@ struct Pin {
 
 [[nodiscard]] std::vector<Pin> pins_of(const PinRing& ring, const Rim& rim);
 
-/// A pin as what can be hit: a closed cylinder from its base, sunk in by its own radius, to its
-/// top.
+/// A pin as an obstacle: a closed cylinder from its base, sunk in by its own radius, to its top.
 [[nodiscard]] TriangleSoup mesh_of(const Pin& pin);
 
-/// Which way the fibre goes about a pin, seen from outside in its direction of travel.
+/// Side of the fibre on which a pin lies, seen from outside in its direction of travel.
 enum class PinSide { Right, Left };  ///< where the pin is
 
 /// The taut fibre from a place to another about a pin's flank, without friction: straight, along a

@@ -1,10 +1,10 @@
-/// Turns on pins: the fibre that leaves over a rim at its winding angle passes between two pins on
-/// the extension, bends about one, runs behind some along the hoop, bends about the last and comes
-/// back.
+/// Turns on pins. The fibre leaves over a rim at its winding angle and passes between two pins on
+/// the extension. It bends about one, runs behind some along the hoop, bends about the last and
+/// comes back.
 ///
-/// On the unrolled cylinder that is straight lines and arcs that touch: with R the extension's
-/// radius, alpha the angle to the axis, z the pins' distance from the rim, rho that of the fibre
-/// from a pin's axis, from the rim to the pin that is bent about
+/// On the unrolled cylinder the fibre consists of straight lines and arcs tangent to them: with R
+/// the extension's radius, alpha the angle to the axis, z the pins' distance from the rim, rho that
+/// of the fibre from a pin's axis, from the rim to the pin that is bent about
 ///
 ///     around = z tan(alpha) + rho / cos(alpha)
 ///     length = (z + rho sin(alpha)) / cos(alpha) + (pi / 2 - alpha) rho
@@ -29,7 +29,7 @@
 
 namespace meshwind {
 
-/// What may be asked of the pins; 0 and none: chosen.
+/// Constraints on the pins; 0 and none: chosen.
 struct PinConstraints {
     int count = 0;  ///< >= 0: of a ring, a multiple of the circuits
     double diameter_mm = 2.0;
@@ -60,7 +60,7 @@ struct PinTurnShape {
 /// Distance around the extension between the two crossings of the rim.
 [[nodiscard]] double pin_turn_around_mm(const PinTurnShape& shape);
 
-/// Length of the fibre between them.
+/// Length of the fibre between the two crossings of the rim.
 [[nodiscard]] double pin_turn_length_mm(const PinTurnShape& shape);
 
 /// Whether pins can take hold of the fibre one by one, and how.
@@ -69,12 +69,12 @@ struct PinFit {
     double lead_mm = 0.0;
     int least_skip = 0;    ///< so that the landing point has left the first pin when the last one
                            ///< takes hold
-    double room_mm = 0.0;  ///< that is left beside and over the pins which the fibre shall not
-                           ///< touch, and below the top of that which holds it: the least
+    double room_mm = 0.0;  ///< least room left beside and over the pins that the fibre must not
+                           ///< touch, and below the top of the pin that holds it
     std::string failure;   ///< empty, or in words what the pins lack
 };
 
-/// Beyond this room a pin is sure to take hold, and no other.
+/// With more room than this the intended pin is sure to take hold, and no other.
 inline constexpr double kMinPinRoom_mm = 0.2;
 
 /// The lead that leaves most room, and the height, where it is not given.

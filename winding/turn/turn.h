@@ -1,5 +1,4 @@
-/// Friction turns: how a fibre that leaves over a rim comes back, on the mandrel's cylindrical
-/// extension.
+/// Friction turns of a fibre over a rim and back, on the mandrel's cylindrical extension.
 #pragma once
 
 #include <optional>
@@ -14,8 +13,8 @@
 
 namespace meshwind {
 
-/// A dwell is found as an angle of up to 2 pi; so much of it keeps rounding from making no dwell a
-/// whole turn.
+/// Tolerance of a dwell, which is found as an angle of up to 2 pi: it keeps rounding from making a
+/// dwell of 0 a whole turn.
 inline constexpr double kMinDwell_rad = 1e-9;
 
 struct TurnRule {
@@ -33,10 +32,10 @@ struct TurnRule {
 [[nodiscard]] RimCrossing crossing_at(const Rim& rim, const Eigen::Vector3d& position_mm,
                                       const Eigen::Vector3d& outward);
 
-/// The same of a fibre in the air there, which has left the wall before a hollow rim and touches
-/// the extension beyond: the angle is that to the axis, which it has where it touches, too. \param
-/// position_mm beside the fibre \param outward unit vector along it, towards the axis or along the
-/// rim's tangent plane
+/// The same for a fibre in the air there, which has left the wall before a hollow rim and touches
+/// the extension beyond: the angle is that to the axis, the same as at the touching point.
+/// \param position_mm beside the fibre
+/// \param outward unit vector along it, towards the axis or along the rim's tangent plane
 [[nodiscard]] RimCrossing crossing_in_air(const Rim& rim, const Eigen::Vector3d& position_mm,
                                           const Eigen::Vector3d& outward);
 
@@ -49,15 +48,15 @@ struct TurnRule {
 /// docs/winding.md.
 [[nodiscard]] double turn_run_mm(double radius_mm, double angle_rad, double slip);
 
-/// The least run that any turn takes on a rim: that of the steepest fibre that turns with all of
-/// the friction. Infinite without friction.
+/// Least run of any turn on a rim: that of the steepest fibre that turns with all of the friction.
+/// Infinite without friction.
 [[nodiscard]] double least_run_mm(double radius_mm, Friction friction);
 
-/// Angle around the axis that it winds meanwhile: (1 / slip) ln cot(beta / 2).
+/// Angle around the axis that is wound from `angle_rad` to hoop: (1 / slip) ln cot(beta / 2).
 /// Source: andrianov_2022_machine_path, eq. (4). \pre 0 < angle_rad < pi, slip > 0
 [[nodiscard]] double turn_angle_rad(double angle_rad, double slip);
 
-/// Fibre that half a turn takes, from the rim to hoop: (R / slip) cot(beta) and what is in the air.
+/// Fibre length of half a turn, from the rim to hoop: (R / slip) cot(beta) and the part in the air.
 /// \pre can_turn
 [[nodiscard]] double half_turn_mm(const Rim& rim, const RimCrossing& crossing,
                                   const TurnRule& rule);
@@ -65,7 +64,7 @@ struct TurnRule {
 /// True when the fibre can be turned by friction within the extension.
 [[nodiscard]] bool can_turn(const Rim& rim, const RimCrossing& crossing, const TurnRule& rule);
 
-/// In words what a turn takes that is not there. \param rim_words "the upper rim"
+/// In words what a turn lacks. \param rim_words "the upper rim"
 /// \pre can_turn is false
 [[nodiscard]] std::string why_no_turn(const std::string& rim_words, const Rim& rim,
                                       const RimCrossing& crossing, const TurnRule& rule);
@@ -84,7 +83,7 @@ struct Turn {
 [[nodiscard]] double dwell_rad(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                                const TurnRule& rule);
 
-/// Fibre of a whole turn, dwell included; what make_turn() winds. \pre as for dwell_rad
+/// Fibre length of a whole turn, dwell included, as make_turn() winds it. \pre as for dwell_rad
 [[nodiscard]] double turn_mm(const Rim& rim, const RimCrossing& from, const RimCrossing& to,
                              const TurnRule& rule);
 
@@ -99,7 +98,7 @@ struct Turn {
 [[nodiscard]] Turn half_turn(const Rim& rim, const RimCrossing& from, const TurnRule& rule,
                              double step_mm);
 
-/// The end of a fibre that goes over a hollow rim: through the air, and so far on along the
+/// The end of a fibre that goes over a hollow rim: through the air, then `length_mm` along the
 /// extension without steering.
 [[nodiscard]] Turn run_out(const Rim& rim, const RimCrossing& from, double length_mm,
                            double step_mm);

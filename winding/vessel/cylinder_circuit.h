@@ -1,4 +1,4 @@
-/// One circuit on a cylinder in closed form: helix, turn, helix back, turn. What its pattern needs.
+/// One circuit on a cylinder in closed form, as input of a pattern: helix, turn, helix back, turn.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct CylinderCircuit {
     void validate() const;
 };
 
-/// Turns are those of the landing point around the axis.
+/// Angles of a circuit: turns of the landing point around the axis.
 struct CircuitTurns {
     double regular_rad = 0.0;  ///< Phi_c, eq. (2): regular tan(beta) / R
     double turn_rad = 0.0;     ///< Phi_t, eq. (4): from the helix to hoop, once

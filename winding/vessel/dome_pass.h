@@ -1,4 +1,4 @@
-/// Fibres over the domes of a vessel: geodesics, and what friction must do where they do not turn.
+/// Fibres over the domes of a vessel: geodesics, and the slip ratio needed where they do not turn.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ struct DomePass {
     double turn_rad = 0.0;   ///< about the axis, from the equator back to the equator
 };
 
-/// By quadrature in an angle in which both ends are smooth.
+/// Length and turn of a geodesic pass, by quadrature in an angle in which both ends are smooth.
 /// \pre least radius of the dome < clairaut_mm < radius of its equator
 /// Accuracy: 1e-9 of length and turn, geodesics that come within 1e-6 of the least radius
 /// excepted, where both grow without bound; tests/winding/vessel/dome_pass_test.cpp.

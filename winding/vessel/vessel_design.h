@@ -1,4 +1,4 @@
-/// Vessels with isotensoid domes: what each winding angle gives, before any mesh is made.
+/// Design of vessels with isotensoid domes: figures of each winding angle, before any mesh is made.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace meshwind {
 
-/// Of one ply, along the fibres and across them in its plane.
+/// Stiffness of one ply, along the fibres and across them in its plane.
 struct PlyStiffness {
     double e1_gpa = 0.0;
     double e2_gpa = 0.0;
@@ -59,13 +59,13 @@ struct TurningBand {
 /// Thickness at the radius Y of a dome,
 ///     passes ply / (2 pi) (asin(min(c_out, Y) / Y) - asin(min(c_in, Y) / Y)),
 /// c_in and c_out half a band inside and outside the Clairaut radius. A fibre that turns at c
-/// crosses the parallel at the angle asin(c / Y); of a fibre of the width dc as many as there are
-/// passes take up passes dc / cos of that parallel, and the sum over the band is the formula. The
-/// thickness of a single line, ~ 1 / sqrt(Y^2 - c^2), has no bound at its turn; this has its
-/// largest value at c_out. No fibre is lost or added: tests/winding/vessel/vessel_design_test.cpp.
+/// crosses the parallel at the angle asin(c / Y); the fibres of the width dc of all passes take up
+/// passes dc / cos of that parallel, and the sum over the band is the formula. The thickness of a
+/// single line, ~ 1 / sqrt(Y^2 - c^2), has no bound at its turn; this has its largest value at
+/// c_out. No fibre is lost or added: tests/winding/vessel/vessel_design_test.cpp.
 [[nodiscard]] double thickness_on_dome_mm(const TurningBand& band, double radius_mm);
 
-/// What one winding angle gives.
+/// Figures of one winding angle.
 struct VesselAngle {
     double angle_rad = 0.0;
     double clairaut_mm = 0.0;        ///< R sin(angle): where a geodesic turns
@@ -92,9 +92,9 @@ struct VesselAngle {
 /// One row for each angle, in their order.
 ///
 /// A pressure p with fibres of strength S along them alone needs, on the cylinder, the thickness
-/// p R / (2 S cos^2(angle)) of the wound angle against the axial force, and hoops for what that
-/// leaves of p R around it: p R / S - thickness sin^2(angle). The domes are then strained like the
-/// axial direction. \throws InputError what validate throws
+/// p R / (2 S cos^2(angle)) of the wound angle against the axial force, and hoops for the rest of
+/// p R around it: p R / S - thickness sin^2(angle). The domes are then strained like the axial
+/// direction. \throws InputError what validate throws
 [[nodiscard]] std::vector<VesselAngle> vessel_angles(const VesselDesign& design);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// What each winding angle gives on a vessel, without a mesh.
+/// Table of a vessel's figures by winding angle, without a mesh.
 #pragma once
 
 #include <optional>
