@@ -1,4 +1,4 @@
-/// Another program, run to its end.
+/// Runs another program and waits for its end.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,15 @@
 namespace meshwind {
 
 struct ProgramEnd {
-    std::string output;  ///< what it wrote to its standard output
+    std::string output;  ///< text of its standard output
     int exit_code = 0;
-    int signal = 0;  ///< that killed it; 0: none
+    int signal = 0;  ///< the signal that killed it; 0: none
 };
 
-/// Its standard input is empty, its standard error is ours; an interruption kills it.
+/// Runs a program: its standard input is empty, its standard error is ours; an interruption kills
+/// it.
 /// \param program a path, or a name that is looked up in PATH
-/// \param folder that it works in; empty: ours
+/// \param folder its working folder; empty: ours
 /// \throws std::system_error where it cannot be started
 [[nodiscard]] ProgramEnd run_program(const std::filesystem::path& program,
                                      const std::vector<std::string>& arguments,

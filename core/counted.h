@@ -1,4 +1,4 @@
-/// Numbers of things in words.
+/// Counts with their noun, singular or plural.
 #pragma once
 
 #include <concepts>
@@ -7,7 +7,7 @@
 
 namespace meshwind {
 
-/// "1 course", "2 courses", "0 plies". \param many where it is not `one` with an s
+/// "1 course", "2 courses", "0 plies". \param many the plural where it is not `one` with an s
 template <std::integral Count>
 [[nodiscard]] std::string counted(Count count, std::string_view one, std::string_view many = {}) {
     std::string text = std::to_string(count) + ' ';

@@ -1,5 +1,4 @@
-/// What is thrown when the input or the outside world is at fault; see docs/errors.md for the
-/// codes.
+/// Exceptions for faulty input and a failing outside world; docs/errors.md lists the codes.
 #pragma once
 
 #include <stdexcept>
@@ -8,8 +7,9 @@
 
 namespace meshwind {
 
-/// An error with a stable code, the place it concerns, and one line of words that ends in the mend.
-/// Outcomes that a planner may expect (a course that slips, a point out of reach) are never errors.
+/// An error with a stable code, the place it concerns, and one line of words that ends in the
+/// remedy. Outcomes that a planner may expect (a course that slips, a point out of reach) are never
+/// errors.
 class Error : public std::runtime_error {
 public:
     /// \param code stable identifier, e.g. "mesh.not_orientable"

@@ -8,7 +8,7 @@ namespace meshwind {
 /// Thrown at a cancellation point once an end is asked for. No Error: nothing is wrong.
 class Interrupted : public std::exception {
 public:
-    /// \param reason as request_interrupt() was given it
+    /// \param reason as given to request_interrupt()
     explicit Interrupted(int reason) : reason_(reason) {}
     [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
     [[nodiscard]] int reason() const { return reason_; }
@@ -17,7 +17,7 @@ private:
     int reason_;
 };
 
-/// Asks for the end of what runs; the first reason stays. A signal handler may call it, and any
+/// Asks for the end of the run; the first reason stays. A signal handler may call it, and any
 /// thread. \param reason > 0, the signal's number
 void request_interrupt(int reason) noexcept;
 

@@ -1,4 +1,4 @@
-/// Linear programmes whose columns are added as they are found to pay.
+/// Linear programmes by column generation: columns are added as they are found to pay.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@ struct RowEntry {
     double value = 0.0;
 };
 
-/// Least cost of columns x >= 0 with `least <= A x <= most` in each row. By GLPK's primal simplex
-/// method; by how much its answer breaks a bound is computed here.
+/// Minimises the cost of columns x >= 0 with `least <= A x <= most` in each row. Solved by GLPK's
+/// primal simplex method; the breach of bounds by its answer is computed here.
 class LinearProgramme {
 public:
     struct Row {
@@ -39,21 +39,21 @@ public:
 
     struct Solution {
         bool optimal = false;
-        /// x keeps all bounds; where it is not optimal, the method was given up.
+        /// x keeps all bounds; feasible but not optimal: the method was given up.
         bool feasible = false;
         double cost = 0.0;
         std::vector<double> x;      ///< per column
-        std::vector<double> price;  ///< per row: what one more of its bound costs
+        std::vector<double> price;  ///< per row, dual value: cost of one more of its bound
         /// Largest breach of a row or column by x, computed from the columns as they were given.
         double worst_breach = 0.0;
     };
-    /// The first call from nothing, each further one from where the last ended. Where the method
-    /// goes round in a circle it goes on with rows that may lack up to 1e-4 of their bounds.
-    /// \param most_steps after which it is taken to go round
+    /// Starts from nothing at the first call, then from where the last call ended. Where the method
+    /// cycles it goes on with rows that may lack up to 1e-4 of their bounds.
+    /// \param most_steps steps after which it is taken to cycle
     [[nodiscard]] Solution solve(int most_steps = kMaxSteps);
 
 private:
-    // Columns by the hundred beside eight hundred rows take two thousand.
+    // Some hundred columns with eight hundred rows take two thousand.
     static constexpr int kMaxSteps = 20'000;
 
     struct Model;

@@ -1,11 +1,11 @@
-/// What share of each limit a stage may use up. What it leaves is for the stages after it, so that
-/// the fibre, wound again from the program, keeps what the job asks for. docs/theory.md has these
-/// rows as a table.
+/// Share of each limit that a stage may use up. The rest is for the stages after it, so that the
+/// fibre, wound again from the program, keeps what the job asks for. docs/theory.md has these rows
+/// as a table.
 #pragma once
 
 namespace meshwind::margin {
 
-// Friction. The job's friction is what verify holds the laid fibre to; planners get kPlanned of it
+// Friction. verify holds the laid fibre to the job's friction; planners get kPlannedFriction of it
 // as their own, and the shares below it are of that.
 
 /// Plans, and joins of imported ones: the rest is for what the blocks of a program add.
@@ -25,12 +25,13 @@ inline constexpr double kHoopSteering = 0.5;
 inline constexpr double kEasyTurn = 0.85;
 /// A turn on a short extension: the rest is for the error of measuring.
 inline constexpr double kFullTurn = 0.98;
-/// Of the job's friction, plan and blocks together: the rest is for the error of measuring.
+/// Share of the job's friction for plan and blocks together: the rest is for the error of
+/// measuring.
 inline constexpr double kLaidFriction = 0.995;
 
 // Bridging.
 
-/// Of the tolerance, a course of a cover: its stations are some way apart.
+/// Share of the tolerance for a course of a cover: its stations are some way apart.
 inline constexpr double kCoverBridging = 0.98;
 
 // Clearance of the head, on top of the job's.
@@ -43,11 +44,11 @@ inline constexpr double kBetweenBlocks_mm = 0.5;
 inline constexpr double kCandidates_mm = 0.3;
 /// Share of the head's spare clearance that blocks may use: between two points it may be less.
 inline constexpr double kBlocksOfRoom = 0.5;
-/// Blocks cut the corner by so much at most, however much room there is,
+/// Blocks cut the corner by at most this much, however much room there is.
 inline constexpr double kMaxBetweenBlocks_mm = 2.0;
-/// and are not made shorter for less than this: the plan is refused.
+/// Blocks are not made shorter for less than this: the plan is refused.
 inline constexpr double kMinBetweenBlocks_mm = 0.1;
-/// Further room in the first motion of least time: what is clear is looked up at points a few mm
+/// Further room in the first motion of least time: its clearance is looked up at points a few mm
 /// apart. Less makes more places to mend, more a longer way round; on tees both cost time.
 inline constexpr double kFirstMotion_mm = 2.0;
 /// Added, each time, where the head is found too near between stations: a free length that grows by
@@ -56,19 +57,20 @@ inline constexpr double kMended_mm = 1.0;
 
 // Laid fibre against the plan.
 
-/// Of the tolerance, the choice of blocks: the rest is for what it does not see, rounding to the
-/// axes' resolution (0.005 mm at 300 mm from the spindle) and the first order.
+/// Share of the tolerance for the choice of blocks. The rest is for errors it does not see:
+/// rounding to the axes' resolution (0.005 mm at 300 mm from the spindle) and the first order.
 inline constexpr double kBlocksOfDeviation = 0.75;
-/// Of what blocks had, where the simulation finds them too coarse.
+/// Share of their previous tolerance for blocks that the simulation finds too coarse.
 inline constexpr double kTighterBlocks = 0.5;
-/// What the free length may be off the planned one between the ends of blocks (choose_blocks.h).
+/// Largest error of the free length against the planned one between the ends of blocks
+/// (choose_blocks.h).
 inline constexpr double kFreeLength_mm = 2.0;
 
 // Speed.
 
-/// Of the fibre's speed that the machine can pay out: a block runs out its fibre evenly only to
-/// first order, and wound again its fastest stretch is up to 0.3 % faster (words_test.py winds such
-/// a pipe). What is faster still gets more time.
+/// Share of the fibre's speed that the machine can pay out. A block pays out its fibre evenly only
+/// to first order; wound again, its fastest stretch is up to 0.3 % faster (words_test.py winds such
+/// a pipe). Blocks that are faster still get more time.
 inline constexpr double kPaidOutSpeed = 0.995;
 
 }  // namespace meshwind::margin

@@ -10,8 +10,8 @@ namespace meshwind {
 /// \pre no parallel loop is running
 void set_thread_count(int threads);
 
-/// Has every further worker thread of parallel loops call `enter` when it begins. Once in a
-/// process.
+/// Makes every further worker thread of parallel loops call `enter` when it begins. Call it once in
+/// a process.
 void on_worker_start(void (*enter)());
 
 /// Calls `body(begin, end)` on consecutive chunks of [0, count), each at most `chunk` long.

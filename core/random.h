@@ -20,7 +20,7 @@ namespace meshwind {
     return static_cast<double>(random_bits(seed, index) >> 11U) * 0x1.0p-53;
 }
 
-/// Random numbers one after the other, from a place in those of a seed on.
+/// Sequence of random numbers of a seed, from index `first` on.
 class Draws {
 public:
     Draws(std::uint64_t seed, std::uint64_t first) : seed_(seed), index_(first) {}

@@ -1,4 +1,4 @@
-/// What a run is given besides its inputs: passed down from the caller to every stage.
+/// Settings of a run besides its inputs, passed down from the caller to every stage.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct RunContext {
     double effort = 1.0;     ///< how long plans are improved, as a multiple
     /// Called when a step begins or goes on, with the share of it that is done, 0 .. 1.
     std::function<void(const std::string& step, double share)> progress{};
-    /// Called at once with what whoever waits should know, a line each.
+    /// Called at once with remarks for the user who waits, a line each.
     std::function<void(const std::string& line)> remark{};
 
     void report_progress(const std::string& step, double share) const {

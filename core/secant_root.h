@@ -1,4 +1,4 @@
-/// Zeros of what is known at single places only.
+/// Zero of a function that is known at single places only, by the secant method.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,10 @@
 
 namespace meshwind {
 
-/// The secant method from 0 on, for what moves a state along with it: `excess` is left at the place
-/// that it was asked of last, which is the zero. \param first > 0: step from 0, downwards where the
-/// excess there is above 0 \param most > 0: no place farther from 0 is asked
+/// Secant method from 0 on, for functions that move a state along: the last call of `excess` is at
+/// the zero.
+/// \param first > 0: step from 0, downwards where the excess there is above 0
+/// \param most > 0: `excess` is called no farther from 0
 /// \return whether it came within `within` of 0
 template <class Excess>
 [[nodiscard]] bool secant_root(const Excess& excess, double first, double most, double within) {

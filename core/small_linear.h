@@ -14,14 +14,14 @@ struct PrincipalAxes {
     Eigen::Matrix<double, n, n> vectors;
 };
 
-/// Only the lower triangle is read. As Eigen's SelfAdjointEigenSolver has them, to the last digit.
+/// Only the lower triangle is read. The same as Eigen's SelfAdjointEigenSolver, to the last digit.
 [[nodiscard]] PrincipalAxes<2> principal_axes(const Eigen::Matrix2d& symmetric);
 [[nodiscard]] PrincipalAxes<3> principal_axes(const Eigen::Matrix3d& symmetric);
 
 /// min(rows, columns) values, falling. \pre the matrix is not empty
 [[nodiscard]] Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
 
-/// The shortest turn that takes the way of `from` to that of `to`; of opposite ones any half turn.
+/// Shortest rotation from the direction of `from` to that of `to`; for opposite ones any half turn.
 [[nodiscard]] Eigen::Quaterniond shortest_turn(const Eigen::Vector3d& from,
                                                const Eigen::Vector3d& to);
 

@@ -1,4 +1,4 @@
-/// Inverse of machines on which an industrial robot moves the delivery eye.
+/// Inverse kinematics of machines on which an industrial robot moves the delivery eye.
 #pragma once
 
 #include <memory>
@@ -18,11 +18,10 @@ namespace meshwind {
 /// a track of one linear axis, in front of a spindle. The head is held as a five-axis
 /// winding machine holds it: its exit along -X, to the spindle axis, its roller at a right angle to
 /// the fibre; the band twists on its way by `twist_rad`. A head that leaned to lay the band flat
-/// would sweep the arm along the mandrel. That is one pose of the eye, for which PoseInverse has
-/// the joints: of the ways to reach it the one nearest to the previous joints, those within the
-/// axes' limits first. On a track the arm stands abeam of the eye, or at the end of the track.
-/// `singular_sine` is the least of that of the head (the fibre along X) and of the arm
-/// (PoseState::singular).
+/// would sweep the arm along the mandrel. That fixes one pose of the eye, for which PoseInverse has
+/// the joints: the solution nearest to the previous joints, those within the axes' limits first. On
+/// a track the arm stands abeam of the eye, or at the end of the track. `singular_sine` is the
+/// smaller of the head's (the fibre along X) and the arm's (PoseState::singular).
 /// Accuracy: forward(inverse(pose)) = pose within 1e-9 mm and 1e-9 rad (arm_eye_inverse_test.cpp).
 class ArmEyeInverse final : public EyeInverse {
 public:

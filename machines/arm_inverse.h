@@ -1,4 +1,4 @@
-/// Closed-form inverse of a six-axis arm: the mandrel on a robot's flange.
+/// Closed-form inverse kinematics of a six-axis arm: the mandrel on a robot's flange.
 #pragma once
 
 #include <array>
@@ -32,17 +32,17 @@ public:
     using Joints = std::array<double, 6>;
 
     /// All solutions, 8 at most (shoulder, elbow and wrist either way), joints in (-2 pi, 2 pi).
-    /// Where the pose is out of reach the joints that come near it. Exactly in a singular pose the
-    /// joint that is free keeps its previous value.
+    /// For a pose out of reach, joints that come near it. Exactly in a singular pose the free joint
+    /// keeps its previous value.
     [[nodiscard]] std::vector<Joints> solve(const Eigen::Isometry3d& base_from_mandrel,
                                             std::span<const double> previous) const;
 
-    /// Of the solutions the one that branches as the previous joints do: at axes 1, 3 and then the
-    /// wrist the angles nearest to theirs. An eighth of the work.
+    /// The solution on the branch of the previous joints: at axes 1, 3 and then the wrist the
+    /// angles nearest to theirs. An eighth of the work.
     [[nodiscard]] Joints solve_near(const Eigen::Isometry3d& base_from_mandrel,
                                     std::span<const double> previous) const;
 
-    /// Of joints, wherever they come from. \pre at least six
+    /// Distance of any joints from the singular poses. \pre at least six
     [[nodiscard]] ArmMeasure measure(std::span<const double> joints) const;
 
 private:

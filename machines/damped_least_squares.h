@@ -1,4 +1,4 @@
-/// Least squares with bounds, for inverses that have no closed form.
+/// Damped least squares with bounds, for inverses that have no closed form.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 namespace meshwind {
 
 /// Residuals at `x` and, by rows, their derivatives: row i, column j is d residual_i / d x_j.
-/// Both come in with their right sizes.
+/// Both are passed in with their right sizes.
 using ResidualFunction = std::function<void(
     const std::vector<double>& x, std::vector<double>& residuals, std::vector<double>& jacobian)>;
 

@@ -1,4 +1,4 @@
-/// Joints from which a search begins again where those at hand lead nowhere.
+/// Random restarts for a search of joints that found nothing.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// The inverse that fits a machine, and what class the machine is of.
+/// Inverse kinematics for any machine, and the class of a machine.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,15 @@
 
 namespace meshwind {
 
-/// What the chains of a machine amount to.
+/// Class of a machine, from its chains.
 struct MachineClass {
     std::string words;         ///< "spindle, 3 linear axes, head roll and swing: closed form"
     bool spindle = false;      ///< the mandrel turns about the machine's Z axis alone
     bool closed_form = false;  ///< SpindleWristInverse holds
     bool arm = false;          ///< ArmEyeInverse holds
     bool free_turn = false;    ///< any turn of the mandrel lets the eye reach any place
-    /// With a carriage along the spindle alone: the one distance of the eye from the spindle axis,
-    /// at which the main job keeps it (EyeRule::Cylinder); else 0.
+    /// With a carriage along the spindle alone: the fixed distance of the eye from the spindle
+    /// axis, which the main job keeps (EyeRule::Cylinder); else 0.
     double eye_distance_mm = 0.0;
     /// Why the main job cannot be run with it; empty: it can.
     std::string refusal;
@@ -31,9 +31,9 @@ struct MachineClass {
 /// distance from the spindle axis; 0: of none
 void require_main_job(const Machine& machine, double eye_distance_mm = 0.0);
 
-/// Inverse of a machine that is no spindle class: damped least squares on the product of
+/// Inverse of a machine outside the spindle class: damped least squares on the product of
 /// exponentials. The eye is brought to its place with the roller along the binormal; a machine that
-/// cannot do both brings the eye to its place and tells the twist that is left, and a place out of
+/// cannot do both brings the eye to its place and reports the remaining twist, and a place out of
 /// reach gives the residual. A mandrel chain of one rotary axis along Z takes the turn that is
 /// given; any other chain is free to move all its axes, and the turn is not used. Axes' limits are
 /// kept where a solution within them is found.

@@ -35,8 +35,8 @@ namespace meshwind {
 /// inverse(base_from_mandrel) * base_from_eye.
 [[nodiscard]] Eigen::Isometry3d mandrel_from_eye(const Machine& machine, std::span<const double> q);
 
-/// How the eye moves against the mandrel: per axis, mm for a unit of the axis, in the directions of
-/// the machine frame; 3 x axis_count(), to first order.
+/// Jacobian of the eye's position against the mandrel: per axis, mm for a unit of the axis, in the
+/// directions of the machine frame; 3 x axis_count(), first order.
 [[nodiscard]] Eigen::Matrix3Xd eye_moves(const Machine& machine, std::span<const double> q);
 /// An axis where the joints have brought it, base frame.
 struct PlacedAxis {
@@ -49,11 +49,11 @@ struct PlacedAxis {
 [[nodiscard]] std::vector<PlacedAxis> placed_axes(const Machine& machine,
                                                   std::span<const double> q);
 
-/// What the joint of a spindle counts for a turn of the mandrel about +Z of the machine, +1 or -1:
-/// where one rotary axis along +-Z through the origin is all that moves the mandrel. Else nothing.
+/// Sign of the spindle's joint for a turn of the mandrel about +Z of the machine, +1 or -1, where
+/// one rotary axis along +-Z through the origin is all that moves the mandrel; else nothing.
 [[nodiscard]] std::optional<double> spindle_sign(const Machine& machine);
 
-/// The mandrel frame at zero is the machine frame, or that moved along Z.
+/// Whether the mandrel frame at zero is the machine frame, or that moved along Z.
 [[nodiscard]] bool is_mounted_along_z(const Machine& machine);
 
 /// Where the eye must be, mandrel frame.
@@ -64,7 +64,7 @@ struct EyeTarget {
     Eigen::Vector3d binormal = Eigen::Vector3d::UnitZ();
 };
 
-/// What one inverse solution has to tell.
+/// Quality of one inverse solution.
 struct WristState {
     /// Sine of the angle between the machine's X axis and the vector that sets A (the roller axis
     /// with A and B, the fibre with A alone), 0..1. Small: a small move asks for much of A.
@@ -93,28 +93,28 @@ public:
     virtual WristState solve(const EyeTarget& target, double turn_rad,
                              std::span<const double> previous, std::span<double> joints) const = 0;
 
-    /// The turn of the mandrel that the target forces where linear axes are missing: of those that
-    /// bring the eye nearest to the target the one within the axes' travel, then the one nearest to
-    /// `near_rad`. Nothing where the turn is free or the machine has none.
+    /// The turn of the mandrel that the target forces where linear axes are missing: among the
+    /// turns that bring the eye nearest to the target, one within the axes' travel, then the one
+    /// nearest to `near_rad`. Nothing where the turn is free or the machine has none.
     [[nodiscard]] virtual std::optional<double> forced_turn(const EyeTarget& target,
                                                             double near_rad) const = 0;
 
-    /// True for arms: a place is reached in ways from one of which no small step leads to another,
-    /// and any axis may move the eye. Else rotary axes of the eye's chain turn the head alone.
+    /// True for arms: a place has several solutions with no small step between them, and any axis
+    /// may move the eye. Else rotary axes of the eye's chain turn the head alone.
     [[nodiscard]] virtual bool has_branches() const { return false; }
 
-    /// With branches: joints of every way within the limits to begin a path at `target`.
+    /// With branches: every solution within the limits to begin a path at `target`.
     [[nodiscard]] virtual std::vector<std::vector<double>> starts(const EyeTarget& /*target*/,
                                                                   double /*turn_rad*/) const {
         return {};
     }
 };
 
-/// The class that has a closed form, recognised from the chains: one rotary axis along +-Z through
-/// the origin in the mandrel chain (spindle); in the eye chain one to three linear axes in any
-/// order, then perhaps a rotary axis along +-X (head roll, "A") and after it one along +-Y (head
-/// swing, "B"), both through the eye; roller along +-Z and exit along -X at zero. The mandrel may
-/// be mounted further along the spindle. Letters are free.
+/// Closed-form inverse of the spindle-and-wrist class, recognised from the chains: one rotary axis
+/// along +-Z through the origin in the mandrel chain (spindle); in the eye chain one to three
+/// linear axes in any order, then perhaps a rotary axis along +-X (head roll, "A") and after it one
+/// along +-Y (head swing, "B"), both through the eye; roller along +-Z and exit along -X at zero.
+/// The mandrel may be mounted further along the spindle. Letters are free.
 ///
 /// With roll a and swing b about +X and +Y the roller is u = (sin b, -sin a cos b, cos a cos b).
 ///  - roll only: u = (X x tau)/|X x tau| is at a right angle to the fibre: a = atan2(tau_z, tau_y),
@@ -124,9 +124,10 @@ public:
 /// Among these and their whole turns the solution is the one nearest to the previous joints in the
 /// largest rotary step, those within the axes' limits first.
 /// With three linear axes the eye reaches any place at any turn. With fewer it comes as near as it
-/// can at the given turn, and the distance is told; forced_turn has the turn at which it is least:
-/// without the axis along Y (Z and X left) the eye stays in a half-plane through the spindle axis,
-/// and the turn is the central angle; with Z alone its distance from the spindle axis is fixed too.
+/// can at the given turn, and the distance is reported; forced_turn has the turn at which it is
+/// least: without the axis along Y (Z and X left) the eye stays in a half-plane through the spindle
+/// axis, and the turn is the central angle; with Z alone its distance from the spindle axis is
+/// fixed too.
 /// Accuracy: forward(inverse(pose)) = pose within 1e-9 mm and 1e-9 rad (kinematics_test.cpp).
 class SpindleWristInverse final : public EyeInverse {
 public:

@@ -74,7 +74,7 @@ struct MachineBody {
     std::variant<Capsule, EnvelopeMesh> shape;
 };
 
-/// What the fibre path from the creel to the eye can do.
+/// Limits of the fibre path from the creel to the eye.
 struct FibreLimits {
     double min_free_length_mm = 0.0;
     double max_free_length_mm = 0.0;

@@ -1,5 +1,4 @@
-/// Machine files of the schema "meshwind-machine-1": read, and their JSON Schema, both from one
-/// table of keys.
+/// Reader and JSON Schema of machine files ("meshwind-machine-1"), both from one table of keys.
 #pragma once
 
 #include <string>

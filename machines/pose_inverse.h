@@ -1,4 +1,4 @@
-/// Joints of the mandrel chain that bring the mandrel to a given pose.
+/// Inverse kinematics of the mandrel chain: joints for a given pose of the mandrel.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ inline constexpr double kPoseReached_rad = 1e-9;
 /// Which singular pose an arm is nearest to.
 enum class Singularity { Shoulder, Elbow, Wrist, Other };
 
-/// What one inverse solution has to tell.
+/// Quality of one inverse solution.
 struct PoseState {
     double residual_mm = 0.0;    ///< distance of the mandrel's origin from where it is wanted
     double residual_rad = 0.0;   ///< angle of its frame from what is wanted
@@ -38,9 +38,8 @@ struct PoseState {
 };
 
 /// Inverse of a mandrel chain of any kind.
-///  - arms (ArmInverse): all solutions in closed form, whole turns of every axis included; chosen
-///  is
-///    the one within the limits, then the one with the smallest largest rotary step;
+///  - arms (ArmInverse): all solutions in closed form, whole turns of every axis included; the
+///    choice is the one within the limits, then the one with the smallest largest rotary step;
 ///  - any other chain: damped least squares from the previous joints, then from other starts until
 ///    the pose is reached within the limits; with more than six axes the solution is one of many.
 /// A pose that cannot be reached gives the joints of the least error found, with the residuals;
@@ -57,7 +56,7 @@ public:
     PoseState solve(const Eigen::Isometry3d& base_from_mandrel, std::span<const double> previous,
                     std::span<double> joints) const;
 
-    /// Every way to reach a pose within the limits, rotary joints as near to the middle of their
+    /// All solutions for a pose within the limits, rotary joints as near to the middle of their
     /// travel as whole turns bring them. \pre closed_form()
     [[nodiscard]] std::vector<std::vector<double>> all(
         const Eigen::Isometry3d& base_from_mandrel) const;
@@ -65,7 +64,7 @@ public:
     /// True where the closed form holds.
     [[nodiscard]] bool closed_form() const { return arm_.has_value(); }
 
-    /// The measure that PoseState has, of any joints.
+    /// Sets PoseState::singular and PoseState::nearest for any joints.
     void measure(std::span<const double> joints, PoseState& state) const;
 
 private:

@@ -1,13 +1,13 @@
-/// One run at a time in an output folder.
+/// Lock on an output folder: one run at a time.
 #pragma once
 
 #include <filesystem>
 
 namespace meshwind {
 
-/// Holds a folder for this run until the end of the object or of the process, whatever ends it.
-/// Nothing of it is seen in the folder. File systems that cannot lock a folder (some network
-/// drives) are left unlocked.
+/// Holds a folder for this run until the end of the object or of the process, whatever ends it. The
+/// lock leaves nothing to be seen in the folder. File systems that cannot lock a folder (some
+/// network drives) are left unlocked.
 class FolderLock {
 public:
     /// \throws IoError output.locked while another run has the folder; output.unwritable
@@ -16,7 +16,7 @@ public:
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
 
-    /// Whether the folder that is held is the one of this name; another run may have removed it
+    /// Whether the locked folder is still the one of this name; another run may have removed it
     /// before it was locked.
     [[nodiscard]] bool holds(const std::filesystem::path& folder) const;
 

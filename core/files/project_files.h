@@ -1,4 +1,4 @@
-/// Where the meshes and machines that come with the program are found.
+/// Finds the meshes and machines that come with the program.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace meshwind {
 /// Names of the machine files that come with the program, in their order.
 [[nodiscard]] std::vector<std::string> shipped_machines();
 
-/// The same of materials and processes.
+/// Names of the profiles of materials and processes that come with the program.
 [[nodiscard]] std::vector<std::string> shipped_profiles();
 
 /// \throws IoError io.cannot_read where there is no such file, with the nearest of the machines

@@ -1,4 +1,4 @@
-/// Files that are removed when the process is ended at once.
+/// Temporary files, removed when the process is ended at once.
 #pragma once
 
 #include <atomic>
@@ -6,11 +6,11 @@
 
 namespace meshwind {
 
-/// Removes the registered temporaries, unless something is done whole at this moment. Safe in a
-/// signal handler. \return whether they were removed
+/// Removes the registered temporaries, unless an Unbroken lives at this moment. Safe in a signal
+/// handler. \return whether they were removed
 bool remove_temporaries() noexcept;
 
-/// A file or folder that is removed when the process is ended at once; of folders those that are
+/// A file or folder that is removed when the process is ended at once; a folder only if it is
 /// empty. Registered from before it is made until the object's end, which removes nothing.
 class Temporary {
 public:
@@ -23,7 +23,7 @@ private:
     std::atomic<bool>* registered_ = nullptr;  ///< of the name's entry; none once moved from
 };
 
-/// A file that is removed in the end, unless it has got another name by then; also when the process
+/// A file that is removed at the end of the object, unless renamed by then; also when the process
 /// is ended at once.
 class RemovedInTheEnd {
 public:
@@ -37,7 +37,7 @@ private:
     Temporary registered_;
 };
 
-/// While one lives an end at once waits: what has to be done whole.
+/// Guards a step that has to be done whole: while one lives, an end at once waits.
 class Unbroken {
 public:
     Unbroken();

@@ -1,4 +1,4 @@
-/// A file of its own, written whole or not at all.
+/// Atomic writing of a single file: whole or not at all.
 #pragma once
 
 #include <filesystem>

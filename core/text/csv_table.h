@@ -1,4 +1,4 @@
-/// Tables of comma-separated cells with a first line of names.
+/// Reads tables of comma-separated values (CSV) with a first line of names.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace meshwind {
 
-/// What is said of a broken table.
+/// Codes and remedy for errors in a table.
 struct CsvErrors {
     const char* column;       ///< code where a column is missing
     const char* number;       ///< code where a cell or the number of cells is wrong
-    const char* column_mend;  ///< what helps where a column is missing
+    const char* column_mend;  ///< remedy where a column is missing
 };
 
 /// Reads a table line by line. Blanks around cells, empty lines and a byte order mark are passed
@@ -38,7 +38,7 @@ public:
     /// Cells of the line.
     [[nodiscard]] std::string_view cell(std::size_t column) const { return cells_[column]; }
     [[nodiscard]] double number(std::size_t column) const;
-    /// A whole number of 32 bits; what stands behind its point is cut off.
+    /// A whole number of 32 bits; its fraction is cut off.
     [[nodiscard]] std::int32_t whole_number(std::size_t column) const;
     [[nodiscard]] Eigen::Vector3d vector(const std::array<std::size_t, 3>& columns) const;
 

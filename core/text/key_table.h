@@ -33,10 +33,10 @@ struct Key {
     std::function<void(const JsonValue&, Owner&)> read;
     /// The value as JSON; empty: left out. No function: of a table that is only read.
     std::function<std::string(const Owner&)> text{};
-    /// What a file that says no more than it must has of it; empty: nothing. No function: the text,
-    /// where it is not that of the defaults.
+    /// The value in a file of only the keys that it needs; empty: left out. No function: the text,
+    /// where it differs from that of the defaults.
     std::function<std::string(const Owner&, const Owner& defaults)> told{};
-    /// Whether the file must have it, by what the keys before have said. No function: it need not.
+    /// Whether the file must have it, given the keys before it. No function: it need not.
     std::function<bool(const Owner&)> needed{};
     bool required = false;  ///< the file must have it, whatever else it says
 };
@@ -44,7 +44,7 @@ struct Key {
 template <typename Owner>
 struct KeyTable {
     std::vector<Key<Owner>> keys;  ///< in the order of reading and writing
-    /// What keys ask of each other beyond that; may be empty.
+    /// Checks between keys beyond that; may be empty.
     std::function<void(const JsonObject&, Owner&)> check{};
     SchemaJson rules = SchemaJson::object();  ///< the same for the schema: "allOf", "required", ..
 };
@@ -58,8 +58,8 @@ std::vector<std::string_view> names_of(const KeyTable<Owner>& table) {
     return names;
 }
 
-/// The first of the keys that are objects, or lists of them, which has a key of this name: as
-/// mandrel.turn or layers.0.angle; empty where none has.
+/// Path of the first key of this name inside keys that are objects, or lists of them: as
+/// mandrel.turn or layers.0.angle; empty where there is none.
 template <typename Owner>
 std::string key_below(const KeyTable<Owner>& table, std::string_view name) {
     const auto has = [name](const SchemaJson& schema) {
@@ -78,7 +78,8 @@ std::string key_below(const KeyTable<Owner>& table, std::string_view name) {
     return {};
 }
 
-/// What the object leaves out stays as it is. \throws InputError json.*, and what keys throw
+/// Reads an object into `owner`; fields whose keys it leaves out stay as they are.
+/// \throws InputError json.*, and what keys throw
 template <typename Owner>
 void read_keys(const KeyTable<Owner>& table, const JsonValue& value, Owner& owner) {
     const JsonObject object = value.object(
@@ -112,7 +113,7 @@ inline std::string string_text(std::string_view raw) {
     return nlohmann::json(raw).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
-/// \param between what stands between two members
+/// Members of an object as JSON text. \param between separator of two members
 template <typename Owner>
 std::string keys_text(const KeyTable<Owner>& table, const Owner& owner,
                       std::string_view between = ", ") {
@@ -129,7 +130,7 @@ std::string keys_text(const KeyTable<Owner>& table, const Owner& owner,
     return text;
 }
 
-/// Key::told, or what stands for it.
+/// Key::told, or its default.
 template <typename Owner>
 std::string told_text(const Key<Owner>& key, const Owner& owner, const Owner& defaults) {
     if (key.told) {
@@ -139,7 +140,7 @@ std::string told_text(const Key<Owner>& key, const Owner& owner, const Owner& de
     return text == key.text(defaults) ? std::string() : text;
 }
 
-/// The members that a file must have where the rest keeps its defaults, without blanks between.
+/// The members that differ from the defaults (Key::told), without blanks between.
 template <typename Owner>
 std::string told_keys_text(const KeyTable<Owner>& table, const Owner& owner,
                            const Owner& defaults) {
@@ -199,7 +200,7 @@ inline SchemaJson count_schema(std::int64_t least, std::int64_t most) {
     return {{"type", "integer"}, {"minimum", least}, {"maximum", most}};
 }
 
-/// What keys ask of each other, from its text.
+/// Rules between keys (KeyTable::rules), from their text.
 inline SchemaJson schema_rules(const char* text) {
     return SchemaJson::parse(text);
 }

@@ -1,4 +1,5 @@
-/// A strict, typed view of a JSON file: every mistake is one line with file, JSON pointer and mend.
+/// Strict, typed reader of JSON files: every mistake is one line with file, JSON pointer and
+/// remedy.
 #pragma once
 
 #include <cstddef>
@@ -96,9 +97,9 @@ public:
     JsonDocument& operator=(JsonDocument&&) noexcept;
     ~JsonDocument();
 
-    /// Puts a value in its place; objects that are not there are made, and an index that is one
-    /// past the end adds to its list. \param path keys and indices, joined by dots
-    /// \param value JSON; what is none is a number where it reads as one (.5), else a string
+    /// Sets the value at a path; missing objects are made, and an index that is one past the end
+    /// adds to its list. \param path keys and indices, joined by dots
+    /// \param value JSON; other text is a number where it reads as one (.5), else a string
     /// \throws InputError json.no_such_place where the path leads through something that is
     /// neither object nor list, or beyond the end of one
     void set(std::string_view path, std::string_view value);

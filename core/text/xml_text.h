@@ -1,4 +1,4 @@
-/// Text for XML, SVG and HTML.
+/// Escapes text for XML, SVG and HTML.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace meshwind {
 
-/// What shows as `raw` between tags and in quoted attributes.
+/// Escaped text that shows as `raw` between tags and in quoted attributes.
 [[nodiscard]] std::string xml_text(std::string_view raw);
 
 }  // namespace meshwind

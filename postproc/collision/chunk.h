@@ -1,4 +1,4 @@
-/// Convex pieces that machine parts are cut into, and how far apart two of them are.
+/// Convex pieces of machine parts, and the distance between two of them.
 #pragma once
 
 #include <array>
@@ -39,8 +39,8 @@ struct Chunk {
 /// minus their sum. In closed form.
 [[nodiscard]] double chunk_distance_mm(const Chunk& a, const Chunk& b);
 
-/// A closed triangle mesh around a capsule: it holds all of it and sticks out by `outside_mm` at
-/// most (radii up to 5 m), so what is measured to it is less than to the capsule by as much.
+/// A closed triangle mesh around a capsule: it contains the capsule and sticks out by at most
+/// `outside_mm` (radii up to 5 m), so distances to it are less than to the capsule by as much.
 [[nodiscard]] TriangleSoup capsule_mesh(const Capsule& capsule, double outside_mm);
 
 }  // namespace meshwind

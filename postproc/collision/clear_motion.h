@@ -1,5 +1,5 @@
-/// Where a motion is not clear, told by its stations; and the mending of a motion of least time, of
-/// a long fibre by a few of its circuits.
+/// Stations at which a motion collides, and the repair of a motion of least time there; of a long
+/// fibre by a few of its circuits.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ struct AxisPath {
     JointPath joints;  ///< along that path
 };
 
-/// A machine, what it can hit, and how closely its motion is looked at.
+/// A machine, its obstacles, and the fineness of the check on its motion.
 struct MotionCheck {
     const Machine& machine;
     const HeadEnvelope& envelope;
@@ -51,19 +51,20 @@ struct Improvement {
     std::optional<RepeatedPath> repeated;  ///< the improver has its few points; none: it has all
 };
 
-/// It begins with the eyes and the central angle. Of many stations it has only those of a few
-/// circuits, where they repeat.
+/// Begins with the eyes and the central angle. Where there are many stations and circuits repeat,
+/// it has only those of a few circuits.
 [[nodiscard]] Improvement improvement_of(const MotionCheck& check, double fibre_speed_mm_s,
                                          EyeRule rule, const EyePathResult& eyes);
 
-/// What the improver has chosen, for all stations. \param stations that the improvement is of
+/// The improver's motion for all stations. \param stations of the improvement
 [[nodiscard]] EyePath improved(const Improvement& improvement, EyePath stations);
 
 /// Stations of the improver's path, for those of the whole one.
 [[nodiscard]] std::vector<std::size_t> of_improver(const Improvement& improvement,
                                                    std::vector<std::size_t> stations);
 
-/// Stations of the improver's path, in what it has changed last, at which its motion is not clear.
+/// Stations of the improver's path, in the stretches changed last, at which its motion is not
+/// clear.
 [[nodiscard]] std::vector<std::size_t> hits_of_change(const MotionCheck& check,
                                                       const MotionImprover& improver);
 

@@ -1,5 +1,4 @@
-/// Collisions of the free fibre and of the machine's head with the mandrel, at the blocks and
-/// between.
+/// Collision check: free fibre and machine head against the mandrel, at the blocks and between.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +13,8 @@
 
 namespace meshwind {
 
-/// Envelope parts as what is swept: capsules, and meshes as triangles (machine frame at zero).
+/// Envelope parts in the form that is swept: capsules, and meshes as triangles (machine frame at
+/// zero).
 struct HeadEnvelope {
     struct Part {
         char link = '?';
@@ -30,36 +30,36 @@ struct HeadEnvelope {
 /// Link of bodies that stand on the base.
 inline constexpr char kBaseLink = ' ';
 
-/// Capsules among the obstacles are meshes that stick out by this at most.
+/// Capsules among the obstacles are meshes that stick out by at most this.
 inline constexpr double kBodyMesh_mm = 0.1;
 
 /// \throws InputError machine.mesh_not_read for a mesh without its triangles
 [[nodiscard]] HeadEnvelope head_envelope(const Machine& machine);
 
 /// Bodies that turn with the mandrel, as obstacles in its frame: closed meshes, capsules grown by
-/// kBodyMesh_mm at most.
+/// at most kBodyMesh_mm.
 [[nodiscard]] std::vector<TriangleSoup> bodies_on_mandrel(const Machine& machine);
 
-/// Clearances beyond this are of no interest.
+/// Clearances are reported up to this.
 inline constexpr double kClearanceCap_mm = 100.0;
 
 struct CollisionRule {
     double clearance_mm = 5.0;   ///< kept between the head and anything
-    FreeFibreRule free_fibre;    ///< of which stand-off and start concern the ray
+    FreeFibreRule free_fibre;    ///< its stand-off and start apply to the ray
     double fibre_step_mm = 2.0;  ///< the eye moves no further than this between two fibre rays
     /// Clearances of the head beyond this are not told apart; where it is `clearance_mm`, none is
     /// measured.
     double report_within_mm = kClearanceCap_mm;
-    bool least_only = false;  ///< no clearance is told but the least of all: much is not measured
+    bool least_only = false;  ///< only the least clearance of all is reported: much is not measured
 };
 
-/// What the motion touches. A step leads from eye point i - 1 to eye point i.
+/// Collisions of a motion. A step leads from eye point i - 1 to eye point i.
 struct CollisionReport {
     std::vector<std::size_t> fibre_hits;  ///< steps in which the free fibre meets the mandrel
     std::vector<std::size_t>
         head_hits;  ///< steps in which the head comes nearer than the clearance
     std::vector<std::size_t>
-        body_hits;  ///< steps in which a body touches what turns with the mandrel
+        body_hits;  ///< steps in which a body touches a part that turns with the mandrel
     std::vector<double>
         clearance_mm;               ///< of the head at each eye point, up to report_within_mm; with
                                     ///< least_only report_within_mm where it was not measured
@@ -72,17 +72,17 @@ struct CollisionReport {
 /// grown by all that it can move in its share of the step, is clear of the mandrel or a centre is
 /// within the clearance: nothing slips through between points (conservative to
 /// kSweepResolution_mm). The free fibre: rays from landing point to eye, so close that the eye
-/// moves at most `fibre_step_mm`.
-/// Bodies of the envelope are kept clear of by head and free fibre in the same way: each pair's
+/// moves by at most `fibre_step_mm` between two.
+/// Head and free fibre are checked against bodies of the envelope in the same way: each pair's
 /// exact distance in the middle of a share of the step, less all that both can move in it, or the
-/// share is halved. The head keeps the clearance, the free fibre must not touch, and neither must
-/// what turns with the mandrel.
+/// share is halved. The head keeps the clearance; the free fibre must not touch a body, and neither
+/// must parts that turn with the mandrel.
 [[nodiscard]] CollisionReport check_collisions(const Machine& machine, const HeadEnvelope& envelope,
                                                const RayQuery& obstacles, const EyePath& path,
                                                const JointPath& joints, const CollisionRule& rule);
 
 /// Whether in one step of a motion without fibre the head comes within the clearance of anything,
-/// the eye meets it, or a body touches what turns with the mandrel; swept in the same way.
+/// the eye meets it, or a body touches a part that turns with the mandrel; swept in the same way.
 /// \pre step has two points
 [[nodiscard]] bool head_strikes(const Machine& machine, const HeadEnvelope& envelope,
                                 const RayQuery& obstacles, const JointPath& step,

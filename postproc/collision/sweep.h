@@ -12,7 +12,7 @@
 
 namespace meshwind {
 
-/// What a sweep may take for a hit that is none.
+/// Largest distance beyond the limit that a sweep may still take for a hit.
 inline constexpr double kSweepSlack_mm = 2.0 * kSweepResolution_mm;
 
 /// A piece of a machine part, and the link that carries it.
@@ -34,7 +34,7 @@ struct MachineStep {
     std::span<const double> to;
 };
 
-/// What turns with the mandrel, and how far off a piece has to stay.
+/// Obstacles that turn with the mandrel, and the distance that a piece has to keep.
 struct SweptObstacles {
     const RayQuery& obstacles;
     double need_mm = 0.0;
@@ -44,14 +44,14 @@ struct SweptObstacles {
 [[nodiscard]] bool is_clear(const MachineStep& step, const SweptObstacles& mandrel,
                             const LinkedChunk& part);
 
-/// How far a piece moves at most over a step, against the mandrel.
+/// Upper bound on the motion of a piece against the mandrel over a step.
 [[nodiscard]] double most_motion_mm(const MachineStep& step, const LinkedChunk& part);
 
 /// Whether the head's piece stays clear of a body that stands on the machine over a step.
 [[nodiscard]] bool is_clear_of_body(const MachineStep& step, const LinkedChunk& body,
                                     const LinkedChunk& part, double need_mm);
 
-/// The same of the straight fibre from the landing point, which the mandrel carries, to the eye.
+/// The same for the straight fibre from the landing point, which the mandrel carries, to the eye.
 [[nodiscard]] bool is_fibre_clear_of_body(const MachineStep& step, const LinkedChunk& body,
                                           const EyePoint& a, const EyePoint& b);
 

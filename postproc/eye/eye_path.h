@@ -1,4 +1,4 @@
-/// Where the delivery eye must be for every landing point.
+/// Positions of the delivery eye for all landing points, with the adaptive free length.
 #pragma once
 
 #include <cstdint>
@@ -26,21 +26,20 @@ struct EyePoint {
                                                          ///< parallel to it, sign free
     Eigen::Vector3d eye_mm = Eigen::Vector3d::Zero();    ///< E = P + free_length tau
     double free_length_mm = 0.0;                         ///< L
-    double turn_rad = 0.0;  ///< of the mandrel about +Z, where it is chosen with the eye
-    /// Polar angle about the spindle axis at which the eye stands in the machine; not 0 only where
-    /// the rule says it (eye_rules.h), and the mandrel then turns for it.
+    double turn_rad = 0.0;  ///< turn of the mandrel about +Z, where it is chosen with the eye
+    /// Polar angle of the eye about the spindle axis in the machine; 0 unless the rule sets it
+    /// (eye_rules.h), and the mandrel then turns for it.
     double azimuth_rad = 0.0;
-    /// Of a turn on pins: `landing_mm` is where the free fibre begins, on a pin or on the way
+    /// In a turn on pins: `landing_mm` is where the free fibre begins, on a pin or on the way
     /// there, and does not move in its direction from point to point.
     bool on_pins = false;
-    /// A pin says where the fibre is laid, and what the eye is off the plan does not move the laid
-    /// fibre.
+    /// A pin sets where the fibre is laid; an error of the eye does not move the laid fibre.
     bool held = false;
 };
 
 using EyePath = std::vector<EyePoint>;
 
-/// Eye points, and where there is none that may be taken.
+/// Eye points, and the points that no allowed eye position serves.
 struct EyePathResult {
     EyePath path;
     std::vector<std::size_t> blocked;  ///< eye points that the rule does not allow, ascending
@@ -57,7 +56,7 @@ struct LandingPoints {
                                    ///< stations from which a bridge runs on
 };
 
-/// Stations under a bridge are taken on the taut string.
+/// Stations under a bridge lie on the taut string.
 [[nodiscard]] LandingPoints landing_points(std::span<const Piece> pieces);
 
 /// Puts the eye on the free fibre, `length_mm` from the landing point.
@@ -66,16 +65,16 @@ void set_eye(EyePoint& point, double length_mm);
 /// Shortest and longest free length of the path.
 void measure_lengths(EyePathResult& result);
 
-/// Which lengths are looked at where the preferred one is not clear.
+/// Free lengths that are tried where the preferred one is not clear.
 enum class LengthSearch {
-    Near,  ///< longer ones only where nothing shorter is clear
-    All    ///< where no choice of those works, all that the machine can wind with: slow
+    Near,  ///< longer ones only where no shorter one is clear
+    All    ///< if none of those works, all that the machine can wind with: slow
 };
 
-/// Rule adaptive: L is the preferred length wherever free fibre and head are clear, and leaves it
-/// only as far as it must, at most by the rates of free_fibre.h; the fibre ahead of a bridge is no
-/// shorter than the machine's shortest. Blocked are points for which no allowed length is free of
-/// collision. Of circuits that repeat (repeated_path.h) the lengths of a few serve all.
+/// Rule adaptive: L is the preferred length wherever free fibre and head are clear, and differs
+/// from it only as far as it must, at most by the rates of free_fibre.h; the fibre ahead of a
+/// bridge is no shorter than the machine's shortest. Blocked are points for which no allowed length
+/// is free of collision. Where circuits repeat (repeated_path.h), the lengths of a few serve all.
 /// \param more_clearance_mm per piece, on top of the rule's: lengths are clear at the
 /// stations, and between two of them the head may come nearer; empty: none
 [[nodiscard]] EyePathResult adaptive_free_length(std::span<const Piece> pieces,
@@ -84,8 +83,8 @@ enum class LengthSearch {
                                                  std::span<const double> more_clearance_mm = {},
                                                  LengthSearch search = LengthSearch::Near);
 
-/// What the fibre's speed counts at each point of a path, in mm: max(|ds|, |ds + dL|), fibre laid,
-/// and drawn through the eye, evenly from the point before; 0 for the first.
+/// Length that counts for the fibre's speed at each point of a path, mm: max(|ds|, |ds + dL|),
+/// fibre laid and drawn through the eye, evenly from the point before; 0 for the first.
 [[nodiscard]] std::vector<double> fibre_moved_mm(const EyePath& path);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// The planned fibre between its stations.
+/// Interpolates the planned fibre between its stations.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,12 +23,12 @@ struct FibreFrame {
 /// Between two neighbouring stations: the landing point on the cubic with the stations' positions
 /// and tangents, the tangent along that cubic, the normal turned evenly and kept at a right angle
 /// to it, the free length even. Stations closer than kSamePlace_mm (both sides of a feature edge,
-/// the joint of two pieces) say nothing of a direction between them: there the tangent turns evenly
-/// as well. \param share 0 at `from`, 1 at `to`; both ends are met exactly
+/// the joint of two pieces) define no direction between them: there the tangent turns evenly as
+/// well. \param share 0 at `from`, 1 at `to`; both ends are met exactly
 [[nodiscard]] FibreFrame fibre_between(const EyePoint& from, const EyePoint& to, double share);
 
 /// Positions of stations are good to a few 0.001 mm: over this distance that is a direction to
-/// 0.01 rad, of which the cubic makes a quarter at most between its ends.
+/// 0.01 rad, at most a quarter of which shows between the ends of the cubic.
 inline constexpr double kSamePlace_mm = 0.2;
 
 }  // namespace meshwind

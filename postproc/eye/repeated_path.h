@@ -1,4 +1,4 @@
-/// A path of circuits that repeat, cut down to a few of them, and what is chosen for these put to
+/// Finds repeated circuits of a path, cuts it down to a few of them, and copies their motion to
 /// all.
 #pragma once
 
@@ -11,38 +11,38 @@
 
 namespace meshwind {
 
-/// Of a path with more stations than that (200 m of fibre, whose motion takes half a minute)
-/// circuits that repeat are given one choice.
+/// In a path with more stations than this (200 m of fibre, whose motion takes half a minute)
+/// repeated circuits share one choice.
 inline constexpr std::size_t kManyStations = 50'000;
 
-/// If the few circuits have no more than this share of its stations.
+/// This holds only if the few circuits have at most this share of its stations.
 inline constexpr double kFewShare = 0.5;
 
 /// Circuits of a run that are kept. The one in the middle is what the others repeat; those to
 /// either side keep the run's ends away from it.
 inline constexpr std::size_t kKeptCircuits = 5;
 
-/// Landing points of two circuits are the same, one turned about the spindle, to so much: a
-/// twentieth of what laid fibre may be off the plan.
+/// Landing points of two circuits, one turned about the spindle, are the same within this: a
+/// twentieth of the tolerance of laid fibre against the plan.
 inline constexpr double kSameLanding_mm = 0.01;
 
-/// And their directions to so much, 0.006 deg.
+/// Their directions are the same within this, 0.006 deg.
 inline constexpr double kSameDirection = 1e-4;
 
 /// On a body of revolution each circuit of a pattern is the one before turned about Z. A circuit is
 /// here a run of up to eight pieces (courses and turns); circuits repeat where each point of one,
-/// turned, is that of the next, by kSameLanding_mm and kSameDirection. What is chosen for one of
-/// them then serves all, up to what the mesh is off the body, which is for the checks of the whole
-/// path to find.
+/// turned, is that of the next, by kSameLanding_mm and kSameDirection. The choice for one of them
+/// then serves all, up to the deviation of the mesh from the body, which the checks of the whole
+/// path find.
 class RepeatedPath {
 public:
     /// \param path with its turns and free lengths: the motion that the few begin with
     /// \param ahead_mm per point of the path
     RepeatedPath(const EyePath& path, std::span<const double> ahead_mm);
 
-    /// The path with runs of more than kKeptCircuits circuits cut down to that many: what comes
-    /// behind is turned back about Z to where they end, with the mandrel's turn. Pieces and points
-    /// keep their numbers. The path as it is where nothing repeats so often.
+    /// The path with runs of more than kKeptCircuits circuits cut down to that many: the rest of
+    /// the path is turned back about Z to where they end, with the mandrel's turn. Pieces and
+    /// points keep their numbers. The path unchanged where nothing repeats so often.
     [[nodiscard]] const EyePath& few() const { return few_; }
     [[nodiscard]] const std::vector<double>& few_ahead_mm() const { return few_ahead_mm_; }
 
@@ -50,8 +50,8 @@ public:
     [[nodiscard]] std::size_t few_of(std::size_t point) const;
 
     /// The path with free lengths and turns as chosen for the few: circuits that were left out have
-    /// those of the middle one of their run, with the mandrel turned on. What that one's ends
-    /// differ by, which is next to nothing where the choice has settled, is spread evenly along it.
+    /// those of the middle one of their run, with the mandrel turned on. The difference between
+    /// that one's ends, next to nothing where the choice has settled, is spread evenly along it.
     /// \param path the one given first \param chosen few() with other lengths and turns
     [[nodiscard]] EyePath all(EyePath path, const EyePath& chosen) const;
 
@@ -61,14 +61,14 @@ private:
     struct Piece {
         std::size_t first = 0;      ///< point of the path
         std::size_t few_first = 0;  ///< point of the few that stands for it
-        double turn_rad = 0.0;      ///< of the mandrel, more than there
+        double turn_rad = 0.0;      ///< of the mandrel, in addition to that of few_first
         std::size_t run = kNoRun;   ///< in runs_
         bool repeats = false;       ///< one of the circuits that repeat the middle one
     };
     struct Run {
-        std::size_t middle = 0;  ///< points of the few: where the circuit begins that is repeated,
-        std::size_t after = 0;   ///< where the next one does,
-        std::size_t end = 0;     ///< and where that one ends
+        std::size_t middle = 0;  ///< points of the few: start of the repeated circuit,
+        std::size_t after = 0;   ///< start of the next one,
+        std::size_t end = 0;     ///< end of that one
         double turn_rad = 0.0;   ///< of the mandrel from one circuit to the next
     };
     class Finder;

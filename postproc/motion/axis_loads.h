@@ -1,4 +1,5 @@
-/// What given durations ask of the axes: the one model of how a controller runs the blocks.
+/// Velocity and acceleration of the axes for given durations: the one model of how a controller
+/// runs the blocks.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +16,14 @@ namespace meshwind {
 /// jerk; v/a + a/j, or 2 sqrt(v/j) where the acceleration is not reached.
 [[nodiscard]] double ramp_s(const Axis& axis, double change);
 
-/// Where a limit of an axis is used most.
+/// Largest use of a limit of an axis.
 struct AxisLoad {
     double ratio = 0.0;  ///< needed over allowed; above 1 the limit is broken
     std::size_t step = 0;
     std::size_t joint = 0;
 };
 
-/// How far ramps leave the corner after a step.
+/// Distance by which ramps cut the corner after a step.
 struct CornerCut {
     double mm = 0.0;
     std::size_t step = 0;
@@ -30,23 +31,23 @@ struct CornerCut {
 
 struct AxisLoads {
     AxisLoad velocity;
-    AxisLoad acceleration;  ///< ramps over the room that they have
+    AxisLoad acceleration;  ///< duration of ramps over the room that they have
     CornerCut linear;       ///< the worst of the linear axes, together as a vector
     CornerCut eye;          ///< the worst of the eye against the mandrel, all axes taken together
 };
 
 /// The model. Within a step every axis runs evenly, straight from point to point. About the point
 /// between two steps it ramps from one velocity to the other, in ramp_s, half before and half
-/// after. So a ramp covers in sum what the corner would, and off its ramps the axis is exactly
-/// where the program has it: nothing adds up, whatever the durations. Such a motion exists when no
+/// after. So a ramp covers in sum the same distance as the corner, and off its ramps the axis is
+/// exactly on the program: nothing adds up, whatever the durations. Such a motion exists when no
 /// two ramps of an axis overlap, that is when in each step half the ramp before and half the ramp
 /// after together last no longer than the step: their ratio is `acceleration`. The start from rest
-/// and the stop are ramps as well, and begin half a ramp early, or end as much late.
+/// and the stop are ramps as well: one begins half a ramp early, the other ends half a ramp late.
 ///
 /// At the corner the axis is off by a moment of half its ramp: |v2 - v1| * ramp / 8 without jerk,
 /// less with it. That is the largest distance. A controller that blends corners of the linear axes
-/// within it runs the program in its time; one that is told to stay nearer has to slow down. What
-/// all axes do together moves the eye against the mandrel (eye_moves, first order).
+/// within it runs the program in its time; one that is told to stay nearer has to slow down. All
+/// axes together move the eye against the mandrel (eye_moves, first order).
 /// \param step_s per step, the first is not used; steps of 0 s are passed over
 [[nodiscard]] AxisLoads axis_loads(const Machine& machine, const JointPath& joints,
                                    std::span<const double> step_s);

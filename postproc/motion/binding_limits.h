@@ -1,4 +1,4 @@
-/// Which limits set the time of a motion, and where.
+/// Limits that set the time of a motion, with their stretches.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct BindingStretch {
     double time_s = 0.0;
 };
 
-/// What set the duration of a step.
+/// A limit that set the duration of steps.
 struct BindingLimit {
     std::string name;     ///< "fibre", "corner", "C velocity", "C acceleration", "C jerk" ...
     double time_s = 0.0;  ///< total duration of the steps that it set

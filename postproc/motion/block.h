@@ -1,4 +1,4 @@
-/// The neutral program: what every dialect writes and every reader returns.
+/// The neutral program as a list of blocks: written by every dialect, returned by every reader.
 #pragma once
 
 #include <cstddef>
@@ -45,12 +45,12 @@ struct BlockList {
     std::vector<BlockAxis> axes;     ///< in the order of the machine's joint vector
     std::vector<Block> blocks;       ///< n
     std::vector<std::int64_t> nano;  ///< n x axes by rows: absolute, 1e-9 mm or 1e-9 deg
-    /// Where the fibre is tied on, in the mandrel frame, as the program's head says; unset when it
-    /// does not, and in a list that was planned.
+    /// Tie-on point of the fibre, mandrel frame, from the program's head; unset without one, and in
+    /// a list that was planned.
     std::optional<Eigen::Vector3d> tie_on_mm{};
-    /// On which the fibre turns, as the head says; none in a list that was planned.
+    /// Pins on which the fibre turns, from the head; none in a list that was planned.
     std::vector<PinRing> pins{};
-    /// What else a program's text says; unset in a list that was planned.
+    /// Everything else in a program's text; unset in a list that was planned.
     std::optional<ProgramHead> head{};
 
     [[nodiscard]] std::span<const std::int64_t> row(std::size_t block) const {
@@ -62,8 +62,7 @@ struct BlockList {
                static_cast<double>(kNanoPerUnit);
     }
     [[nodiscard]] double duration_s() const;
-    /// Blocks that move, which is what people are told: the number of the last one; the start
-    /// position is none.
+    /// Blocks that move, for messages: the number of the last one; the start position is none.
     [[nodiscard]] std::size_t moves() const { return blocks.empty() ? 0 : blocks.size() - 1; }
 };
 
@@ -76,9 +75,9 @@ struct BlockList {
 /// "block 17 (line 40)"; without the line where it is unknown.
 [[nodiscard]] std::string block_words(const BlockList& list, std::size_t block);
 
-/// What one block can ask for: more turns than the longest stroke of the narrowest tow winds (10 m
-/// at 0.5 mm), and a longer way than any bed. Whatever goes beyond has lost its point, and winding
-/// it again would take hours.
+/// Largest motion of one block: more turns than the longest stroke of the narrowest tow winds (10 m
+/// at 0.5 mm), and a longer way than any bed. A number beyond has lost its decimal point, and
+/// winding it again would take hours.
 inline constexpr double kMaxBlock_deg = 20'000 * 360.0;
 inline constexpr double kMaxBlock_mm = 100'000.0;
 
@@ -89,7 +88,7 @@ inline constexpr double kMaxBlock_mm = 100'000.0;
 /// The machine with other steps. \pre steps has an entry for each axis, in the joints' order
 [[nodiscard]] Machine with_steps(Machine machine, std::span<const BlockAxis> steps);
 
-/// A program's blocks and what their durations come from.
+/// A program's blocks and the time law of their durations.
 struct TimedBlocks {
     BlockList list;
     TimedPath time;  ///< a step per block; list has its durations
@@ -98,9 +97,10 @@ struct TimedBlocks {
 /// Rounds the absolute positions to each axis' resolution, so that the sum of increments stays
 /// within half a step of the plan over any number of blocks. Steps that move no axis by a whole
 /// step are merged into the next one that does, with their fibre; at the end into the last. The
-/// time law is that of the rounded positions, which are what the machine runs. \param fibre_mm per
-/// point, what the fibre's speed counts (time_path) \pre path, joints and fibre_mm have equal
-/// length \throws InputError block.too_far beyond +-4e9 mm or deg; what time_path throws
+/// time law is that of the rounded positions, which the machine runs.
+/// \param fibre_mm per point, length that counts for the fibre's speed (time_path)
+/// \pre path, joints and fibre_mm have equal length
+/// \throws InputError block.too_far beyond +-4e9 mm or deg; what time_path throws
 [[nodiscard]] TimedBlocks make_blocks(const Machine& machine, const EyePath& path,
                                       const JointPath& joints, std::span<const double> fibre_mm,
                                       const TimeLawOptions& options = {});

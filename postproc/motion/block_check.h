@@ -1,4 +1,4 @@
-/// How far one block of a dense path leads the fibre off the plan. For choose_blocks.h alone.
+/// Deviation of the fibre from the plan over one block of a dense path. For choose_blocks.h alone.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace meshwind {
 
-/// Joint values and frames are good to this; free lengths planned at a limit are not beyond it.
+/// Rounding of joint values and frames: free lengths planned at a limit count as within it.
 inline constexpr double kFreeLengthRounding_mm = 1e-6;
 
 /// A block, or the part of it up to where it left the tolerance.
@@ -56,10 +56,10 @@ public:
     [[nodiscard]] BlockDeviation measure(std::size_t first, std::size_t last, double offset_mm,
                                          bool stop) const;
 
-    /// Fibre that arrives beyond the tolerance may not get further off.
+    /// Whether a block keeps the tolerance. Fibre that arrives beyond it may not get further off.
     [[nodiscard]] bool within(const BlockDeviation& block, double offset_mm) const;
 
-    /// Into how many parts a single step must be cut.
+    /// Number of parts into which a single step must be cut.
     [[nodiscard]] int parts(std::size_t step) const;
 
 private:

@@ -11,18 +11,18 @@
 
 namespace meshwind {
 
-/// How the turn of the mandrel is chosen; the eye position leaves it free.
+/// Choice of the mandrel's turn, which the eye position leaves free.
 enum class RedundancyPolicy {
     /// The eye stays in the half-plane y = 0, x > 0 of the machine: the mandrel turns about +Z by
     /// -atan2(E_y, E_x), unwrapped so that each step is within half a turn.
     CentralAngle,
     /// The mandrel stands still at the central angle of the first eye point as long as the eye is
     /// within kHoldPlay_rad of the half-plane, and is dragged along beyond: a run is wound as with
-    /// the central angle but late, and round a branch it does not turn.
+    /// the central angle but late, and it does not turn round a branch.
     Hold,
     /// The same with kOscillatePlay_rad: round a branch it swings a little.
     Oscillate,
-    /// As the eye path says.
+    /// The turns of the eye path.
     Chosen,
 };
 
@@ -31,7 +31,7 @@ enum class RedundancyPolicy {
 struct LimitViolation {
     char axis = '?';
     std::size_t first = 0;  ///< index of the run's first point in the eye path
-    std::size_t last = 0;   ///< and of its last
+    std::size_t last = 0;   ///< index of its last point
     std::size_t point = 0;  ///< the worst of them
     double value = 0.0;     ///< there, axis units (mm or rad)
     double limit = 0.0;     ///< the end that it passes, axis units
@@ -44,7 +44,7 @@ enum class JointNoteKind {
     EyeOutOfReach,       ///< measure: largest distance of the run in mm between eye and eye point
 };
 
-/// Something about a run of neighbouring points that slows the machine or hints at a bad set-up.
+/// Remark on a run of neighbouring points that slow the machine or hint at a bad set-up.
 struct JointNote {
     JointNoteKind kind = JointNoteKind::WristNearSingular;
     std::size_t first = 0;
@@ -69,7 +69,7 @@ struct JointPath {
     }
 };
 
-/// Eyes that miss their place by less are there: rounding of positions of some metres over a
+/// Eyes that miss their place by less count as there: rounding of positions of some metres over a
 /// thousand turns.
 inline constexpr double kEyeThere_mm = 1e-6;
 
@@ -77,21 +77,21 @@ inline constexpr double kEyeThere_mm = 1e-6;
 /// positions of some metres; the policy CentralAngle then keeps the previous turn.
 inline constexpr double kMinEyeRadius_mm = 1e-6;
 
-/// How far the eye may get from the half-plane before the mandrel follows. Hold: up to the plane
-/// x = 0 of the machine, where cross feeds end. Oscillate: a head that has half of its distance
-/// from the spindle axis to go up or down.
+/// Largest angle of the eye from the half-plane before the mandrel follows. Hold: up to the plane x
+/// = 0 of the machine, where cross feeds end. Oscillate: for a head that can go up or down by half
+/// of its distance from the spindle axis.
 inline constexpr double kHoldPlay_rad = 0.5 * kPi;
 inline constexpr double kOscillatePlay_rad = kPi / 6.0;
 
 /// Turn of the mandrel about +Z of the machine at each eye point, in rad; n values, unwrapped.
 /// The first one is within half a turn of zero. With a play, and c the turn by CentralAngle, each
-/// is the nearest to the one before that is within the play of c: the backlash of a loose gear.
-/// Source of holding and swinging: docs/post.md.
+/// turn is the one within the play of c that is nearest to the turn before: the backlash of a loose
+/// gear. Source of holding and swinging: docs/post.md.
 [[nodiscard]] std::vector<double> spindle_turns(const EyePath& path, RedundancyPolicy policy);
 
 /// Axis values with the spindle turns given (n values). Steps of the wrist are the smallest
-/// possible, starting from all axes at zero, or where a head roll with end stops would run into one
-/// or flip, from up to a turn further on or back, whichever has the least of both. Source:
+/// possible, starting from all axes at zero; where a head roll with end stops would run into one or
+/// flip, from up to a turn further on or back, whichever has the least of both. Source:
 /// fu_2009_post_processing, machine transform; the turn has the opposite sign of its C, which
 /// counts the eye around the mandrel. Machines of any class (machines/eye_inverse.h); what the axes
 /// do not reach is noted.

@@ -1,4 +1,4 @@
-/// How long a controller takes that slows down at corners by junction deviation, as GRBL does.
+/// Run time on a controller that slows down at corners by junction deviation, as GRBL does.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace meshwind {
 
-/// What such a controller is set to.
+/// Settings of such a controller.
 struct JunctionPlanner {
-    /// > 0: the arc that an imagined blend of a corner has stays so near to it. GRBL's $11.
+    /// > 0: distance of an imagined arc through a corner from it. GRBL's $11.
     double deviation_mm = 0.01;
     std::size_t blocks = 15;  ///< > 0: looked ahead over, the running one included; GRBL keeps 15
 };
@@ -21,9 +21,8 @@ struct JunctionPlanner {
 /// of its corners: at most
 ///     sqrt(a d s / (1 - s)),  s = sin(angle between the blocks / 2),
 /// with the acceleration a that the axes allow along the bisector and the deviation d; such that
-/// the program could stop within the blocks that are looked ahead over; and never above what the
-/// block is to run with. Between them it speeds up and slows down at the acceleration that the axes
-/// allow along it, without jerk.
+/// the program could stop within the look-ahead; and never above the block's own speed. Between
+/// them it speeds up and slows down at the acceleration that the axes allow along it, without jerk.
 /// Source: the planner of GRBL 1.1, `plan_buffer_line` and `planner_recalculate`; the corner's law
 /// there is that of cornering on an arc. \pre machine has the axes of list
 [[nodiscard]] std::vector<double> junction_times_s(const Machine& machine, const BlockList& list,

@@ -1,4 +1,4 @@
-/// Places along a path at which turn and free length are chosen, and what the axes do there. For
+/// Knots of a path, at which turn and free length are chosen, and the axes there. For
 /// optimal_motion.h alone.
 #pragma once
 
@@ -14,22 +14,22 @@
 
 namespace meshwind {
 
-/// What is chosen at a place.
+/// Choice at a knot.
 struct KnotChoice {
     double turn_rad = 0.0;   ///< of the mandrel about +Z
     double length_mm = 0.0;  ///< free length
 };
 
-/// A place of the path.
+/// A knot: a place of the path.
 struct Knot {
     std::size_t station = 0;
     double ahead_mm = 0.0;    ///< fibre to the next place, > 0
-    double longest_mm = 0.0;  ///< free fibre that meets nothing
-    bool kept = false;        ///< the given motion stays
+    double longest_mm = 0.0;  ///< longest free fibre that meets nothing
+    bool kept = false;        ///< the given motion is kept
     KnotChoice given;         ///< of that motion
 };
 
-/// The places of a stretch of a task's path.
+/// The knots of a stretch of a task's path.
 class MotionKnots {
 public:
     /// \param first, last stations; both are places
@@ -55,11 +55,11 @@ public:
         return point(knot).landing_mm + length_mm * point(knot).tangent;
     }
 
-    /// The turn that has the eye at y = 0, x > 0 of the machine, within half a turn of another.
+    /// The turn that brings the eye to y = 0, x > 0 of the machine, within half a turn of
+    /// `near_rad`.
     [[nodiscard]] double central_rad(std::size_t knot, double length_mm, double near_rad) const;
 
-    /// Axes near which those of the first place are: all zero, or with an arm as in the given
-    /// motion.
+    /// Start for the axes of the first place: all zero, or with an arm as in the given motion.
     [[nodiscard]] std::span<const double> start() const { return given_joints(0); }
 
     [[nodiscard]] bool moves_eye(std::size_t joint) const {
@@ -71,10 +71,11 @@ public:
     void joints(std::size_t knot, const KnotChoice& choice, std::span<const double> previous,
                 std::span<double> joints) const;
 
-    /// Whether fibre, head and arm are clear there by the rules, and the axes within their travel.
+    /// Whether fibre, head and arm are clear at a knot by the rules, and the axes within their
+    /// travel.
     [[nodiscard]] bool clear(std::size_t knot, const KnotChoice& choice) const;
 
-    /// The same at the stations between a place and the next, where both choices pass evenly into
+    /// The same at the stations between a knot and the next, where both choices pass evenly into
     /// one another.
     [[nodiscard]] bool clear_between(std::size_t knot, const KnotChoice& from,
                                      const KnotChoice& to) const;
@@ -94,10 +95,10 @@ private:
     std::vector<Knot> knots_;
 };
 
-/// Choices for all knots, of the least time by dynamic programming.
+/// Choices of least time for all knots, by dynamic programming on a grid.
 [[nodiscard]] std::vector<KnotChoice> choose_on_grid(const MotionKnots& knots);
 
-/// Choices whose time is less, near those given.
+/// Choices of less time near those given.
 [[nodiscard]] std::vector<KnotChoice> smooth_motion(const MotionKnots& knots,
                                                     std::vector<KnotChoice> choices);
 

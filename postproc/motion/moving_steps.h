@@ -1,4 +1,4 @@
-/// The moving steps of a joint path, and the ramps and corners that given durations of them need.
+/// The moving steps of a joint path, with their ramps and corners for given durations.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,14 @@
 
 namespace meshwind {
 
-/// Axes by fours, for the processor takes several at once.
+/// Axes by fours, for vector instructions.
 using AxisLanes = Eigen::Array4d;
 inline constexpr std::size_t kAxisLanes = 4;
 
 /// Rounding of sums against limits that are just kept.
 inline constexpr double kStepSlack = 1e-9;
 
-/// Index of what sets a step's duration: the fibre, a corner, then three for each axis.
+/// Index of the limit that sets a step's duration: the fibre, a corner, then three for each axis.
 inline constexpr std::size_t kFibreLimit = 0;
 inline constexpr std::size_t kCornerLimit = 1;
 enum class AxisLimit : std::size_t { Velocity, Acceleration, Jerk };
@@ -37,7 +37,7 @@ struct AxisRamps {
     std::vector<AxisLanes> build_up_s;  ///< acceleration over jerk
 };
 
-/// How far ramps may take the linear axes and the eye off a corner.
+/// Largest distance of the linear axes and the eye from a corner in ramps.
 struct CornerLimit {
     double mm = std::numeric_limits<double>::infinity();
     std::vector<AxisLanes>
@@ -54,12 +54,12 @@ struct MovingSteps {
     /// Steps x groups, over acceleration: then differences of velocities are the times of ramps.
     std::vector<AxisLanes> move;
     std::vector<double> least_s;        ///< for velocities and fibre
-    std::vector<std::size_t> least_of;  ///< and which of them
+    std::vector<std::size_t> least_of;  ///< which of them sets it
     AxisRamps ramps;
     CornerLimit corner;
 };
 
-/// \param fibre_mm per step, what the fibre's speed counts; the first is not used
+/// \param fibre_mm per step, length that counts for the fibre's speed; the first is not used
 /// \pre options.fibre_speed_mm_s > 0
 [[nodiscard]] MovingSteps moving_steps(const Machine& machine, const JointPath& joints,
                                        std::span<const double> fibre_mm,
@@ -74,7 +74,7 @@ struct MovingSteps {
            steps.move[m * steps.groups + group] / duration_s[m];
 }
 
-/// Ramps for changes of velocity, as axis_loads.h has it, of all lanes.
+/// Ramps for changes of velocity, by the model of axis_loads.h, for all lanes.
 /// \param jump_s size of velocity_change_s
 [[nodiscard]] inline AxisLanes ramps_s(const AxisRamps& ramps, const AxisLanes& jump_s,
                                        std::size_t group) {
@@ -93,7 +93,7 @@ struct MovingSteps {
     return ramps_s(steps.ramps, jump_s, group);
 }
 
-/// The linear axes and the eye at the corner after a step.
+/// Offset of the linear axes and the eye at the corner after a step.
 struct CornerOffset {
     double linear_mm2 = 0.0;
     std::array<double, 3> eye_mm{};
@@ -119,7 +119,7 @@ inline void add_offset(const MovingSteps& steps, std::size_t m, std::size_t grou
 [[nodiscard]] double longest_ramp_s(const MovingSteps& steps, std::span<const double> duration_s,
                                     std::size_t m);
 
-/// Half of both ramps of step m over its duration: the worst axis'. At most 1 where it has room.
+/// Half of both ramps of step m over its duration, for the worst axis. At most 1 where it has room.
 [[nodiscard]] double room_ratio(const MovingSteps& steps, std::span<const double> duration_s,
                                 std::size_t m);
 

@@ -1,5 +1,5 @@
-/// The motion that winds a path in the least time: free length and turn of the mandrel, which the
-/// path leaves free, chosen together.
+/// Time-optimal motion along a path: chooses free length and turn of the mandrel together, which
+/// the path leaves free.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace meshwind {
 
-/// Fibre between two places at which turn and length are chosen: 24 ms at 30 m/min, in which an
+/// Fibre between two knots, at which turn and length are chosen: 24 ms at 30 m/min, in which an
 /// axis of 2.5 m/s^2 moves by less than 1 mm to either side.
 inline constexpr double kKnot_mm = 12.0;
 
@@ -33,16 +33,17 @@ struct OptimalMotionTask {
 
 /// Free lengths and turns of the mandrel with which the fibre can run as near to its speed as the
 /// axes let it. First a dynamic programme over a grid of turns, counted from the central angle, and
-/// lengths, at places some kKnot_mm apart: of what is clear, the way whose times sum up to the
-/// least, a step taking as long as the slowest of the fibre, the axes' velocities and, at each
-/// place, their accelerations were turn and length to stay as they are. Then the times are reduced
-/// further by moving all turns and lengths at once (Gauss-Newton on the axes' true accelerations),
-/// each within the range around it that is clear. Between the places both are cubic splines.
+/// lengths, at places some kKnot_mm apart: the way of least total time through the clear choices. A
+/// step takes as long as the slowest of the fibre, the axes' velocities and, at each place, their
+/// accelerations if turn and length stayed as they are. Then all turns and lengths are moved at
+/// once to reduce the time further (Gauss-Newton on the axes' true accelerations), each within the
+/// clear range around it. Between the places both are cubic splines.
 ///
-/// \return the path with these lengths, eyes and turns. The times are estimates, and what is clear
-/// is looked up in a table: the result is to be checked as any motion is. It depends on nothing but
+/// \return the path with these lengths, eyes and turns. The times are estimates, and clearance is
+/// looked up in a table: the result is to be checked as any motion is. It depends on nothing but
 /// the task. Source: docs/post.md; fu_2009_post_processing names turns and lengths that were chosen
-/// by hand. \throws InputError machine.missing_axis, machine.unsupported_chain
+/// by hand.
+/// \throws InputError machine.missing_axis, machine.unsupported_chain
 [[nodiscard]] EyePath optimal_motion(const OptimalMotionTask& task);
 
 }  // namespace meshwind

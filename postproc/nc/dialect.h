@@ -1,4 +1,4 @@
-/// What every controller language offers: blocks to text and text to blocks.
+/// Interface of a controller language (dialect): writes blocks as a program and reads them back.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace meshwind {
 
-/// What the head of a program tells the operator; empty texts are left out.
+/// Content of a program's head, for the operator; empty texts are left out.
 struct ProgramHeader {
     std::string version{};         ///< of meshwind
     std::string mandrel{};         ///< file name
@@ -26,12 +26,12 @@ struct ProgramHeader {
     std::string job{};             ///< JSON; empty: not told
     std::string job_digest{};
     std::optional<MainJobRun> run{};  ///< none: the main job did not make it
-    std::string code_digest{};        ///< of code_of() what is written
+    std::string code_digest{};        ///< of the program's code_of()
     double fibre_length_mm = 0.0;
     std::optional<Eigen::Vector3d> tie_on_mm{};  ///< first landing point, in the mandrel frame
     std::vector<PinRing> pins{};                 ///< on which the fibre turns
-    /// File of the program whose fibre goes on; empty where it is tied on. Then `tie_on_mm` is
-    /// where it lies already.
+    /// File of the program whose fibre is continued; empty where the fibre is tied on. When
+    /// continued, `tie_on_mm` is where it lies already.
     std::string goes_on_from{};
     bool in_the_air = false;           ///< no fibre is wound
     std::vector<std::string> notes{};  ///< a line each, e.g. that a failed check was overruled
@@ -47,39 +47,41 @@ public:
     /// With the point, e.g. ".ngc".
     [[nodiscard]] virtual std::string extension() const = 0;
 
-    /// How the machine's header lines make the controller go past corners; no words where the
-    /// language has none.
+    /// Path mode at corners that the machine's header lines set; no words where the language has
+    /// none.
     [[nodiscard]] virtual PathMode path_mode(const Machine&) const { return {}; }
-    /// How far the controller may leave the corners between blocks, mm of the linear axes, as the
-    /// machine's header lines tell it; infinite when they do not say, for then it keeps the feed.
+    /// Largest distance of the controller's way from the corners between blocks, mm of the linear
+    /// axes, set by the machine's header lines; infinite when they set none, for then it keeps the
+    /// feed.
     [[nodiscard]] double corner_tolerance_mm(const Machine& machine) const {
         return path_mode(machine).corner_mm;
     }
-    /// Whether it slows down at corners by a junction deviation.
+    /// Whether the controller slows down at corners by a junction deviation.
     [[nodiscard]] virtual bool has_junction_deviation() const { return false; }
-    /// How long the controller takes for each block: its duration, and what is added where it meets
-    /// the next. \pre list has the axes of the machine
+    /// Run time of each block on the controller: its duration, and what is added where it meets the
+    /// next. \pre list has the axes of the machine
     [[nodiscard]] virtual std::vector<double> run_times_s(const Machine& machine,
                                                           const BlockList& list) const = 0;
     /// The sum.
     [[nodiscard]] double run_time_s(const Machine& machine, const BlockList& list) const;
-    /// Blocks last whole ticks of this length; 0: any time.
+    /// Tick of the controller: blocks last whole ticks; 0: any time.
     [[nodiscard]] virtual double tick_s() const { return 0.0; }
 
-    /// What the machine file asks of the controller, before anything is planned for it.
+    /// Checks the machine file's demands on the controller, before anything is planned for it.
     /// \throws InputError what `write` throws for letters, feed and header lines;
     /// dialect.junction_deviation where the controller has no such setting
     void check(const Machine& machine) const;
 
-    /// The blocks as the controller needs them: what it would execute wrongly is written in another
-    /// way (more blocks, same positions). Tables beside the program are made from this result.
-    /// prepare(prepare(list)) = prepare(list). Axes may get other steps, then with positions on
-    /// these. \throws InputError dialect.float32
+    /// The blocks as the controller needs them: blocks that it would execute wrongly are written in
+    /// another way (more blocks, same positions). Tables beside the program are made from this
+    /// result. prepare(prepare(list)) = prepare(list). Axes may get other steps; positions are then
+    /// multiples of these. \throws InputError dialect.float32
     [[nodiscard]] virtual BlockList prepare(BlockList list) const = 0;
 
-    /// Folds circuits that repeat where the language has subprograms; here nothing.
+    /// Folds repeated circuits where the language has subprograms; here nothing.
     /// \param list a result of prepare()
-    /// \return what the program will really run (tables are made from it), and how it is written
+    /// \return the blocks that the program will really run (tables are made from them), and its
+    /// layout
     [[nodiscard]] virtual FoldedProgram fold(BlockList list) const { return {std::move(list), {}}; }
 
     /// The program of prepare(list), a line for each block.
@@ -96,8 +98,8 @@ public:
                                             const ProgramLayout& layout,
                                             const ProgramHeader& header) const = 0;
 
-    /// Reads a program of the subset that `write` uses (and what is harmless besides): the blocks
-    /// that the controller would run, one by one, whatever the text repeats.
+    /// Reads a program of the subset that `write` uses (and harmless codes besides): the blocks
+    /// that the controller would run, one by one, repetitions expanded.
     /// \param file name used in messages
     /// \return positions and durations; `piece` from the course marks, `line` of each block, the
     /// tie-on of the head to three decimals
@@ -105,9 +107,9 @@ public:
     [[nodiscard]] virtual BlockList read(std::string_view text, const std::string& file,
                                          const Machine& machine) const = 0;
 
-    /// What a program is but for its looks, to tell whether it was changed: its code in lower case
-    /// without blanks, line numbers and comments, and the comment that ties the fibre on; lines end
-    /// in \n. \throws InputError nc.comment
+    /// Normal form of a program, to detect changes: its code in lower case without blanks, line
+    /// numbers and comments, and the comment that ties the fibre on; lines end in \n.
+    /// \throws InputError nc.comment
     [[nodiscard]] virtual std::string code_of(std::string_view text,
                                               const std::string& file) const = 0;
 };

@@ -1,4 +1,4 @@
-/// What a feed per minute counts when linear and rotary axes move together.
+/// Feed rules: the length that a feed per minute counts when linear and rotary axes move together.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct MoveLengths {
     double second = 0.0;  ///< U V W and what is not named here
     double rotary = 0.0;  ///< A B C
 
-    /// What moves linearly for the rule Nist: X Y Z, or the second group when those rest.
+    /// Linear length for the rule Nist: X Y Z, or the second group when those rest.
     [[nodiscard]] double linear() const { return main > 0.0 ? main : second; }
 };
 
@@ -35,8 +35,8 @@ struct MoveLengths {
 [[nodiscard]] double rapid_time_s(const Machine& machine, std::span<const std::int64_t> from,
                                   std::span<const std::int64_t> to);
 
-/// When a block whose linear part is tiny beside its turn would be run too fast under the rule
-/// Nist.
+/// Bounds below which a block with a tiny linear part beside its turn would be run too fast under
+/// the rule Nist.
 struct SlowLinear {
     double least_feed_mm_min = 0.0;  ///< below it, where rotary axes turn besides; 0: never
     double split_feed_mm_min = 0.0;  ///< feed of the part that has the whole linear move
@@ -48,7 +48,7 @@ struct SlowLinear {
 [[nodiscard]] bool has_slow_linear(const BlockList& list, const SlowLinear& rule);
 
 /// Splits such blocks into one with the whole linear move and its share of the turn, and one that
-/// only turns: same positions, same time. Again is once: what it returns has none left.
+/// only turns: same positions, same time. Idempotent: the result has no such block left.
 [[nodiscard]] BlockList split_slow_linear(BlockList list, const SlowLinear& rule);
 
 }  // namespace meshwind

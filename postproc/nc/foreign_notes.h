@@ -1,5 +1,4 @@
-/// Programs that are not by meshwind: what is read in them as the controller would take it, and
-/// told.
+/// Reading of foreign programs, not by meshwind: their idle codes, and remarks on ambiguities.
 #pragma once
 
 #include <cstddef>
@@ -18,37 +17,37 @@ namespace meshwind {
 /// Whether a comment in the first lines says so.
 [[nodiscard]] bool is_by_meshwind(std::span<const std::string_view> lines);
 
-/// What a whole text tells before its lines are run.
+/// Origin of a program, from the whole text before its lines are run.
 struct ProgramOrigin {
     bool by_meshwind = false;
-    bool feeds = false;  ///< it has G1: else its rapid moves wind
-    bool stops = false;  ///< it has M0: else the first of those moves leads to the start
+    bool feeds = false;  ///< it has G1; without one its rapid moves wind
+    bool stops = false;  ///< it has M0; without one the first of those moves leads to the start
 };
 
 [[nodiscard]] ProgramOrigin origin_of(NcComments comments, std::span<const std::string_view> lines);
 
-/// Whether a code of a program of others moves no axis and is left out. \param tenths NcLine::code
+/// Whether a code of a foreign program moves no axis and is left out. \param tenths NcLine::code
 [[nodiscard]] bool is_idle_g(int tenths);
 [[nodiscard]] bool is_idle_m(int tenths);
 
 /// G4, which makes the axes rest, in tenths.
 inline constexpr int kPauseCode = 40;
 
-/// Whether words of a letter say nothing of axes in a program of others, where no axis has it:
-/// tools, spindles, parameters of M words.
+/// Whether words of a letter concern no axis in a foreign program, where no axis has it: tools,
+/// spindles, parameters of M words.
 [[nodiscard]] bool is_idle_letter(char letter);
 
-/// Counts what a program leaves open or says beside its motion.
+/// Counts the ambiguities of a program and its words beside the motion.
 class ForeignNotes {
 public:
-    /// How often something is met, and in which line first.
+    /// Number of occurrences, and the line of the first.
     struct Seen {
         std::size_t times = 0;
         std::int32_t line = 0;
     };
 
     void unplaced(char axis, std::int32_t line) { unplaced_.emplace(axis, line); }
-    /// \param off_nano from the position that the text has to the axis' nearest step
+    /// \param off_nano from the text's position to the axis' nearest step
     void rounded(const BlockAxis& axis, std::int64_t off_nano);
     /// \param by_feed whether the controller runs it at F
     void rapid_with_fibre(bool by_feed, std::int32_t line);

@@ -1,4 +1,4 @@
-/// Lines of the controller's own, with places to be filled in.
+/// Header and footer lines of the machine file, with placeholders that are filled in.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace meshwind {
 
-/// What stands in braces in a header or footer line, as text.
+/// Values of the placeholders in braces, as text.
 struct LineValues {
     std::string program{};  ///< number
     std::string mandrel{};  ///< file name

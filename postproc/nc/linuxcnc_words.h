@@ -1,4 +1,4 @@
-/// Lines of RS274 text as words and comments.
+/// Splits lines of RS274 text (G-code) into words and comments.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace meshwind {
 
-/// What opens a comment.
+/// Characters that open a comment.
 enum class NcComments {
     Brackets,             ///< ( ) alone
-    BracketsOrSemicolon,  ///< both; what stands behind ; means nothing
+    BracketsOrSemicolon,  ///< both; text behind ; means nothing
     Semicolon,            ///< ; to the end of the line alone
 };
 
@@ -21,29 +21,28 @@ struct NcWord {
     std::string_view number{};
 };
 
-/// One line: what stands outside the comments, and inside each.
+/// One line: the words outside the comments, and the text of each comment.
 struct NcLine {
     const std::string* file = nullptr;  ///< name used in messages
     std::int32_t number = 0;            ///< from 1
     std::vector<NcWord> words{};
     NcComments style = NcComments::BracketsOrSemicolon;
     std::vector<std::string_view> comments{};  ///< in order; behind ; where there is no ( )
-    bool drops_digits = false;                 ///< of numbers, what is finer than 1e-9
+    bool drops_digits = false;                 ///< drops digits of numbers finer than 1e-9
 
     /// Replaces words and comments by those of `text`, which must outlive them.
     /// \throws InputError nc.comment, nc.not_understood, nc.number, nc.word_twice
     void split(std::string_view text);
 
-    /// Replaces the comments alone; what stands between them is returned in lower case without
-    /// blanks. \throws InputError nc.comment
+    /// Replaces the comments alone; the text between them is returned in lower case without blanks.
+    /// \throws InputError nc.comment
     [[nodiscard]] std::string split_comments(std::string_view text);
 
     [[noreturn]] void fail(const std::string& code, const std::string& words_of_message) const;
     [[noreturn]] void not_understood(const NcWord& word) const;
     [[noreturn]] void bad_number(const NcWord& word) const;
 
-    /// The word's number in 1e-9 units, exactly but for what drops_digits. \throws InputError
-    /// nc.number
+    /// The word's number in 1e-9 units, exactly unless drops_digits. \throws InputError nc.number
     [[nodiscard]] std::int64_t nano(const NcWord& word) const;
 
     /// The number of a G or M word in tenths: G61.1 gives 611. \throws InputError nc.number,

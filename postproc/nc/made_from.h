@@ -1,5 +1,5 @@
-/// What a program's head says of what it was made from, so that its text alone is enough to wind it
-/// again, to verify it or to resume it.
+/// Origin of a program in its head: mandrel, machine and job, so that its text alone is enough to
+/// wind it again, to verify it or to resume it.
 #pragma once
 
 #include <cstddef>
@@ -32,13 +32,13 @@ struct MadeFrom {
     std::optional<MainJobRun> run;  ///< none: the main job did not make it
 };
 
-/// Adds the comments for ProgramHeader's machine_file, run and job; those of the job as many as it
-/// takes. \param width characters of a comment
+/// Adds the comments for ProgramHeader's machine_file, run and job; the job takes as many as it
+/// needs. \param width characters of a comment
 void append_made_from(std::vector<std::string>& comments, const ProgramHeader& header,
                       std::size_t width);
 
-/// Reads a head of any of our dialects. Nothing where the text is not by meshwind. Text that says
-/// less gives less; a job that is no JSON is left to its reader.
+/// Reads a head of any of our dialects. Nothing where the text is not by meshwind. Missing comments
+/// leave fields empty; a job that is no JSON is left to its reader.
 [[nodiscard]] std::optional<MadeFrom> made_from(std::string_view program);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// The G-code languages: one writer, one reader, and what is peculiar to each.
+/// The G-code dialects: one writer, one reader, and the peculiarities of each.
 #pragma once
 
 #include <string>
@@ -15,11 +15,11 @@ namespace meshwind {
 /// lines and the end; nothing homes. `course 3` in a comment marks where piece 3 begins. ASCII, no
 /// exponents; F has six digits and is never 0.
 ///
-/// The reader takes G0 G1 G90 G91 (G93 G94), F, N, M0 M1, the ends and what changes nothing.
-/// Refused besides all else: a rapid move after the first feed move (it would tear the fibre), a
-/// position finer than the axis' resolution, an axis that no absolute word has placed before the
-/// first feed move, a comment that begins with "tie on" and goes on in another way or stands twice,
-/// and a program without its end.
+/// The reader takes G0 G1 G90 G91 (G93 G94), F, N, M0 M1, the ends and codes that change nothing.
+/// Everything else is refused, and also: a rapid move after the first feed move (it would tear the
+/// fibre), a position finer than the axis' resolution, an axis that no absolute word has placed
+/// before the first feed move, a comment that begins with "tie on" but has another form or stands
+/// twice, and a program without its end.
 class NcDialect : public Dialect {
 public:
     explicit NcDialect(const NcFlavour& flavour) : flavour_(flavour) {}
@@ -56,11 +56,11 @@ public:
     Fanuc() : NcDialect(fanuc_flavour()) {}
 };
 
-/// Sinumerik 840D: `;` comments, G71, G93 with F on each line, M30. Circuits that repeat stand once
-/// in their place between labels and are run again by `REPEAT CIRCUIT_1 CIRCUIT_1_END P=19`, 19
-/// times more. The rotary axes must not be modulo axes, for the start is absolute and beyond 360
-/// degrees. SOFT, BRISK, DRIVE, FFWON, FFWOF, COMPOF, ADIS=, ADISPOS=, G60, G64 and G641 to G645
-/// may stand in the header.
+/// Sinumerik 840D: `;` comments, G71, G93 with F on each line, M30. Repeated circuits stand once in
+/// their place between labels and are run again by `REPEAT CIRCUIT_1 CIRCUIT_1_END P=19`, 19 times
+/// more. The rotary axes must not be modulo axes, for the start is absolute and beyond 360 degrees.
+/// SOFT, BRISK, DRIVE, FFWON, FFWOF, COMPOF, ADIS=, ADISPOS=, G60, G64 and G641 to G645 may stand
+/// in the header.
 class Siemens final : public NcDialect {
 public:
     Siemens() : NcDialect(siemens_flavour()) {}
@@ -72,11 +72,11 @@ public:
 /// millimetre; M2; no subprograms. Lines behind the end would be run and are refused.
 ///
 /// The controller adds increments up in 32-bit floats. `prepare` gives axes that this would take
-/// off by more than half a step, in the main the mandrel, steps of 1/64 deg (float32_steps.h),
-/// whose sums are exact up to 262 144 deg; 1/32 and 1/16 further on; beyond 1 048 576 deg it
-/// refuses. Where the coarser step would be worse than the sums, they stay, and the head of the
-/// program says what is lost. Where a block turns 100 deg or more, eight digits leave 1/32, from
-/// 1000 on 1/16; what is longer still is split.
+/// off by more than half a step, mainly the mandrel, steps of 1/64 deg (float32_steps.h), whose
+/// sums are exact up to 262 144 deg; 1/32 and 1/16 further on; beyond 1 048 576 deg it refuses.
+/// Where the coarser step would be worse than the sums, the steps stay, and the head of the program
+/// states the loss. Where a block turns 100 deg or more, eight digits leave 1/32, from 1000 on
+/// 1/16; longer blocks are split.
 class Grbl final : public NcDialect {
 public:
     Grbl() : NcDialect(grbl_flavour()) {}
@@ -86,10 +86,10 @@ public:
 /// way of X Y Z (of U V W when they rest) in mm over the time, and deg/min where only A B C turn. A
 /// B C are rotary, U V W linear, X Y Z either. A tiny linear move beside a turn would be run at the
 /// axes' limits or hardly at all; `prepare` splits such blocks as for LinuxCNC. There is no end of
-/// program; the comment `; end of program` closes the text, so that a cut one is found. Sums of
-/// floats as with GRBL, with steps down to 1/256; a line has at most 95 characters. G21 and M0 are
-/// unknown to some builds, which then answer `ok` and go on: try M0 before the fibre is tied on.
-/// M17 M82 M83 M201 M203 M204 M205 M400 may stand in the header.
+/// program; the comment `; end of program` closes the text, so that a truncated one is detected.
+/// Sums of floats as with GRBL, with steps down to 1/256; a line has at most 95 characters. G21 and
+/// M0 are unknown to some builds, which then answer `ok` and go on: try M0 before the fibre is tied
+/// on. M17 M82 M83 M201 M203 M204 M205 M400 may stand in the header.
 class Marlin final : public NcDialect {
 public:
     Marlin() : NcDialect(marlin_flavour()) {}

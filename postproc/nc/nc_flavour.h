@@ -13,11 +13,11 @@
 
 namespace meshwind {
 
-/// A code that changes nothing in what the axes do, and the letters that may stand beside it.
+/// A code without effect on the axes' motion, and the letters that may stand beside it.
 struct NcHarmless {
     int tenths = 0;  ///< G61.1 is 611
     std::string_view parameters{};
-    bool path = false;  ///< it says how corners are passed (PathMode)
+    bool path = false;  ///< it sets the path mode at corners (PathMode)
 };
 
 /// The row of a code; null where it is none of these.
@@ -27,21 +27,21 @@ struct NcHarmless {
 /// \pre code.path
 [[nodiscard]] PathMode asked_path_mode(const NcHarmless& code, const NcLine& line);
 
-/// What a controller counts of a line that may be too long for it.
+/// Characters of a line that count for the controller's limit of its length.
 enum class NcCounted {
     All,
-    UpToComment,  ///< what stands behind ; is dropped before
-    Code,         ///< nor do blanks and comments in brackets count
+    UpToComment,  ///< text behind ; is dropped before
+    Code,         ///< blanks and comments in brackets do not count either
 };
 
-/// How circuits that repeat are written.
+/// Form of repeated circuits.
 enum class NcRepeats {
     None,
     Subprograms,  ///< O1001 .. M99 behind the end, M98 P1001 L20
     Sections,  ///< CIRCUIT_1: .. CIRCUIT_1_END: in its place, REPEAT CIRCUIT_1 CIRCUIT_1_END P=19
 };
 
-/// How a controller that keeps positions in 32-bit floats makes them from text.
+/// Conversion of text to positions in a controller that keeps them in 32-bit floats.
 enum class Float32Text {
     None,        ///< positions are exact enough
     Rounded,     ///< to the nearest float
@@ -83,16 +83,16 @@ struct NcFlavour {
     bool has_feed_modes = true;      ///< G93 and G94 are known
     FeedRule feed_rule = FeedRule::Euclid;
     bool rapid_by_feed = false;        ///< G0 runs at F as G1 does
-    std::string_view no_per_minute{};  ///< why not, in a message
-    /// Of a controller that slows down at corners by it (junction_time.h), where nothing is said;
-    /// 0: it keeps the durations.
+    std::string_view no_per_minute{};  ///< why a feed per minute is not possible, in a message
+    /// Default of a controller that slows down at corners by it (junction_time.h); 0: it keeps the
+    /// durations.
     double junction_deviation_mm = 0.0;
     bool blends_blocks = false;  ///< it runs each from rest to rest and blends them (blend_time.h)
     SlowLinear slow_linear{};
 
     // End.
     std::string_view end;            ///< line that ends the main program
-    std::string_view end_comment{};  ///< of these words instead
+    std::string_view end_comment{};  ///< a comment of these words instead
     bool runs_on = false;            ///< lines behind the end would be run
 
     NcRepeats repeats = NcRepeats::None;

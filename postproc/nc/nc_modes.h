@@ -1,4 +1,4 @@
-/// Modes of a G-code program, and what the codes of a line do to them.
+/// Modal state of a G-code program, and its changes by the codes of a line.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace meshwind {
 
 enum class NcMotion { None, Rapid, Feed };
 
-/// What stays as it is from line to line.
+/// Modes that last from line to line.
 struct NcModes {
     NcMotion motion = NcMotion::None;
     bool incremental = false;
@@ -23,7 +23,7 @@ struct NcModes {
     bool ended = false;
 };
 
-/// What one line says, values of axes apart.
+/// Content of one line, without the values of axes.
 struct NcSaid {
     int motions = 0;                        ///< G0 and G1
     std::string parameters{};               ///< letters that belong to a harmless code
@@ -36,14 +36,14 @@ struct NcSaid {
     bool axes = false;                      ///< it has words of axes
 };
 
-/// A flavour, and whether the program is by others: of these more codes are taken.
+/// A flavour, and whether the program is foreign: then more codes are taken.
 struct NcLanguage {
     const NcFlavour& flavour;
     bool foreign = false;
 };
 
-/// Takes the codes of a line, in order, into the modes, and those of others that move no axis into
-/// the notes. F and axes are left to be read. \throws InputError nc.not_understood, nc.number
+/// Takes the codes of a line, in order, into the modes, and foreign ones that move no axis into the
+/// notes. F and axes are left to be read. \throws InputError nc.not_understood, nc.number
 [[nodiscard]] NcSaid take_codes(const NcLanguage& language, const NcLine& line, NcModes& modes,
                                 ForeignNotes& notes);
 

@@ -13,19 +13,20 @@
 namespace meshwind {
 
 /// The blocks that the controller would run. Taken are G0 G1 G90 G91 G93 G94, F, N, M0 M1, the ends
-/// and what the flavour calls harmless; of programs that are not by meshwind more
-/// (foreign_notes.h), with a remark of the list's head for what was taken as meant.
+/// and the flavour's harmless codes; in programs that are not by meshwind more codes
+/// (foreign_notes.h), with a remark in the list's head for each ambiguity.
 /// \param file name used in messages
 /// \throws InputError nc.* with the place "file:line" for anything else
 [[nodiscard]] BlockList read_nc(const NcFlavour& flavour, std::string_view text,
                                 const std::string& file, const Machine& machine);
 
-/// A line of the controller's own must be one that the reader takes, and must neither move nor end
-/// the program nor tie the fibre on. \throws InputError dialect.header_line
+/// Checks a header or footer line of the machine file: it must be one that the reader takes, and
+/// must neither move nor end the program nor tie the fibre on.
+/// \throws InputError dialect.header_line
 void check_own_line(const NcFlavour& flavour, const Machine& machine, const std::string& line);
 
-/// How the machine's own header lines make the controller go past corners. Lines that cannot be
-/// used (check_own_line) say nothing. \throws InputError dialect.placeholder
+/// Path mode at corners that the machine's own header lines set. Lines that cannot be used
+/// (check_own_line) set none. \throws InputError dialect.placeholder
 [[nodiscard]] PathMode path_mode_of(const NcFlavour& flavour, const Machine& machine);
 
 /// Dialect::code_of. \throws InputError nc.comment

@@ -12,7 +12,7 @@
 
 namespace meshwind {
 
-/// The program of prepared blocks, as laid out.
+/// The program of prepared blocks, by the layout.
 /// \pre list has the axes of the machine and at least one block
 /// \throws InputError dialect.axis_letter, dialect.feed, dialect.header_line, dialect.placeholder,
 /// dialect.duration, dialect.digits, dialect.long_line
@@ -29,19 +29,19 @@ namespace meshwind {
                                    const BlockList& list);
 
 /// The head's comments, one entry each and of any length: who made the program, of what, how long
-/// it takes, where the fibre is tied on, what float sums ask for, notes.
+/// it takes, where the fibre is tied on, the needs of float sums, notes.
 /// \param time_s nc_run_time_s, which takes longer than the rest
 [[nodiscard]] std::vector<std::string> head_comments(const NcFlavour& flavour,
                                                      const Machine& machine, const BlockList& list,
                                                      const ProgramHeader& header, double time_s);
 
-/// What the controller's own lines may ask for, such that it can stand in a comment of the flavour.
+/// Values of the placeholders in header and footer lines, fit for a comment of the flavour.
 /// \param time_s as for the head
 [[nodiscard]] LineValues line_values(const NcFlavour& flavour, const Machine& machine,
                                      const BlockList& list, const ProgramHeader& header,
                                      double time_s);
 
-/// Words as comments of the flavour, a line each or as many as it takes.
+/// Words as comments of the flavour, in as many lines as they need.
 [[nodiscard]] std::string comment_lines(const NcFlavour& flavour, std::string words);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// The order in which a controller runs the lines of a program that repeats itself: calls of
+/// Control flow of a program: the order in which a controller runs its lines, with calls of
 /// subprograms and repeated stretches, whatever words the language has for them.
 #pragma once
 
@@ -10,12 +10,12 @@
 
 namespace meshwind {
 
-/// Lines that a program may run, its repetitions counted each time: a larger program is refused
+/// Most lines that a program may run, repetitions counted each time. A larger program is refused
 /// before the first line is run, for it would not fit in memory: 20 million blocks of six axes take
 /// 1.5 GB, twice that while they grow.
 inline constexpr std::int64_t kMaxLinesRun = 20'000'000;
 
-/// Repeated stretches within one another that are followed; no program has a use for more.
+/// Most repeated stretches within one another; no program has a use for more.
 inline constexpr std::size_t kMaxOpenRepeats = 100;
 
 /// A stretch of a program. Lines of the text are counted from 1.
@@ -50,8 +50,8 @@ struct ProgramFlow {
     bool searches_forward = true;
 };
 
-/// What stands in a line: code to execute, or the flow itself (call, opening, close), of which at
-/// most the comments matter.
+/// Kind of a line: code to execute, or the flow itself (call, opening, close), of which at most the
+/// comments matter.
 enum class FlowLine { Code, Control };
 
 /// Gives `visit` each line in the order in which the controller comes to it, until it returns

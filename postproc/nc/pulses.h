@@ -1,4 +1,4 @@
-/// Whole pulses per tick, for drivers that take nothing else.
+/// Dialect of whole pulses per tick, for step drivers that take nothing else.
 #pragma once
 
 #include <string>
@@ -26,15 +26,15 @@ inline constexpr double kPulseTick_s = 0.01;
 ///     -965 1179 0
 ///     end
 ///
-/// Where the machine stands before the first tick is `start`; getting there and tying the fibre on
-/// is up to the operator. What rounding leaves of a tick is carried into the next, so the running
-/// sum is within half a step of the straight line from each block's start to its end, and exact at
-/// its end. `prepare` makes blocks last whole ticks, never shorter than planned; a time law that
-/// was told of tick_s() leaves it nothing to do. A driver that runs ticks as they are has no ramps
-/// between blocks: what the time law leaves room for is then a jump of velocity.
+/// `start` is the position of the machine before the first tick; getting there and tying the fibre
+/// on is up to the operator. The rounding remainder of a tick is carried into the next, so the
+/// running sum is within half a step of the straight line from each block's start to its end, and
+/// exact at its end. `prepare` makes blocks last whole ticks, never shorter than planned; a time
+/// law with tick_s() leaves it nothing to do. A driver that runs ticks as they are has no ramps
+/// between blocks: where the time law leaves room for a ramp, velocity then jumps.
 ///
 /// The reader takes this form alone, and each block only when its ticks are even in this sense; the
-/// feed mode of the machine file means nothing.
+/// feed mode of the machine file has no effect.
 /// \throws InputError nc.pulses for a line of another form, besides nc.number, nc.resolution,
 /// nc.tie_on, nc.no_end, nc.no_motion, nc.too_many_lines; dialect.duration when a program would
 /// have more ticks than are read back

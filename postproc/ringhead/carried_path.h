@@ -1,4 +1,4 @@
-/// What the axes of a robot do while it carries a frame along the moves of a program.
+/// Joint path of a robot that carries a frame along the moves of a program: axes, time, clearance.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace meshwind {
 
-/// A place on the way: the moves are cut into equal pieces, so short that axes run evenly in each.
+/// A sample of the moves, which are cut into equal pieces, so short that axes run evenly in each.
 struct CarriedSample {
     std::size_t move = 0;  ///< 0: the start; else move i leads from point i - 1 to point i
     double share = 1.0;    ///< of the move, > 0
@@ -49,40 +49,40 @@ struct CarriedJoints {
     [[nodiscard]] bool holds() const { return reached() && flips == 0 && path.violations.empty(); }
 };
 
-/// Follows the samples from each way in which the robot can take the start: shoulder, elbow and
-/// wrist either way for an arm. The result is the first that can be followed to the end within all
-/// travels and without a flip, in the order of their largest step from all axes at zero; where none
-/// can, the one that lacks least (reach, then flips, then travel).
+/// Follows the samples from each solution for the start: shoulder, elbow and wrist either way for
+/// an arm. The result is the first path that reaches the end within all travels and without a flip,
+/// in the order of the solutions' largest step from all axes at zero; if there is none, the one
+/// that fails least (reach, then flips, then travel).
 /// \param tool pose of the mandrel frame in the frame that the machine file gives as its mandrel's
 [[nodiscard]] CarriedJoints follow_samples(const Machine& machine,
                                            const std::vector<CarriedSample>& samples,
                                            const Eigen::Isometry3d& tool);
 
 /// Duration of each move, the first 0: the frame passes at `speed_mm_s` where the axes' velocities
-/// and accelerations (time_law.h, from move to move) let it. Within a move all runs evenly.
+/// and accelerations (time_law.h, from move to move) let it. Within a move all axes run evenly.
 /// \pre 0 < speed_mm_s <= machine.fibre.max_speed_mm_s
 [[nodiscard]] TimedPath time_moves(const Machine& machine,
                                    const std::vector<CarriedSample>& samples,
                                    const CarriedJoints& joints, double speed_mm_s);
 
-/// What given durations of the moves ask of the axes: velocities in each sample's piece,
+/// Loads of the axes for given durations of the moves: velocities in each sample's piece,
 /// accelerations from move to move.
 [[nodiscard]] AxisLoads move_loads(const Machine& machine,
                                    const std::vector<CarriedSample>& samples,
                                    const CarriedJoints& joints,
                                    const std::vector<double>& duration_s);
 
-/// How near the frame, a tube about its axis, comes to what stands on the machine's base.
+/// Least clearance of the frame, a tube about its axis, from bodies on the machine's base.
 struct FrameClearance {
     double least_mm = 0.0;   ///< surface to surface; negative where they meet
     std::size_t sample = 0;  ///< where
     std::size_t body = 0;    ///< of the machine file
 };
 
-/// Of the capsules among the machine's bodies whose link is the base; nothing where there is none.
-/// At each sample the exact distances of the chords between stations; what the frame can move
-/// between two samples and what its axis can leave the chords is taken off, so that nothing slips
-/// through.
+/// Clearance from the capsules among the machine's bodies whose link is the base; nothing where
+/// there is none. Takes at each sample the exact distances of the chords between stations, less the
+/// frame's possible motion between two samples and its axis' distance from the chords, so that
+/// nothing slips through.
 [[nodiscard]] std::optional<FrameClearance> frame_clearance(
     const Machine& machine, const FrameAxis& axis, const std::vector<CarriedSample>& samples,
     double tube_radius_mm);

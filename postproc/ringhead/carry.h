@@ -1,5 +1,5 @@
-/// A frame that a robot carries through a fixed ring head: motion, program, fibres. No file is read
-/// or written.
+/// Winding of a frame that a robot carries through a fixed ring head: motion, program, fibres. No
+/// file is read or written.
 #pragma once
 
 #include <array>
@@ -27,9 +27,9 @@ inline constexpr double kTubeRadius_mm = 20.0;
 struct CarryRequest {
     std::string name = "program";  ///< of the program and its file
     double speed_mm_s = 20.0;      ///< passage of the frame's axis through the head
-    double tolerance_mm = 0.2;     ///< of the axis from the centre of the head
-    double tolerance_deg = 0.2;    ///< of the frame's turn from what is wanted
-    /// None: that of the mesh; of a table kTubeRadius_mm.
+    double tolerance_mm = 0.2;     ///< largest distance of the axis from the centre of the head
+    double tolerance_deg = 0.2;    ///< largest error of the frame's turn
+    /// None: that of the mesh; with a table kTubeRadius_mm.
     std::optional<double> tube_radius_mm;
     double ring_radius_mm = 40.0;
     double ring_distance_mm = 70.0;
@@ -43,7 +43,7 @@ struct CarryRequest {
     bool force = false;
 };
 
-/// What one ring lays.
+/// Result of one ring.
 struct RingResult {
     double lowest_deg = 0.0;  ///< angle laid where the ring turns at one speed all the way
     double highest_deg = 0.0;
@@ -65,7 +65,7 @@ struct CarryOutcome {
     RingFit fit;
     std::vector<CarriedSample> samples;
     CarriedJoints joints;
-    TimedPath planned;               ///< why the moves take the time that they take
+    TimedPath planned;               ///< with the limits that set the moves' time
     KrlProgram program;              ///< as it was read back
     std::vector<double> duration_s;  ///< of its moves
     CarryError program_error;        ///< on its moves
@@ -88,7 +88,7 @@ struct CarryOutcome {
     [[nodiscard]] double total_s() const;
 };
 
-/// Works everything out, reads the program back from its text and checks it.
+/// Plans motion, program and winding, reads the program back from its text and checks it.
 /// \param machine its eye stands still: the centre of the head
 /// \param machine_file as messages name it
 /// \throws InputError carry.*, krl.*

@@ -24,7 +24,7 @@ struct CarryAxis {
     FrameAxis axis;
     std::optional<double> radius_mm{};  ///< of the tube that a mesh is; none of a table
     double residual_mm = 0.0;           ///< of the mesh's vertices from the tube
-    /// Of a mesh: pose of the axis' frame in the file's coordinates, these in mm.
+    /// For a mesh: pose of the axis' frame in the file's coordinates, these in mm.
     std::optional<Eigen::Isometry3d> frame_in_file{};
 };
 

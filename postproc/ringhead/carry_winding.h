@@ -1,4 +1,4 @@
-/// What the rings of `meshwind carry` wind: the pattern, and the fibre laid by the written
+/// Winding by the rings of `meshwind carry`: the pattern, and the fibre laid by the written
 /// programs.
 #pragma once
 
@@ -17,17 +17,17 @@
 
 namespace meshwind {
 
-/// How the rings wind.
+/// Options of the winding.
 struct CarryWindingOptions {
     std::optional<double> spool_radius_mm{};  ///< where fibres leave a ring; none: its opening
     int passes = 0;                           ///< 0: as few as cover
     bool at_once = false;                     ///< RingPassageTask::at_once
     double angle_tolerance_deg = 1.0;         ///< on regular arms; in bends their swing besides
-    std::optional<double> friction{};         ///< none: the slip is told and not judged
+    std::optional<double> friction{};         ///< none: the slip is reported and not judged
     std::optional<double> tow_tex{};          ///< g per km; none: no mass
 };
 
-/// What is to be wound, and the programs that do it.
+/// The winding task, and the programs that do it.
 struct CarryWindingTask {
     const RingHead& head;
     const FrameAxis& axis;
@@ -37,7 +37,7 @@ struct CarryWindingTask {
     double tube_radius_mm = 20.0;
     double angle_rad = 0.0;  ///< > 0, < pi/2
     int tows = 12;
-    double tow_width_mm = 0.0;  ///< 0: what covers
+    double tow_width_mm = 0.0;  ///< 0: the narrowest that covers
 };
 
 struct CarryWinding {
@@ -65,7 +65,7 @@ struct CarryWinding {
 /// `pass,ring,spool,s_mm,round_deg,x_mm,y_mm,z_mm,angle_deg`: the landing curves, mandrel frame.
 [[nodiscard]] std::string fibre_csv(const std::vector<RingFibre>& fibres);
 
-/// Layers may scatter so far on regular arms, standard deviation over mean.
+/// Largest scatter of layers on regular arms, standard deviation over mean.
 inline constexpr double kRegularCv = 0.02;
 
 }  // namespace meshwind

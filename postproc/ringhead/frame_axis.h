@@ -19,7 +19,7 @@ struct AxisStation {
     Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();    ///< unit, towards the next station
     Eigen::Vector3d reference = Eigen::Vector3d::UnitY();  ///< unit, at a right angle to it
-    /// How far the frame is turned right-handed about the head's direction as it passes; unbounded.
+    /// Turn of the frame as it passes, right-handed about the head's direction; unbounded.
     double turn_rad = 0.0;
 };
 
@@ -27,15 +27,15 @@ struct AxisStation {
 struct AxisFrame {
     Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();
-    Eigen::Vector3d reference = Eigen::Vector3d::UnitY();  ///< what is to meet the head's reference
+    Eigen::Vector3d reference = Eigen::Vector3d::UnitY();  ///< to meet the head's reference
 };
 
 /// A curve through all stations with their tangents. Between two of them it is the cubic of
 /// Hermite whose end speeds are chord / cos^2(turn of the tangent / 4): on an arc of circle that is
 /// off by 2/27 sin^6(q) / cos^2(q) of the radius with q = turn / 4. The reference is carried along
 /// without turning about the tangent (double reflection, wang_2008_rotation_minimizing) and turned
-/// evenly by what is then missing at the next station; the turn grows evenly. Accuracy: the arc of
-/// 89 mm radius given every 10 mm is met within 1e-7 mm across and 5e-4 mm along the axis
+/// evenly by the angle then missing at the next station; the turn grows evenly. Accuracy: the arc
+/// of 89 mm radius given every 10 mm is met within 1e-7 mm across and 5e-4 mm along the axis
 /// (frame_axis_test.cpp).
 class FrameAxis {
 public:

@@ -34,7 +34,7 @@ namespace meshwind {
 /// The dialect of machines that carry; its programs are no lists of axis blocks (dialect.h).
 inline constexpr const char* kCarryDialect = "krl";
 
-/// Of the program's file, with the point.
+/// Extension of the program's file, with the point.
 inline constexpr const char* kKrlExtension = ".src";
 
 /// Decimals of a program: 0.05 um, and 9e-8 rad, which is 0.1 um at a metre.
@@ -68,7 +68,8 @@ struct KrlMove {
     }
 };
 
-/// Whole steps of a program's last digit, upwards and at least one: never slower than asked.
+/// Speeds in whole steps of a program's last digit, rounded up and at least one: never slower than
+/// asked.
 [[nodiscard]] std::int64_t krl_path_speed(double m_s);
 [[nodiscard]] std::int64_t krl_turn_speed(double deg_s);
 
@@ -83,11 +84,11 @@ struct KrlProgram {
     friend bool operator==(const KrlProgram&, const KrlProgram&) = default;
 };
 
-/// What the controller is told about rounding corners. C_DIS begins so far before a point, or half
-/// a move where that is shorter.
+/// Approximation distance for rounding corners ($APO.CDIS). C_DIS begins this far before a point,
+/// or half a move where that is shorter.
 inline constexpr double kKrlApproximation_mm = 0.5;
 
-/// \param comments a line each behind DEF; what is not printable ASCII is written as "?"
+/// \param comments a line each behind DEF; characters other than printable ASCII are written as "?"
 /// \param header lines of the machine file, put before the first move as they are
 /// \throws InputError krl.name, krl.header_line; \pre two moves or more
 [[nodiscard]] std::string write_krl(const KrlProgram& program,

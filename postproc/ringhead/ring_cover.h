@@ -1,4 +1,4 @@
-/// What the fibres of a ring head leave on the frame: coverage, thickness, angle, slip.
+/// Judges the fibres of a ring head on the frame: coverage, thickness, angle, slip.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace meshwind {
 
-/// Where and against what laid fibres are judged.
+/// Zone and wanted values for the judgement of laid fibres.
 struct RingCoverTask {
     double from_mm = 0.0;  ///< the wound zone along the axis
     double to_mm = 0.0;
@@ -23,7 +23,7 @@ struct RingCoverTask {
 /// width over the distance of neighbouring curves of one ring, at a right angle to them, summed
 /// over the rings: overlaps and gaps between neighbours flow out, fibre is not lost.
 struct RingCover {
-    double covered = 0.0;         ///< share of the zone's area under a band of each ring
+    double covered = 0.0;         ///< share of the zone's area that lies under a band of each ring
     double widest_mm = 0.0;       ///< largest distance of neighbours: a tow as wide covers
     double mean_layers = 0.0;     ///< of the zone's area
     double regular_cv = 0.0;      ///< standard deviation over mean of the layers on regular arms
@@ -60,7 +60,7 @@ struct RingQuality {
                                        const RingCoverTask& task);
 
 /// Radius of the axis' tightest bend; infinity where it is straight. Curvatures below 1e-6 of the
-/// tube's are those of rounding.
+/// tube's count as rounding.
 [[nodiscard]] double tightest_bend_mm(const TubeSurface& tube);
 
 }  // namespace meshwind

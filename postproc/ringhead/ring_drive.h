@@ -1,4 +1,4 @@
-/// What the drives of a ring head's rings do on each passage of the frame: their table.
+/// Table of the ring drives of a ring head, for each passage of the frame.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct RingPassage {
     bool back = false;         ///< the frame is carried from the end of its axis to the start
     bool right_handed = true;  ///< turn of the ring against the frame about the head's direction
     double phase_rad = 0.0;    ///< of the first spool: passes lie between one another
-    double wait_mm = 0.0;      ///< way of the axis before the ring starts to turn against the frame
+    double wait_mm = 0.0;      ///< axis length before the ring starts to turn against the frame
     double tie_s_mm = 0.0;     ///< where the fibres are tied on
     double end_s_mm = 0.0;     ///< where they land at last, on a straight end
 };
@@ -43,8 +43,8 @@ struct RingPassageTask {
 [[nodiscard]] std::vector<RingPassage> ring_passages(const RingHead& head,
                                                      const RingPassageTask& task);
 
-/// The program that carries a frame back by the moves on which it came. \param start_nano axis
-/// values at its end, where the way back begins
+/// The program that carries a frame back along the moves on which it came.
+/// \param start_nano axis values at its end, where the way back begins
 [[nodiscard]] KrlProgram back_program(const KrlProgram& forth, const std::string& name,
                                       const std::array<std::int64_t, 6>& start_nano);
 

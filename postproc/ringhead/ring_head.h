@@ -1,4 +1,5 @@
-/// A frame that is carried through a fixed ring head: poses, points of the program, ring speed.
+/// Kinematics of a frame carried through a fixed ring head: poses, points of the program, ring
+/// speed.
 ///
 /// Source: petru_2016_frames, sec. 2. Its iteration over the poses gives the same as the closed
 /// form used here. "Base" is the frame in which the head stands, the machine frame.
@@ -18,7 +19,7 @@ namespace meshwind {
 /// Two rotating rings about one axis; base frame. The defaults are those of the paper.
 struct RingHead {
     Eigen::Vector3d centre_mm{-1000.0, 1070.0, 990.0};  ///< half way between the rings
-    /// Unit: what the axis' tangent is laid along. The frame moves the other way when it is carried
+    /// Unit; the axis' tangent is laid along it. The frame moves the other way when it is carried
     /// from its axis' start to its end.
     Eigen::Vector3d direction = Eigen::Vector3d::UnitY();
     Eigen::Vector3d reference = Eigen::Vector3d::UnitZ();  ///< unit, at a right angle to it
@@ -41,7 +42,7 @@ struct EulerZyx {
 };
 
 /// Angles of a rotation matrix. Without `previous`: b in -pi/2 .. pi/2, a and c in -pi .. pi. With
-/// it: of the two solutions and their whole turns the one whose largest step is least. Where
+/// it: the one of the two solutions and their whole turns whose largest step is least. Where
 /// b = +-pi/2 (within kSingularCosine) only a - c or a + c is defined: a is then kept, 0 without
 /// `previous`, and c makes up for it, so that matrix() is R in any case; near there a and c may
 /// swing far for a small motion, and rotations are to be compared by matrix().
@@ -51,13 +52,13 @@ struct EulerZyx {
 /// Below this cosine of b, a is rounding noise; keeping it turns R by no more than this.
 inline constexpr double kSingularCosine = 1e-10;
 
-/// How a controller turns the flange in a linear move, evenly in both cases.
+/// Law by which a controller turns the flange in a linear move, evenly in both cases.
 enum class TurnLaw {
     OneAxis,        ///< about one axis by the shorter way, as the paper takes it
-    SwivelAndSpin,  ///< the tool's X on a great circle, and about X by what is then missing (KUKA)
+    SwivelAndSpin,  ///< the tool's X on a great circle, and about X by the missing angle (KUKA)
 };
 
-/// What a controller's linear move does: the origin on a straight line, the orientation by `law`.
+/// Pose within a controller's linear move: the origin on a straight line, the orientation by `law`.
 /// Over a swivel and a spin of a few degrees the laws differ by an eighth of their product (rad).
 /// \param share 0 .. 1
 [[nodiscard]] Eigen::Isometry3d lin_between(const Eigen::Isometry3d& from,
@@ -76,7 +77,7 @@ struct SwivelSpin {
 /// Angle of the rotation between two poses, rad.
 [[nodiscard]] double turn_between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
-/// How far a pose is from the one that is wanted at a place of the axis.
+/// Error of a pose against the one wanted at a place of the axis.
 struct CarryError {
     double distance_mm = 0.0;  ///< of the axis' point from the head's centre
     double tilt_rad = 0.0;     ///< of the tangent from the head's direction
@@ -113,7 +114,7 @@ struct CarryPoints {
 };
 
 /// Halves moves, at a station where there is one within, until each keeps the tolerance:
-/// lin_error() <= kKeptShare of it, which leaves room for what is between its samples and for the
+/// lin_error() <= kKeptShare of it, which leaves room for errors between its samples and for the
 /// rounding of the program. The error of a move falls with the square of its length, where the
 /// axis' curvature and turn are even (ring_head_test.cpp). Moves under kShortestMove_mm are kept as
 /// they are.
@@ -124,7 +125,7 @@ inline constexpr double kKeptShare = 0.95;
 /// A controller of 4 ms needs 40 mm/s for one such move per cycle; shorter ones are not executed.
 inline constexpr double kShortestMove_mm = 0.16;
 
-/// How the frame fills the rings while one place of it is at the head's centre.
+/// Room that the frame takes in the rings while one place of it is at the head's centre.
 struct RingFit {
     double reach_mm = 0.0;   ///< offset + tube radius / cos(tilt): what must be clear
     double offset_mm = 0.0;  ///< of the axis from the ring's centre in the plane of the ring
@@ -143,7 +144,7 @@ struct RingFit {
 [[nodiscard]] double ring_turns_per_mm(double angle_rad, double tube_radius_mm);
 
 /// Angle from the axis at which a ring lays fibres, positive for a right-handed helix: the ring and
-/// the frame turn about the head's direction, their difference counts.
+/// the frame turn about the head's direction, and their difference counts.
 /// \param passage_mm_s > 0, of the axis through the head
 [[nodiscard]] double laid_angle_rad(double tube_radius_mm, double ring_rad_s, double frame_rad_s,
                                     double passage_mm_s);

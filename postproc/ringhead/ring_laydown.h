@@ -1,4 +1,4 @@
-/// What fibre comes to lie on a frame that a program carries through a ring head.
+/// Simulates the laying of fibre on a frame that a program carries through a ring head.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace meshwind {
 
-/// A line of the table that the rings' drives follow; evenly in between, still before and after.
+/// A line of the table that the rings' drives follow; they turn evenly in between and stand still
+/// before and after.
 struct RingKnot {
     double time_s = 0.0;               ///< ascending
     std::array<double, 2> ring_rad{};  ///< right-handed about the head's direction, base frame
@@ -52,7 +53,7 @@ struct RingSpools {
     bool right_handed = true;  ///< turn of the ring against the frame, about the head's direction
 };
 
-/// A place where a fibre leaves the tube for its spool at some time, and so comes to lie.
+/// A landing point: where a fibre leaves the tube for its spool at some time, and so is laid.
 struct LaidRingPoint {
     Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  ///< on the tube, mandrel frame
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
@@ -65,11 +66,11 @@ struct LaidRingPoint {
     double free_mm = 0.0;    ///< length from here to the spool
 };
 
-/// Where a fibre is straight in the air because the tube is hollow along it.
+/// A stretch where a fibre is straight in the air because the tube is hollow along it.
 struct RingBridge {
     double s_mm = 0.0;
     double length_mm = 0.0;
-    double gap_mm = 0.0;  ///< largest height over the tube, or depth of what could not be followed
+    double gap_mm = 0.0;  ///< largest height over the tube, or depth of a part not followed
 };
 
 struct RingFibre {
@@ -94,8 +95,8 @@ struct RingFibre {
                                                      const RingHead& head, const TubeSurface& tube,
                                                      const RingSpools& spools);
 
-/// How far behind a ring's plane fibres land on a straight tube: sqrt(R^2 - r^2) / tan(angle), mm.
-/// A change of the angle dies away with exp(-way / this).
+/// Lag of fibres behind a ring's plane on a straight tube: sqrt(R^2 - r^2) / tan(angle), mm. A
+/// change of the angle dies away with exp(-way / this).
 /// \pre angle_rad > 0, spool radius above the tube's
 [[nodiscard]] double landing_lag_mm(double spool_radius_mm, double tube_radius_mm,
                                     double angle_rad);

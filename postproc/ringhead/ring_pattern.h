@@ -1,5 +1,4 @@
-/// How many spools a ring head needs, what a bend makes of their angle, and how much fibre it
-/// takes.
+/// Winding pattern of a ring head: spools needed, winding angle in a bend, amount of fibre.
 #pragma once
 
 #include <limits>
@@ -38,7 +37,7 @@ struct RingPattern {
     double fibre_mm = 0.0;          ///< of all tows of both rings in all passes
 };
 
-/// \throws InputError carry.tight where the bend is no wider than the tube
+/// \throws InputError carry.tight where the bend's radius is no larger than the tube's
 /// \pre 0 < angle_rad < pi/2
 [[nodiscard]] RingPattern ring_pattern(const RingPatternTask& task);
 

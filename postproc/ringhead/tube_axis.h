@@ -1,4 +1,4 @@
-/// The axis of a frame from the tube that its mesh was found to be.
+/// Axis of a frame whose mesh is a tube.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,9 +15,9 @@ struct TubeAxisOptions {
     double bend_turn_rad = 0.0;
 };
 
-/// In a frame of its own, in which a frame is held: origin at the axis' start, z along it, x
-/// towards the inside of the first bend; without a bend square to z near the mandrel's axis that is
-/// furthest from it.
+/// The axis in a coordinate frame of its own, in which the frame is held: origin at the axis'
+/// start, z along it, x towards the inside of the first bend; without a bend square to z near the
+/// mandrel's axis that is furthest from it.
 struct TubeAxis {
     FrameAxis axis;
     Eigen::Isometry3d in_mandrel = Eigen::Isometry3d::Identity();  ///< that frame's pose

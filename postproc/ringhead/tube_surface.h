@@ -9,7 +9,7 @@
 
 namespace meshwind {
 
-/// The place of a tube's axis that is nearest to a point, and where the point is seen from there.
+/// Foot point on a tube's axis: the place nearest to a point, and the point's direction from there.
 struct TubeFoot {
     double s_mm = 0.0;         ///< along the axis; below 0 and above its length it goes on straight
     double distance_mm = 0.0;  ///< of the point from the axis
@@ -36,7 +36,7 @@ public:
     /// By central differences of the tangent over kCurvatureStep_mm; linear between such places.
     [[nodiscard]] Eigen::Vector3d axis_curvature(double s_mm) const;
 
-    /// \param near_s_mm where to look first; the foot is found within 1e-9 mm of the axis when the
+    /// \param near_s_mm start of the search; the foot is found within 1e-9 mm of the axis when the
     /// point is nearer to it than the axis' radius of curvature there
     [[nodiscard]] TubeFoot foot(const Eigen::Vector3d& point_mm, double near_s_mm) const;
     [[nodiscard]] Eigen::Vector3d point(double s_mm, double round_rad) const;

@@ -1,4 +1,4 @@
-/// The fibre of a program as polylines for other software.
+/// Exports the fibre of a program as polylines (OBJ, STEP) for other software.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 namespace meshwind {
 
 /// The stations lie within this of the polylines: a twentieth of the tolerance of the lay-down, and
-/// less than what the arcs between the stations bulge.
+/// less than the bulge of the arcs between the stations.
 inline constexpr double kFibreChord_mm = 0.01;
 
 /// One piece of the fibre, mandrel frame.
@@ -21,7 +21,7 @@ struct FibreLine {
     std::vector<Eigen::Vector3d> points_mm;  ///< n >= 2, in the direction of travel
 };
 
-/// The pieces of one fibre in winding order, with as few of their stations as keep the others
+/// The pieces of one fibre in winding order, simplified to as few stations as keep the others
 /// within `chord_mm` (Douglas and Peucker); both ends stay. A piece without length is left out.
 /// \param chord_mm >= 0
 [[nodiscard]] std::vector<FibreLine> fibre_lines(std::span<const Piece> fibre,

@@ -1,4 +1,4 @@
-/// Circuits of a table of landing points that repeat.
+/// Repeats the circuits of a table of landing points, and joins its courses.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,8 +14,8 @@ namespace meshwind {
 [[nodiscard]] LandingTable repeated(LandingTable table, int times, double turn_rad,
                                     const Eigen::Affine3d& mandrel_from_table);
 
-/// Courses that begin where the one before ends, as one with its name: what is smoothed is smooth
-/// over their joints too. \param meets_mm further apart they are two
+/// Joins courses that begin where the one before ends, under its name, so that smoothing is smooth
+/// over their joints too. \param meets_mm courses further apart stay two
 [[nodiscard]] LandingTable joined(LandingTable table, double meets_mm,
                                   const Eigen::Affine3d& mandrel_from_table);
 

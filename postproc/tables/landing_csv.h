@@ -1,4 +1,4 @@
-/// Tables of landing points made elsewhere.
+/// Reads tables of landing points made elsewhere.
 #pragma once
 
 #include <optional>
@@ -31,9 +31,10 @@ struct LandingTable {
 };
 
 /// Columns `x_mm,y_mm,z_mm` or `x,y,z` in any order among others; `course`, where there is one: a
-/// new course begins where its cell changes; `kind` with the word "transition" for what only leads
-/// from one course to the next; outward normals `nx,ny,nz`; directions of travel `tx,ty,tz`. Other
-/// columns are not read, so path.csv and the tables of `meshwind trace` can be read.
+/// new course begins where its cell changes; `kind` with the word "transition" for a piece that
+/// only leads from one course to the next; outward normals `nx,ny,nz`; directions of travel
+/// `tx,ty,tz`. Other columns are not read, so path.csv and the tables of `meshwind trace` can be
+/// read.
 /// \param file name for messages
 /// \throws InputError import.column, import.number, import.empty, each with file and line
 [[nodiscard]] LandingTable read_landing_csv(std::string_view text, const std::string& file);

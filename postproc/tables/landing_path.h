@@ -1,4 +1,4 @@
-/// Landing points made elsewhere, as paths on the wall.
+/// Lays paths on the wall through landing points made elsewhere.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 namespace meshwind {
 
 struct LandingOptions {
-    /// Of the table in its units to the mandrel frame in mm.
+    /// Transform of the table in its units to the mandrel frame in mm.
     Eigen::Affine3d mandrel_from_table = Eigen::Affine3d::Identity();
     /// > 0; points further off the wall are refused: they belong to another part or frame.
     double farthest_mm = 1.0;
@@ -24,14 +24,14 @@ struct LandingOptions {
     std::string file;  ///< name for messages
 };
 
-/// How far points were moved onto the wall.
+/// Distances by which points were moved onto the wall.
 struct LandingMoves {
     std::size_t points = 0;    ///< rows that were looked at, repeated ones among them
     std::size_t repeated = 0;  ///< rows left out: the same place as the row before
     double worst_mm = 0.0;
     double sum_mm = 0.0;       ///< over the points
     int worst_line = 0;        ///< of the file
-    double smoothed_mm = 0.0;  ///< how far the furthest point on the wall is from its course
+    double smoothed_mm = 0.0;  ///< largest distance of a point on the wall from its course
 };
 
 /// Puts landing points on the curved patches of a wall and lays paths through them.
@@ -39,12 +39,12 @@ struct LandingMoves {
 /// Each point goes to the nearest place of the wall. Its tangent is that of the parabola through
 /// it and its two neighbours, (P3 - P2) d1 / d2 + (P2 - P1) d2 / d1 with the distances d1 and d2,
 /// laid into the wall: second order at any spacing, where fu_2009_post_processing, sec. 1, takes
-/// chords. At both ends it is that of the parabola through the three last points. Tangents that
-/// the table gives are taken instead, for they come from whoever knows the path between the points;
-/// they must agree with the parabola's within kTangentOff_rad. Two points that are twice
-/// kLandingStation_mm apart or more get stations between them, on the cubic with their tangents,
-/// laid on the wall: all are less than that apart, and a table of stations is left as it is.
-/// Normals and kn are the wall's, kg is left at 0.
+/// chords. At both ends it is that of the parabola through the three last points. Tangents of the
+/// table take their place, for their source knows the path between the points; they must agree with
+/// the parabola's within kTangentOff_rad. Two points that are twice kLandingStation_mm apart or
+/// more get stations between them, on the cubic with their tangents, laid on the wall: all are less
+/// than that apart, and a table of stations is left as it is. Normals and kn are the wall's, kg is
+/// left at 0.
 class LandingPaths {
 public:
     /// \param wall outlives this
@@ -54,8 +54,9 @@ public:
     /// import.empty, each with the line of the file
     [[nodiscard]] SurfacePath through(const LandingCourse& course);
 
-    /// The taut string over a path that this gave, worked out with stations kStringStation_mm
-    /// apart: bridges begin and end between its stations, and what makes them is seen there alone.
+    /// The taut string over a path from `through`, computed with stations kStringStation_mm apart:
+    /// bridges begin and end between the path's stations, and the hollows that make them are seen
+    /// there alone.
     /// \return one entry per station of the path; the worst gap is that of the dense path
     [[nodiscard]] TautString string_over(const SurfacePath& path) const;
 
@@ -80,15 +81,15 @@ private:
     LandingMoves moves_;
 };
 
-/// Stations that are put between points are no nearer to each other: the distance that planned
-/// courses are thinned out to, whose stations are apart by this and what the tracer's step adds.
+/// Least distance of stations that are put between points: the distance to which planned courses
+/// are thinned out, whose stations are apart by this plus up to a tracer's step.
 inline constexpr double kLandingStation_mm = 4.0;
 
 /// Distance of stations at which bridges are looked for: half of what a traced course has on the
 /// faces of a fillet.
 inline constexpr double kStringStation_mm = 1.0;
 
-/// From point to point a fibre turns no more than this: through fewer points no curve is known.
+/// Largest turn of a fibre from point to point: through fewer points no curve is known.
 inline constexpr double kMaxLandingTurn_rad = 0.8;
 
 inline constexpr double kTangentOff_rad = 0.3;

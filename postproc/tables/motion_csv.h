@@ -1,4 +1,4 @@
-/// The table motion.csv: what every axis does, block by block.
+/// Writes the table motion.csv: the positions of all axes, block by block.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// The table path.csv: every landing point of the plan.
+/// Writes the table path.csv: every landing point of the plan.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-/// Reads the plan's tables back, for comparison with what a program does.
+/// Reads the plan's tables back, for comparison with a program.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ struct PlannedMotion {
                                                          const std::string& file,
                                                          const Machine& machine);
 
-/// Where a program is not the planned one: the first such block.
+/// The first block in which a program differs from the plan.
 struct MotionDifference {
     std::size_t block = 0;
     std::string words;  ///< e.g. "X is 101.000 mm, planned 100.000 mm"; empty: no difference

@@ -1,4 +1,4 @@
-/// The place of a wall that is nearest to a point.
+/// Nearest place of a wall to a point.
 #pragma once
 
 #include <Eigen/Core>

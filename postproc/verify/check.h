@@ -1,4 +1,4 @@
-/// A check: what it is about, and what came of it.
+/// A check of a report: its kind and its result.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace meshwind {
 
-/// A number of a check that is shown, beside its limit where it has one. Texts are literals.
+/// A number of a check, shown beside its limit where it has one. Texts are literals.
 struct CheckMeasure {
-    std::string_view key;                 ///< of Check::numbers; its end says the unit
-    std::string_view label;               ///< empty: the title says it all
+    std::string_view key;                 ///< of Check::numbers; its ending is the unit
+    std::string_view label;               ///< empty: the title is enough
     std::string_view limit_key{};         ///< the number that is the limit; empty: none
     std::optional<double> fixed_limit{};  ///< the limit, where it is always the same
     bool least = false;                   ///< the limit is a lower one
@@ -38,17 +38,17 @@ constexpr CheckMeasure at_least(std::string_view key, std::string_view limit_key
     return {.key = key, .label = label, .limit_key = limit_key, .least = true};
 }
 
-/// What all checks of one name have in common; check_kinds.h has them.
+/// Kind of a check: common to all checks of one name; check_kinds.h lists them.
 struct CheckKind {
     std::string_view name;     ///< key in report.json
     std::string_view title;    ///< on the page; the first label stands behind it
     std::string_view meaning;  ///< for somebody who winds, in the summary
-    /// From the front, the others are empty. Those that a check lacks are not shown; where it has
-    /// none of them, all its numbers are.
+    /// Filled from the front, the others are empty. Measures that a check lacks are not shown;
+    /// where it has none of them, all its numbers are.
     std::array<CheckMeasure, 5> measures{};
 };
 
-/// Where a check found what it tells: what fails, or else its worst.
+/// Place of a check's result: of the failure, or else of its worst value.
 struct CheckPlace {
     Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  ///< on the mandrel, its frame
     std::optional<std::size_t> block{};                     ///< of the program
@@ -58,7 +58,7 @@ struct CheckPlace {
 
 /// One check of a report. The words are empty where it passed.
 struct Check {
-    /// \param of must stay: a row of check_kinds.h
+    /// \param of must outlive the check: a row of check_kinds.h
     explicit Check(const CheckKind& of, bool passed = true, std::string failure = {},
                    std::map<std::string, double> found = {})
         : kind(&of),

@@ -1,4 +1,4 @@
-/// A check on a program that was wound again, and the blocks at which it fails.
+/// Result of a check on a program that was wound again, with the blocks at which it fails.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +18,13 @@ struct CheckFinding {
     explicit CheckFinding(const CheckKind& kind) : check(kind) {}
     explicit CheckFinding(Check made) : check(std::move(made)) {}
 
-    /// The check fails at a block, which stands in the words.
+    /// The check fails at a block, which the words name.
     void fail(std::size_t block, const std::string& words);
 
     void add_wrong(std::size_t block);
-    /// A block to be made finer, for one that is wrong; it may be right itself.
+    /// A block to be made finer because of a wrong one; it may be right itself.
     void add_finer(std::size_t block);
-    /// A wrong block in which finer ones may help.
+    /// A wrong block for which finer ones may help.
     void add_coarse(std::size_t block);
 
     Check check;
@@ -33,13 +33,13 @@ struct CheckFinding {
     std::vector<std::size_t> coarse_blocks{};        ///< to be made finer, in any order as well
 };
 
-/// The check's place becomes that of a station of the laid fibre.
+/// Sets the check's place to a station of the laid fibre.
 void put_at_station(Check& check, const LaidPath& laid, std::size_t station);
 
-/// The check's place becomes where the fibre lands at a sample.
+/// Sets the check's place to the landing point at a sample.
 void put_at_sample(Check& check, const LaidPath& laid, std::size_t sample);
 
-/// The check's place becomes where the fibre lands while a block runs; samples end where the fibre
+/// Sets the check's place to the landing point while a block runs; samples end where the fibre
 /// cannot be followed. Without samples the place stays as it is.
 void put_at_block(Check& check, const LaidPath& laid, std::size_t block);
 

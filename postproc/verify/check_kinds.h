@@ -1,5 +1,5 @@
-/// All kinds of checks. A check is made with its row here, and says name, title, meaning and limits
-/// by it in the summary, in report.json and on the page.
+/// All kinds of checks. A check is made with its row here, which gives its name, title, meaning and
+/// limits in the summary, in report.json and on the page.
 #pragma once
 
 #include "postproc/verify/check.h"

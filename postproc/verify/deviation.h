@@ -1,5 +1,5 @@
-/// The laid fibre against the planned one: the last comparison, and the only place where a
-/// verification sees the plan.
+/// Deviation of the laid fibre from the planned one: the only place where a verification sees the
+/// plan.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct PlannedStation {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
     Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ();
     bool lifted = false;  ///< under a bridge
-    bool held = false;    ///< by a pin, which says where the fibre is laid
+    bool held = false;    ///< by a pin, which sets where the fibre is laid
 };
 
 using PlannedFibre = std::vector<PlannedStation>;
@@ -34,9 +34,9 @@ struct LaydownTolerance {
     double angle_rad = 0.005;  ///< 0.3 deg
 };
 
-/// What would lead a fibre aside by no more than this share of what it may be off is no error: an
+/// An error that leads a fibre aside by at most this share of its tolerance does not count: an
 /// angle where it comes down from a bridge, or where the normals of two patches differ at their
-/// edge; slip over less than a tow is wide.
+/// edge; slip over less than a tow's width.
 inline constexpr double kUnnoticed = 0.05;
 
 /// Indices are of laid stations.
@@ -51,7 +51,7 @@ struct Deviation {
     std::vector<std::size_t> planned;  ///< per laid station: the planned one before it
 };
 
-/// Goes along both fibres at once: each laid station is held against the cubic between the planned
+/// Goes along both fibres at once: each laid station is compared with the cubic between the planned
 /// stations around it. Over a bridge, from the station before it to the one after, nothing is
 /// compared: there the fibre is in the air. An angle beyond the tolerance that goes aside by no
 /// more than a twentieth of the deviation allowed, as over a few tenths of a mm where the fibre

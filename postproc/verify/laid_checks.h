@@ -9,13 +9,14 @@
 
 namespace meshwind {
 
-/// Check "laydown". Where the fibre is off the plan, the blocks with the way over which it was
+/// Check "laydown". Where the fibre is off the plan, the blocks of the length over which it was
 /// pulled there are to be made finer.
 /// \param deviation from the plan; none: nothing was planned
 [[nodiscard]] CheckFinding laydown_finding(const VerifyTask& task, const LaidPath& laid,
                                            const std::optional<Deviation>& deviation);
 
-/// What friction has to hold at each laid station (laid_slip.h), by the rules of the task.
+/// Slip ratio that friction has to hold at each laid station (laid_slip.h), by the rules of the
+/// task.
 [[nodiscard]] std::vector<double> station_slip(const VerifyTask& task, const LaidPath& laid);
 
 /// Check "slip". \param slip station_slip

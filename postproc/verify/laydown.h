@@ -1,4 +1,4 @@
-/// Winds a program: where the fibre comes to lie when the axes move as the blocks say.
+/// Simulates the winding of a program: where the fibre is laid when the axes move by the blocks.
 #pragma once
 
 #include <cstddef>
@@ -28,17 +28,17 @@ struct LaydownOptions {
     std::function<void(double share)> progress{};  ///< told of the blocks now and then
 };
 
-/// Samples of a program at most: 100 km of fibre at 10 mm, five times what a vessel of 3 m takes; a
+/// Most samples of a program: 100 km of fibre at 10 mm, five times the need of a vessel of 3 m; a
 /// sample takes 400 bytes.
 inline constexpr double kMaxSamples = 1e7;
 
-/// What fibre is laid on: a wall, with what laying looks up there. Built once for any number of
-/// programs and threads.
+/// The surface on which fibre is laid: a wall with its search structures. Built once for any number
+/// of programs and threads.
 class LaydownSurface {
 public:
     /// \param surface the wall with its extensions (mesh/mandrel/extension.h)
-    /// \param bridge_reach_mm over hollows the fibre is looked for so far ahead of the landing
-    /// point; what it meets further on counts as a collision of the free fibre
+    /// \param bridge_reach_mm over hollows the fibre's next contact is searched this far ahead of
+    /// the landing point; contact further on counts as a collision of the free fibre
     /// \param pins that stand on it
     explicit LaydownSurface(Surface surface, double bridge_reach_mm = kBridgeReach_mm,
                             std::vector<Pin> pins = {});
@@ -68,15 +68,15 @@ private:
     std::optional<LiftedWall> lifted_;
 };
 
-/// When a station was laid.
+/// Circumstances in which a station was laid.
 struct LaidAt {
     std::size_t block = 0;
     bool lifted = false;  ///< on the wall under a bridge; the fibre is in the air there
     double gap_mm = 0.0;  ///< height of the fibre over the wall, where lifted
-    bool held = false;    ///< at the flank of a pin, which says how the fibre runs
+    bool held = false;    ///< at the flank of a pin, which sets the fibre's course
 };
 
-/// What a program lays. Mandrel frame.
+/// The fibre that a program lays. Mandrel frame.
 struct LaidPath {
     SurfacePath path;            ///< stations on the patches, s_mm from the tie-on, kg left at zero
     std::vector<LaidAt> at;      ///< per station
@@ -101,7 +101,7 @@ struct LaidPath {
 /// fourth order. Over a hollow the straight fibre is followed over the wall: where it meets the
 /// wall again the landing point goes there and leaves a bridge behind.
 /// A pin that the free fibre is swept against holds it (pin_contact.h): the fibre then leaves P for
-/// the pin's flank instead of the eye, n . (E - P) becomes the same of that direction, and P goes
+/// the pin's flank instead of the eye, n . (E - P) becomes the same of that direction, and P moves
 /// about the pin's foot as the fibre sinks to the wall there. Samples then begin on the flank, with
 /// the fibre up to there counted as laid.
 /// \param tie_on_mm within an edge of the wall

@@ -28,8 +28,8 @@ struct FreeLengthRange {
 [[nodiscard]] CheckFinding free_length_finding(const VerifyTask& task, const LaidPath& laid,
                                                const FreeLengthRange& range);
 
-/// Check "roller". Programs from elsewhere may be for an eye without a roller: of these the twist
-/// alone is judged.
+/// Check "roller". Programs from elsewhere may be for an eye without a roller: only their twist is
+/// judged.
 [[nodiscard]] CheckFinding roller_finding(const VerifyTask& task, const LaidPath& laid,
                                           const RollerFinding& roller);
 
@@ -39,10 +39,10 @@ struct FreeLengthRange {
 /// The fibre through the eye. Indices are of samples.
 struct LaidPayout {
     double fastest_mm_s = 0.0;
-    double back_mm = 0.0;  ///< furthest that fibre is to be taken back
+    double back_mm = 0.0;  ///< most fibre that is to be taken back
     std::size_t back_at = 0;
     std::optional<std::size_t> too_fast{};  ///< the first beyond the machine's speed
-    std::optional<std::size_t> slack{};     ///< the first beyond what its tensioner takes up
+    std::optional<std::size_t> slack{};     ///< the first beyond the tensioner's take-up
     std::vector<FastBlock> fast_blocks{};   ///< ascending
 };
 

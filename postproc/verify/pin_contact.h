@@ -1,4 +1,4 @@
-/// Which pin holds the free fibre while a program is wound again.
+/// Contact of the free fibre with pins while a program is wound again.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,10 @@
 
 namespace meshwind {
 
-/// Follows the fibre from its landing point to the eye past pins. At any time one pin at most holds
-/// it: that about which it bends most. A fibre that is swept against the flank of a pin below its
-/// top is caught; where it is straight again the pin lets go of it; above the top it is not held.
+/// Follows the fibre from its landing point to the eye past pins. At any time at most one pin holds
+/// it: the one about which it bends most. A fibre that is swept against the flank of a pin below
+/// its top is caught; where it is straight again the pin lets go of it; above the top it is not
+/// held.
 class PinContact {
 public:
     /// \param pins must outlive this
@@ -26,20 +27,20 @@ public:
     [[nodiscard]] std::optional<PinString> string(const Eigen::Vector3d& place_mm,
                                                   const Eigen::Vector3d& eye_mm) const;
 
-    /// From a place into the direction of the fibre, as long as it is up to the eye.
+    /// Vector from a place along the fibre, of its length up to the eye.
     [[nodiscard]] Eigen::Vector3d pull(const Eigen::Vector3d& place_mm,
                                        const Eigen::Vector3d& eye_mm) const;
 
     /// Catches, changes and lets go.
-    /// \return empty, or in words what cannot be: the fibre slips off a pin's top, or bends about
-    /// two pins
+    /// \return empty, or the fault in words: the fibre slips off a pin's top, or bends about two
+    /// pins
     [[nodiscard]] std::string update(const Eigen::Vector3d& landing_mm,
                                      const Eigen::Vector3d& eye_mm);
 
-    /// Whether a place of the wall is at the flank of a pin: where that says how the fibre runs.
+    /// Whether a place of the wall is at the flank of a pin, which sets the fibre's course there.
     [[nodiscard]] bool at_pin(const Eigen::Vector3d& place_mm) const;
 
-    /// A step along the fibre about the pin that holds it is no longer.
+    /// Longest step along the fibre about the pin that holds it.
     [[nodiscard]] double step_mm() const;
 
 private:

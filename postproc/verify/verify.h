@@ -1,4 +1,5 @@
-/// Winds a program again from its text, the machine and the mandrel, and judges what comes of it.
+/// Verifies a program: winds it again from its text, the machine and the mandrel, and checks the
+/// laid fibre and the motion.
 #pragma once
 
 #include <cstddef>
@@ -18,20 +19,20 @@
 
 namespace meshwind {
 
-/// What the laid fibre and the motion must keep.
+/// Limits for the laid fibre and the motion.
 struct VerifyRules {
     CollisionRule collision;  ///< with the free fibre's shortest and longest length
     Friction friction = 0.2;
     double bridging_tolerance_mm = 0.5;
     double tow_width_mm = 6.0;
     std::optional<double> most_twist_per_m{};  ///< >= 0, turns of the band; none: any
-    /// How the machine's own lines make the controller go past corners, Dialect::path_mode.
+    /// Path mode at corners that the machine's own lines set, Dialect::path_mode.
     PathMode path_mode{};
     LaydownTolerance laydown;
     LaydownOptions simulation;
 };
 
-/// A program that was read back, and the world in which it runs.
+/// A program that was read back, with its machine, wall and obstacles.
 struct VerifyTask {
     const BlockList& program;  ///< as a dialect's reader gave it, with the place of its tie-on
     const Machine& machine;
@@ -64,7 +65,7 @@ struct Verification {
     /// the way over which the fibre was pulled there, those in which something is hit, and those
     /// with a free length that the machine cannot wind with.
     std::vector<std::size_t> coarse_blocks;
-    std::vector<FastBlock> fast_blocks;  ///< ascending: to be given more time
+    std::vector<FastBlock> fast_blocks;  ///< blocks that need more time, ascending
 };
 
 /// Where the program ties the fibre on, mandrel frame. \throws InputError verify.tie_on where it
@@ -76,17 +77,18 @@ struct Verification {
 /// and always:
 ///  - laydown: the simulation reaches the end; against the plan, where there is one, sideways
 ///    deviation and angle are within tolerance and the last landing point is the planned one;
-///  - slip: |kg / kn| of the laid path <= what friction holds (laid_slip.h);
+///  - slip: |kg / kn| of the laid path <= the friction (laid_slip.h);
 ///  - bridging: height of the straight fibre over the wall;
 ///  - collision: free fibre and head, swept between the samples;
-///  - free_length: within what the machine can wind with;
+///  - free_length: within the machine's limits;
 ///  - roller: the fibre leaves it at a right angle (roller_check.h);
 ///  - limits: travel, velocity and acceleration of the axes, and corners cut no more than the
 ///    controller may (axis_loads.h);
 ///  - payout: speed of the fibre through the eye, and length to be taken back, which is slack.
 /// The words of a failed check name the block and its line.
-/// A cancellation point again and again. \throws InputError verify.too_long (laydown.h);
-/// verify.tie_on without a tie-on, or with one off the mandrel
+/// A cancellation point again and again.
+/// \throws InputError verify.too_long (laydown.h); verify.tie_on without a tie-on, or with one off
+/// the mandrel
 [[nodiscard]] Verification verify(const VerifyTask& task);
 
 /// The landing points that the program lays, as a table with the columns

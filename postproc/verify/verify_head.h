@@ -1,4 +1,4 @@
-/// Checks on what a program says before and beside its blocks.
+/// Checks on a program's head: tie-on, approach, path mode.
 #pragma once
 
 #include <cstddef>
@@ -10,23 +10,23 @@
 namespace meshwind {
 
 /// The tie-on is printed to 0.001 mm, and its place on a curved patch is known as well; 0.1 mm is
-/// clear of that and still half of what the laid fibre may be off (Job::tolerance).
+/// clear of that and still half the tolerance of the laid fibre (Job::tolerance).
 inline constexpr double kTieOnOff_mm = 0.1;
 
-/// Whether the program is held to the form in which programs are written here: it says that it is
-/// one, or there is a plan that it is to follow. Others may come without a stop and without words
-/// on corners. \pre task.program.head
+/// Whether the program must have the form of our own programs: it says that it is one, or there is
+/// a plan that it is to follow. Others may come without a stop and without words on corners.
+/// \pre task.program.head
 [[nodiscard]] bool keeps_form(const VerifyTask& task);
 
-/// How far corners may be cut: the least that words of the program allow where it winds; the
-/// machine's own where there is no text.
+/// Largest cut of corners: the least that words of the program allow where it winds; the machine's
+/// own where there is no text.
 [[nodiscard]] double corner_limit_mm(const VerifyTask& task);
 
 /// Check "approach": rapid moves end within the axes' travel; between places that are known the
 /// head keeps the clearance and the eye off the mandrel; no rotary axis is placed after the linear
 /// axes have brought the head near the mandrel; the program stops (M0) for the fibre behind the
-/// last one. Where an axis comes from is unknown before its first absolute word: what it sweeps
-/// then is up to the operator, as the program's head says. \pre task.program.head->has_approach
+/// last one. The position of an axis is unknown before its first absolute word: its sweep up to
+/// there is up to the operator, as the program's head says. \pre task.program.head->has_approach
 [[nodiscard]] Check approach_check(const VerifyTask& task);
 
 /// Check "tie_on": within kTieOnOff_mm of the wall, and of the plan's first point.
