@@ -1,4 +1,4 @@
-/// The commands as the command line gives them: words in, summary or JSON and exit code out.
+/// The commands of the command line: arguments in, summary or JSON and exit code out.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace meshwind {
 
-/// What every command takes.
+/// Options of every command.
 struct Common {
     int threads = 0;         ///< 0: one per core
     std::uint64_t seed = 1;  ///< of every random draw
@@ -26,12 +26,12 @@ struct Common {
     std::string units;  ///< auto, um, mm, cm, m, in; empty: auto
 };
 
-/// A job file, and what is put over it.
+/// A job file, and the values that override it.
 struct JobArguments {
     std::string file;                   ///< empty: the defaults
     std::vector<std::string> profiles;  ///< files of materials and processes, below the job
     std::vector<std::string> settings;  ///< "tow.width=8"
-    std::string program, text;          ///< of a program's head, JSON, where no file is given
+    std::string program, text;          ///< job of a program's head, JSON, where no file is given
 };
 
 struct WindArguments {
@@ -43,7 +43,7 @@ struct WindArguments {
     PreviewOptions png;
 };
 
-/// Landing points that were made elsewhere.
+/// Imported landing points.
 struct PostArguments {
     std::string points, mandrel, machine;
     JobArguments job;
@@ -69,12 +69,12 @@ inline constexpr const char* kLayupSchema = "layup";
 
 struct ValidateArguments {
     std::string file;
-    std::string schema;  ///< which one to print instead; empty: none
+    std::string schema;  ///< schema to print instead; empty: none
 };
 
 struct InspectArguments {
     std::string mandrel;
-    JobArguments job;  ///< its mandrel alone is read
+    JobArguments job;  ///< only its mandrel is read
     std::optional<double> refine_mm;
     std::string out, page;
 };
@@ -115,7 +115,7 @@ struct CarryArguments {
 /// Lists the machines that come with the program.
 [[nodiscard]] int run_machines(const Common& common);
 
-/// Lists the materials and processes that come with the program, with what they say.
+/// Lists the materials and processes that come with the program, with their contents.
 [[nodiscard]] int run_profiles(const Common& common);
 [[nodiscard]] int run_validate(const ValidateArguments& arguments, const Common& common);
 

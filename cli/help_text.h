@@ -1,5 +1,5 @@
-/// What stands below the options of each command's --help: what it does with examples, and what all
-/// commands share. docs/make_reference.py makes the command-line reference, the manual page and the
+/// Texts below the options of each command's --help: its purpose with examples, and notes common to
+/// all commands. docs/make_reference.py makes the command-line reference, the manual page and the
 /// completion of bash from it.
 #pragma once
 

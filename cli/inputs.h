@@ -1,4 +1,4 @@
-/// What several commands do with the words of the command line, and with what came of them.
+/// Helpers of several commands for arguments and results.
 #pragma once
 
 #include <chrono>
@@ -15,14 +15,14 @@
 
 namespace meshwind {
 
-/// Of --units; 0 where it is not given, or auto.
+/// Unit of --units; 0 where it is not given, or auto.
 [[nodiscard]] double unit_mm(const std::string& name);
 
-/// Three numbers, "X,Y,Z". \param option that has them, for the words
+/// Three numbers, "X,Y,Z". \param option that has them, for the message
 /// \throws InputError cli.vector
 [[nodiscard]] Eigen::Vector3d vector_of(const std::string& option, const std::string& text);
 
-/// As find_input(); empty where there is no name.
+/// The file by find_input(); empty where there is no name.
 [[nodiscard]] std::filesystem::path found_or_none(const std::string& name);
 
 /// \param file of the arguments, as it was found \param points of imported layers are read
@@ -31,13 +31,14 @@ namespace meshwind {
 
 [[nodiscard]] RunContext context_of(const Common& common, Progress& progress);
 
-/// What takes seconds at most tells of its phases on a terminal alone: a log needs no line of them.
+/// Whether to show phases: work of at most a few seconds shows them only on a terminal, since a log
+/// needs no lines of them.
 [[nodiscard]] bool shows_bar(const Common& common);
 
 [[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point begun);
 
-/// Done, or that a check failed. A line on stderr for each of these, unless the summary has told it
-/// on the same terminal.
+/// kDone or kCheckFailed. Prints a line on stderr for each failed check, unless the summary showed
+/// it on the same terminal.
 [[nodiscard]] int exit_code(const std::string& file, const std::vector<Check>& checks,
                             const Common& common);
 

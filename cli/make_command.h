@@ -1,4 +1,4 @@
-/// `meshwind make KIND [--PARAM V ...] -o FILE` behind the option parser.
+/// The command `meshwind make KIND [--PARAM V ...] -o FILE`, after option parsing.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-/// The options of the commands, as CLI11 reads them.
+/// Defines the options of the commands for CLI11.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace meshwind {
 
-/// Digits and nothing else: the library behind options would take -1 for the largest number.
+/// Accepts digits only: the option library would take -1 for the largest number.
 [[nodiscard]] CLI::Validator whole_number(std::uint64_t most);
 
-/// In place of CLI::IsMember, whose words propose nothing.
+/// Replaces CLI::IsMember, whose message proposes no word.
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string_view>& words);
 
 void add_wind_options(CLI::App& app, WindArguments& options, bool required);

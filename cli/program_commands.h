@@ -1,4 +1,4 @@
-/// The commands that take a program: verified, resumed, wound anew, shown.
+/// The commands that take a program: verify, resume, dry-run, repeat, show.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace meshwind {
 
-/// What a program is wound again with. What is empty is as the program's head says.
+/// Inputs for winding a program again. Empty ones are taken from the program's head.
 struct ProgramArguments {
     std::string program, mandrel, machine, tie_on;
     std::string frame = "mandrel";  // of tie_on
@@ -32,7 +32,7 @@ struct DryRunArguments : ProgramArguments {
     double clearance_mm = 100.0;
 };
 
-/// The main job that made a program, once more.
+/// Repeats the main job that made a program.
 struct RepeatArguments {
     std::string program, mandrel, machine;
     JobArguments job;  ///< settings alone
@@ -40,7 +40,7 @@ struct RepeatArguments {
     PreviewOptions png;
 };
 
-/// What there is to see of a run's folder, a program, or a mandrel.
+/// Shows a run's folder, a program, or a mandrel.
 struct ShowArguments {
     std::string what, out;
     ProgramArguments program;

@@ -9,10 +9,10 @@
 
 namespace meshwind {
 
-/// What is known of the phase that runs.
+/// State of the running phase.
 struct ProgressState {
     std::string phase;
-    double share = 0.0;      ///< 0..1 done; 0 also where that is not known
+    double share = 0.0;      ///< 0..1 done; 0 also where unknown
     double gained = 0.0;     ///< of it since the phase began
     double elapsed_s = 0.0;  ///< since then
 };
@@ -21,15 +21,15 @@ struct ProgressState {
 [[nodiscard]] std::optional<double> time_left_s(const ProgressState& state);
 
 /// One line, "library [####......]  42 %  2.1 %/s  0:27 left", never longer than columns - 1, so
-/// that no terminal breaks it: on narrow ones first the rate is left out, then the time, the bar,
-/// the share, then the end of the name.
+/// that no terminal breaks it: narrow ones omit first the rate, then the time, the bar, the share,
+/// then the end of the name.
 [[nodiscard]] std::string progress_bar(const ProgressState& state, int columns);
 
-/// For a log: "library ..." where a phase begins, later "library 42 %, 0:27 left ...", or where
-/// nothing is known of its end "library, for 0:12 ...".
+/// For a log: "library ..." where a phase begins, later "library 42 %, 0:27 left ...", or where its
+/// end is unknown "library, for 0:12 ...".
 [[nodiscard]] std::string progress_line(const ProgressState& state);
 
-/// Follows phases by the reports of a run; time is what the caller's clock says.
+/// Follows phases by the reports of a run; times are the caller's.
 class ProgressPhases {
 public:
     /// \return whether a phase begins: another name, or a share that goes back
@@ -43,10 +43,9 @@ private:
     double begun_s_ = 0.0;
 };
 
-/// Tells stderr of a run, and nothing to stdout. On a terminal one line is drawn again, at most
-/// ten times a second, and wiped at the end. Elsewhere a line is written where another phase
-/// begins, and every two seconds, of long runs every fifth of the time that has gone by.
-/// Thread-safe.
+/// Shows progress on stderr, never on stdout. On a terminal one line is redrawn, at most ten times
+/// a second, and wiped at the end. Elsewhere a line is written where another phase begins, and
+/// every two seconds, in long runs every fifth of the elapsed time. Thread-safe.
 class Progress {
 public:
     explicit Progress(bool quiet);
@@ -57,7 +56,7 @@ public:
     /// A cancellation point (core/interrupt.h). \throws Interrupted
     void show(const std::string& phase, double share);
 
-    /// A line of its own, not over the bar; nothing when quiet.
+    /// Prints a line of its own, not over the bar; none when quiet.
     void say(const std::string& line);
 
     /// Wipes the bar, for good.

@@ -1,4 +1,4 @@
-/// A wound wall for finite elements: decks of it, and where it fails first.
+/// Commands for finite elements: decks of a wound wall, and its first failure.
 #pragma once
 
 #include <string>

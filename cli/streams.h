@@ -1,4 +1,4 @@
-/// What goes to the standard streams.
+/// Safe use of the standard streams.
 #pragma once
 
 #include <sstream>
@@ -8,10 +8,10 @@
 namespace meshwind {
 
 /// Opens those of stdin, stdout and stderr that the process was started without on /dev/null, so
-/// that no file of the run gets one of their numbers and with it what was meant for them.
+/// that no file of the run gets one of their numbers and with it their output.
 void open_standard_streams();
 
-/// While one lives std::cout is kept in memory, so that the reason is known where it cannot be
+/// Holds std::cout in memory during its lifetime, so that the reason is known where it cannot be
 /// written.
 class HeldOutput {
 public:
@@ -20,8 +20,8 @@ public:
     HeldOutput(const HeldOutput&) = delete;
     HeldOutput& operator=(const HeldOutput&) = delete;
 
-    /// Writes it to stdout, control characters in it but tabs and ends of lines as one_line() shows
-    /// them. \return why not all of it has arrived; empty when it has
+    /// Writes it to stdout, with control characters, except tabs and ends of lines, as one_line()
+    /// shows them. \return why not all of it has arrived; empty when it has
     [[nodiscard]] std::string write_out();
 
 private:

@@ -1,4 +1,4 @@
-/// What was meant by a command line that the parser does not take.
+/// Error messages for command lines that the parser refuses, with the nearest known word.
 #pragma once
 
 #include <span>
@@ -24,12 +24,12 @@ struct CommandWords {
 
 /// One line that names the word and proposes the nearest one that is known, or the command's help.
 /// Codes: cli.unknown_option, cli.unknown_command, cli.extra, make.unknown_kind,
-/// make.unknown_parameter, and cli.usage with the parser's own words for all else.
+/// make.unknown_parameter, and cli.usage with the parser's own words for everything else.
 [[nodiscard]] InputError usage_error(const CommandWords& program,
                                      std::span<const std::string> arguments,
                                      const std::string& parser_words);
 
-/// What a word that is no file may have been meant for; empty where it is near to no command.
+/// The command that a word that is no file may mean; empty where none is near.
 [[nodiscard]] std::string command_meant(const CommandWords& program, std::string_view word);
 
 /// `"inch" is none of auto, mm, in; did you mean "in"?`; empty where `word` is one of them.

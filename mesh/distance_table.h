@@ -17,14 +17,14 @@ struct DistanceTable {
     double cell_mm = 0.0;
     Eigen::Array3i nodes = Eigen::Array3i::Zero();
     std::vector<float> distance_mm;
-    /// Per layer of cells and need: the radius about the Z axis within which all cells lie of which
-    /// a node has less.
+    /// Per layer of cells and need: radius about the Z axis that encloses all cells with a node
+    /// whose distance is less than the need.
     std::size_t needs = 0;
     std::vector<double> room_from_mm;
-    double cap_mm = 0.0;    ///< distances from here on are not told apart
+    double cap_mm = 0.0;    ///< distances are capped at this value
     bool complete = false;  ///< all nodes have their distance
 
-    /// Whether what is interpolated close to the wall is not used.
+    /// Whether cells are too coarse for interpolation close to the wall.
     [[nodiscard]] bool is_coarse() const;
 
     [[nodiscard]] std::size_t index(const Eigen::Array3i& node) const {
@@ -34,7 +34,8 @@ struct DistanceTable {
                static_cast<std::size_t>(node.x());
     }
 
-    /// The node nearest to a place, and how far it is; nothing where the table ends.
+    /// Distance at the node nearest to a place, and how far off that node is; none outside the
+    /// table.
     struct Near {
         double there_mm;
         double off_mm;
@@ -49,14 +50,15 @@ struct DistanceTable {
                     (scaled - node.cast<double>().matrix()).norm() * cell_mm};
     }
 
-    /// A distance within which there is a triangle for certain; infinite where that is not known.
+    /// Upper bound of the distance to the nearest triangle; infinite where none is known.
     [[nodiscard]] double at_most_mm(const Eigen::Vector3d& query) const;
 
-    /// True where a corner of the cell around a place says that all triangles are further from it.
+    /// True where a corner of the cell around a place proves that all triangles are further from
+    /// it.
     [[nodiscard]] bool is_beyond(const Eigen::Vector3d& query, double distance) const;
 
-    /// A radius: further from the Z axis, at this height, cells tell `need_mm` at least. Infinite
-    /// where that is not known.
+    /// Radius about the Z axis beyond which, at this height, cells hold at least `need_mm`.
+    /// Infinite where none is known.
     [[nodiscard]] double room_beyond_mm(double z_mm, double need_mm) const;
 
     /// Fills `room_from_mm`. \pre complete
@@ -66,7 +68,7 @@ private:
     [[nodiscard]] double radius_mm(int x, int y) const {
         return std::hypot(origin.x() + cell_mm * x, origin.y() + cell_mm * y);
     }
-    /// Of a cell, by its node nearest to the origin of the table: least that is told in it.
+    /// Least distance within a cell, given by its node nearest to the origin of the table.
     [[nodiscard]] double least_mm(const Eigen::Array3i& cell) const;
 };
 

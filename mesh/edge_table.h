@@ -1,4 +1,4 @@
-/// Face adjacency across edges, in flat arrays: what import works on before a mesh is manifold.
+/// Face adjacency across edges, in flat arrays, for meshes that are not yet manifold.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ struct EdgeUse {
     std::int8_t ascending = 0;  ///< 1 where the face runs from `low` to `high`
 };
 
-/// All uses, sorted by (low, high, face): the uses of one edge stand together.
+/// All uses, sorted by (low, high, face): the uses of one edge are consecutive.
 /// \param faces index triples, three different vertices each
 [[nodiscard]] std::vector<EdgeUse> edge_uses(std::span<const std::array<std::int32_t, 3>> faces);
 
-/// Per face and edge the face on the other side, -1 where the edge does not have exactly two uses.
+/// Per face and edge the neighbouring face; -1 where the edge does not have exactly two uses.
 [[nodiscard]] std::vector<std::array<std::int32_t, 3>> face_neighbours(
     std::span<const std::array<std::int32_t, 3>> faces);
 
-/// Per face the number of its patch: faces that hang together over edges that are not parted, by
-/// their first face from 0 on. \param parted whether patches end at an edge of a face; asked from
-/// either side, and the same there
+/// Per face the number of its patch, a connected component across edges that are not parted;
+/// numbered from 0 by their first face. \param parted whether patches end at an edge of a face;
+/// asked from either side, with the same answer
 [[nodiscard]] std::vector<std::int32_t> patches_of(
     const std::vector<std::array<std::int32_t, 3>>& neighbours,
     const std::function<bool(std::size_t face, std::size_t edge)>& parted);

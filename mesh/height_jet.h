@@ -1,4 +1,4 @@
-/// The smooth surface about a vertex, as a height over a plane.
+/// Local smooth surface at a vertex: height over a plane as a polynomial of degree four.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// A mandrel: the surface that is wound, with all that was found on the way from the file to it.
+/// A mandrel: the winding surface, with the regions, rims, axis and repairs of its file.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace meshwind {
 /// How the spindle axis was found.
 struct SpindleAxis {
     std::string rule;          ///< "given", "coaxial-rims", "revolution", "principal"
-    double residual_mm = 0.0;  ///< what the rule left over: misfit of the rims or of the surface
+    double residual_mm = 0.0;  ///< residual of the rule: misfit of the rims or of the surface
 };
 
 struct MandrelOptions {
@@ -35,21 +35,23 @@ struct MandrelOptions {
     std::optional<Axis> axis{};                ///< in the file's frame and units; none: found
     std::vector<std::int32_t> keep_regions{};  ///< region ids; empty: the outer wall
     std::vector<std::string> keep_faces{};     ///< of a CAD file, as is_named(); empty: by regions
-    /// Of every end with a leg, mm; none: what is no part of the leg (mesh/even/square_ends.h)
+    /// Length cut off every end with a leg, mm; none: all that is no part of the leg
+    /// (mesh/even/square_ends.h)
     std::optional<double> cut_ends_mm{};
-    /// Lettering and the like is taken off up to this height, mm (mesh/even/details.h); none: 1 mm
+    /// Details such as lettering are removed up to this height, mm (mesh/even/details.h); none:
+    /// 1 mm
     std::optional<double> remove_details_mm{};
-    /// Crotches and steps are filled up for a ball of this radius (mesh/even/blend.h); 0: not
+    /// Radius of the ball for which crotches and steps are filled up (mesh/even/blend.h); 0: not
     double blend_mm = 0.0;
     std::string solid{};   ///< of a CAD file, name or number from 1; empty: the only one
     double edge_mm = 0.0;  ///< longest edge over a CAD file's faces; 0: by the part's size
     enum class Mesh { File, Even };
-    /// Even: where the file's triangles are uneven, even ones over the same surface are wound
+    /// Even: uneven triangles of the file are replaced by even ones over the same surface
     /// (mesh/even/winding_mesh.h)
     Mesh mesh = Mesh::Even;
 };
 
-/// What hangs together of a winding surface.
+/// A connected piece of a winding surface.
 struct WallPiece {
     double area_mm2 = 0.0;
     Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero();  ///< of its area, mandrel frame
@@ -63,27 +65,27 @@ struct AngularEnd {
     Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero();  ///< mandrel frame
 };
 
-/// Where something is that a remark tells of.
+/// A place to which a remark refers.
 struct RemarkPlace {
     std::size_t remark = 0;                           ///< index in Mandrel::remarks
     Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  ///< on the part, mandrel frame
 };
 
-/// The winding surface with all that was found on the way. Immutable once loaded.
+/// The winding surface with all that was found in its file. Immutable once loaded.
 struct Mandrel {
     std::string file;       ///< name without folder
     double unit_mm = 1.0;   ///< length of a file unit
     std::string unit_rule;  ///< "given" | "file" | "assumed"
-    TriangleSoup whole;     ///< every repaired triangle, mandrel frame: what can be hit
+    TriangleSoup whole;     ///< every repaired triangle, mandrel frame: for collision checks
     std::vector<std::int32_t> whole_region;  ///< region id per face of `whole`
-    Surface surface;                         ///< what is wound
+    Surface surface;                         ///< the winding surface
     std::vector<Region> regions;
     std::vector<Rim> rims;
-    std::vector<CadFace> cad_faces;      ///< of a CAD file, mandrel frame; empty of others
-    std::vector<std::int32_t> cad_face;  ///< per face of `surface`: index in cad_faces, -1: none
-    TriangleSoup details;           ///< lettering and the like that was taken off, mandrel frame
-    std::vector<WallPiece> pieces;  ///< largest first; one where all of it hangs together
-    std::vector<AngularEnd> angular_ends;  ///< none where the job names what is kept
+    std::vector<CadFace> cad_faces;        ///< of a CAD file, mandrel frame; empty of others
+    std::vector<std::int32_t> cad_face;    ///< per face of `surface`: index in cad_faces, -1: none
+    TriangleSoup details;                  ///< removed details such as lettering, mandrel frame
+    std::vector<WallPiece> pieces;         ///< largest first; one where the surface is connected
+    std::vector<AngularEnd> angular_ends;  ///< none where the job names the kept faces or regions
     SpindleAxis axis;
     /// Mandrel-frame point in mm = linear * file point in file units + translation; the linear part
     /// is a rotation times `unit_mm`.
@@ -91,7 +93,7 @@ struct Mandrel {
     RepairReport repairs;
     WindingMeshReport winding_mesh;
     std::vector<std::string> remarks;  ///< one line each: what a user should know of this file
-    std::vector<RemarkPlace> places;   ///< of those remarks that are about a place
+    std::vector<RemarkPlace> places;   ///< of the remarks that refer to a place
 };
 
 }  // namespace meshwind

@@ -10,7 +10,7 @@ struct ParameterRange {
     double high = 0.0;
 };
 
-/// Where in the range `distance` is least, to the last digits of `slope`'s zero.
+/// Parameter of the least `distance` in the range, to the last digits of `slope`'s zero.
 /// \param distance any rising function of the distance \param slope a positive multiple of its
 /// derivative \pre the curve turns by at most about a right angle over the range
 [[nodiscard]] double nearest_parameter(const ParameterRange& range,

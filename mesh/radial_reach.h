@@ -1,4 +1,4 @@
-/// How far triangles reach from the Z axis, by height.
+/// Largest radius of triangles about the Z axis, by height.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,16 @@
 
 namespace meshwind {
 
-/// Tells without a search that nothing is near a place outside of what turns about the Z axis.
+/// Proves without a search that places outside the bodies turning about the Z axis are clear of
+/// them.
 class RadialReach {
 public:
     RadialReach() = default;
     explicit RadialReach(std::span<const TriangleSoup> parts);
 
-    /// Radius that no point of a triangle with a height from `low_mm` to `high_mm` exceeds, by less
-    /// than a bin's height too high where the wall is steep; minus infinity where there is none.
+    /// Upper bound of the radius of all triangle points with a height from `low_mm` to `high_mm`,
+    /// less than a bin's height too high where the wall is steep; minus infinity where there are
+    /// none.
     [[nodiscard]] double largest_mm(double low_mm, double high_mm) const;
 
     /// True when it is known that no triangle is nearer than `distance_mm` to a place.
@@ -30,7 +32,7 @@ private:
     double low_mm_ = 0.0;
     double bin_mm_ = 0.0;
     std::ptrdiff_t bins_ = 0;
-    std::vector<std::vector<double>> largest_mm_;  // per power of two: of so many bins from each on
+    std::vector<std::vector<double>> largest_mm_;  // per power of two n: of n bins from each on
 };
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Rays, closest points and clearances against everything that can be hit (Embree).
+/// Ray casting, closest points and clearance checks against triangles (Embree).
 #pragma once
 
 #include <cstdint>
@@ -27,9 +27,8 @@ struct ClosestPoint {
 class RayQuery {
 public:
     /// \param parts triangle soups, copied \pre face indices are valid
-    /// \param field_reach_mm > 0: distances are tabulated up to so far around the parts, which
-    /// answers
-    ///        most clearance questions without a search; 0: no table
+    /// \param field_reach_mm > 0: distances are tabulated up to this far around the parts, which
+    /// answers most clearance questions without a search; 0: no table
     explicit RayQuery(std::span<const TriangleSoup> parts, double field_reach_mm = 0.0);
     ~RayQuery();
     RayQuery(RayQuery&&) noexcept;
@@ -45,12 +44,12 @@ public:
     /// Nearest point within `radius_mm`; part -1 and distance `radius_mm` when there is none.
     [[nodiscard]] ClosestPoint closest(const Eigen::Vector3d& query, double radius_mm) const;
 
-    /// A distance that no triangle is nearer than, in mm: from the table, so a little less than the
-    /// true distance; 0 without one.
+    /// Lower bound of the distance to the nearest triangle, in mm: from the table, so a little less
+    /// than the true distance; 0 without one.
     [[nodiscard]] double distance_at_least_mm(const Eigen::Vector3d& query) const;
 
-    /// True when it is known that no triangle is nearer than `distance_mm`: from the table and from
-    /// how far the parts reach from the Z axis. False says nothing.
+    /// True when it is known that no triangle is nearer than `distance_mm`: from the table and the
+    /// radius of the parts about the Z axis. False proves nothing.
     [[nodiscard]] bool is_beyond(const Eigen::Vector3d& query, double distance_mm) const;
 
     /// True when distances are tabulated.
@@ -59,12 +58,12 @@ public:
     /// Distance to the nearest triangle interpolated in the table, in mm; without one the true
     /// distance, up to 1000. Off by about cell^2 / 8 of the surface's curvature at that distance:
     /// some tenths of a mm around a pipe. Where the table's cells are longer than some mm, on
-    /// mandrels of metres, the true distance close to the triangles. For searching; what must hold
-    /// is checked by the functions above and below.
+    /// mandrels of metres, it is the true distance close to the triangles. For searches only;
+    /// limits are checked by the functions above and below.
     [[nodiscard]] double distance_estimate_mm(const Eigen::Vector3d& query) const;
 
-    /// A radius: further from the Z axis, at this height, distance_estimate_mm() tells `need_mm` at
-    /// least. Infinite where that is not known.
+    /// Radius about the Z axis beyond which, at this height, distance_estimate_mm() is at least
+    /// `need_mm`. Infinite where none is known.
     [[nodiscard]] double room_from_mm(double z_mm, double need_mm) const;
 
     /// True when no triangle is nearer than `radius_mm` to the straight segment.

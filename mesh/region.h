@@ -1,4 +1,4 @@
-/// The pieces that a file's surface falls into.
+/// Regions of a file's surface: outer wall, end caps, bores and others.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// What the repair of a file has changed.
+/// Report of mesh repair: counts of what was changed.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace meshwind {
 
-/// What was done to the triangles before they could be used; every count is what was changed.
+/// Changes made to the triangles by repair; every count is of elements changed.
 struct RepairReport {
     int welded_points = 0;
     int degenerate_faces_removed = 0;
@@ -15,7 +15,7 @@ struct RepairReport {
     int faces_flipped = 0;
     int edges_stitched = 0;
     int non_manifold_vertices_split = 0;
-    int self_intersecting_faces = 0;  ///< reported, not mended
+    int self_intersecting_faces = 0;  ///< reported, not repaired
     int components = 0;
     std::vector<Eigen::Vector3d> crossings;  ///< middles of those faces, the file's frame and units
 };

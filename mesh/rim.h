@@ -1,4 +1,4 @@
-/// Where the winding surface ends.
+/// Rims: the boundary loops of the winding surface.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@ struct Rim {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, pointing away from the mandrel
     double radius_mm = 0.0;       ///< mean distance of the loop from the axis, notches left out
     double circularity_mm = 0.0;  ///< largest distance of a vertex from that circle
-    double cut_off_mm = 0.0;  ///< of the file's part beyond it: a rounded lip, tabs, a notched edge
+    double cut_off_mm =
+        0.0;  ///< length cut off the part beyond it: a rounded lip, tabs, a notched edge
     std::vector<std::int32_t> vertices;  ///< surface vertices in loop order
 };
 

@@ -1,4 +1,4 @@
-/// The winding surface as flat arrays for walking: frozen, in the mandrel frame.
+/// The winding surface as flat arrays for path tracing: frozen, in the mandrel frame.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct KnownCylinder {
     double radius_mm = 0.0;
 };
 
-/// What a walk reads of a face, packed: all of it in one cache line.
+/// Data of a face that a walk reads, packed into one cache line.
 struct alignas(32) WalkFace {
     /// 4 * face across edge e + that face's number of the edge; negative at a rim
     std::array<std::int32_t, 3> across;
@@ -37,7 +37,7 @@ struct alignas(32) WalkFace {
     std::array<std::uint8_t, 3> feature;  ///< as Surface::feature
 };
 
-/// What a walk reads of a corner index, packed: all of it in two cache lines.
+/// Data of a corner index that a walk reads, packed into two cache lines.
 struct alignas(32) WalkCorner {
     Eigen::Vector3d position_mm;
     Eigen::Vector3d normal;

@@ -1,4 +1,4 @@
-/// How much of the outside a point of the surface sees.
+/// Visibility of the outside from points of a surface, by ray casting.
 #pragma once
 
 #include "mesh/ray_query.h"
@@ -6,7 +6,7 @@
 
 namespace meshwind {
 
-/// Answers from a fixed set of directions, so equal questions get equal answers. Thread-safe.
+/// Casts rays in a fixed set of directions, so results are reproducible. Thread-safe.
 class Visibility {
 public:
     /// \pre soup has faces
@@ -18,7 +18,7 @@ public:
     [[nodiscard]] double escape_fraction(const Eigen::Vector3d& point,
                                          const Eigen::Vector3d& normal) const;
 
-    /// escape_fraction(point, normal) > share, without the rays that cannot change that.
+    /// escape_fraction(point, normal) > share, without the rays that cannot change the answer.
     [[nodiscard]] bool escapes(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                double share) const;
 

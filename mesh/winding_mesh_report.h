@@ -1,4 +1,4 @@
-/// What was made of a file's mesh before it is wound.
+/// Report on the remeshing of a file's mesh before winding.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@ struct WindingMeshReport {
     std::size_t file_triangles = 0;  ///< of the file, repaired
     /// Largest distance of a vertex of the file's wall from the smooth surface of the own mesh.
     double deviation_mm = 0.0;
-    int details = 0;           ///< lettering and the like that was taken off
-    double details_mm2 = 0.0;  ///< area of it
-    double details_mm = 0.0;   ///< by which one stood out of the wall, or went into it, at most
-    double blend_mm = 0.0;     ///< radius of the ball that rolled over the wall; 0: none did
-    double blended_mm2 = 0.0;  ///< of the wall where it did not touch, filled up since
-    double filled_mm3 = 0.0;   ///< between the part and what is wound
+    int details = 0;           ///< number of details, such as lettering, that were removed
+    double details_mm2 = 0.0;  ///< their area
+    double details_mm = 0.0;   ///< largest height or depth of one from the wall
+    double blend_mm = 0.0;     ///< radius of the ball that rolled over the wall; 0: none
+    double blended_mm2 = 0.0;  ///< area of the wall that it did not touch, now filled up
+    double filled_mm3 = 0.0;   ///< volume between the part and the winding surface
     std::string why_not;       ///< why the file's mesh stays although it is uneven; in words
 };
 

@@ -1,4 +1,4 @@
-/// What can be known of a job before anything is planned.
+/// Feasibility checks of a job before planning.
 #pragma once
 
 #include <filesystem>
@@ -18,13 +18,13 @@ struct PlannedTask {
     const Mandrel& mandrel;
     const Job& job;
     std::filesystem::path machine_file;  ///< for messages
-    std::filesystem::path job_file;      ///< empty: there is none
+    std::filesystem::path job_file;      ///< empty: none
 };
 
-/// Refuses, in a fraction of a second, what no plan can change: a wall in pieces, an end that is no
-/// circle, a part beyond the travel of the axes or in the way of a body of the machine, a tow that
-/// is no band on it, an extension on which nothing can be turned round. All rules are necessary
-/// conditions: what they refuse could not be wound, and what is near the limit is planned
+/// Refuses within a fraction of a second jobs that no plan can wind: a wall in pieces, an end that
+/// is no circle, a part beyond the travel of the axes or in the way of a body of the machine, a tow
+/// that is no band on it, an extension on which fibre cannot turn round. All rules are necessary
+/// conditions: a refused job could not be wound, and one near the limit is planned
 /// (before_planning_test.cpp, before_planning_test.py).
 ///
 /// Why a fibre stays within reach: the free fibre leaves along the tangent, so where the landing
@@ -36,7 +36,8 @@ struct PlannedTask {
 /// plan.tow_width, plan.no_turn, plan.free_length, plan.amount
 void require_can_be_wound(const PlannedTask& task);
 
-/// One line each: what the mandrel has to tell, and what may be meant otherwise but can be wound.
+/// Remarks, one line each: those of the mandrel, and inputs that may be meant otherwise but can be
+/// wound.
 [[nodiscard]] std::vector<std::string> remarks_before_planning(const PlannedTask& task);
 
 }  // namespace meshwind

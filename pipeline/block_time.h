@@ -1,5 +1,5 @@
-/// Blocks of a motion and their time: what blocks may take up, more time where the fibre would run
-/// too fast, and which limit it is that binds.
+/// Blocks of a motion and their time law: block tolerances, slower stretches where the fibre would
+/// run too fast, and the binding limits.
 #pragma once
 
 #include <cstddef>
@@ -19,52 +19,52 @@
 
 namespace meshwind {
 
-/// What blocks are chosen by, per job.
-/// \param most_mm fibre of a block at most \param finer share of the tolerances that blocks may
-/// take up
+/// Tolerances by which blocks are chosen, per job.
+/// \param most_mm largest fibre length of a block \param finer share of the tolerances that blocks
+/// may take up
 [[nodiscard]] BlockTolerance block_tolerance(
     const Job& job, double most_mm = std::numeric_limits<double>::infinity(), double finer = 1.0);
 
-/// The speed that the fibre is planned with: the job's, or what of the machine's is safe.
+/// Planned fibre speed: the job's, limited to the safe part of the machine's.
 [[nodiscard]] double planned_speed_mm_s(const Setup& setup);
 
-/// Per point of a path, how far the eye may be off it between the ends of blocks.
+/// Allowed distance of the eye from each point of a path, between the ends of blocks.
 /// \param clearance_mm of the head, one per point
 [[nodiscard]] std::vector<double> room_of_clearance_mm(const Setup& setup,
                                                        std::span<const Piece> pieces,
                                                        const EyePath& path,
                                                        std::vector<double> clearance_mm);
 
-/// What blocks may take up at each point of a path.
+/// Limits of blocks at each point of a path.
 struct BlockBounds {
     std::vector<double> share;   ///< of the tolerance, 0..1
-    std::vector<double> longer;  ///< of the time that the fibre takes at its full speed, >= 1
+    std::vector<double> longer;  ///< factor on the fibre's time at its full speed, >= 1
     double most_mm = std::numeric_limits<double>::infinity();  ///< fibre of a block
 };
 
 /// Blocks as the controller runs them.
 struct ProgramBlocks {
     BlockChoice choice;
-    BlockList list;        ///< what the program runs, repeated circuits included
-    BlockList exact;       ///< the ends that were chosen, rounded to nothing but 1e-9 mm or deg
+    BlockList list;        ///< blocks that the program runs, repeated circuits included
+    BlockList exact;       ///< the chosen ends, rounded only to 1e-9 mm or deg
     ProgramLayout layout;  ///< how they are written
     std::vector<BindingLimit> binding;
     double duration_s = 0.0;  ///< starting from rest and stopping, corner_s of it
-    double corner_s = 0.0;    ///< what the controller adds at corners
+    double corner_s = 0.0;    ///< added by the controller at corners
 };
 
-/// Blocks for a motion, their time law, and what the controller's language makes of them. A
-/// controller that slows down at corners runs shorter ones faster, for they turn less from one to
-/// the next: where that pays they are shorter.
-/// \param room_mm per point: how far the eye may be off
+/// Blocks for a motion, their time law and their layout in the controller's language. A controller
+/// that slows down at corners runs shorter blocks faster, since they turn less from one to the
+/// next: blocks are made shorter where that saves time.
+/// \param room_mm per point: allowed distance of the eye from it
 [[nodiscard]] ProgramBlocks program_blocks(const Setup& setup, std::span<const Piece> pieces,
                                            const AxisPath& axes, std::span<const double> room_mm,
                                            const BlockBounds& bounds);
 
 /// Gives more time to the stretches of a path on which the fibre ran too fast.
 /// \param fast blocks in ascending order, of `blocks`
-/// \param longer per point of the path: share of the time at the fibre's full speed, >= 1; those of
-/// the blocks grow
+/// \param longer per point of the path: factor on the time at the fibre's full speed, >= 1; those
+/// of the blocks grow
 void lengthen(std::span<const FastBlock> fast, const std::vector<Block>& blocks,
               const EyePath& path, std::vector<double>& longer);
 
@@ -74,11 +74,12 @@ void lengthen(std::span<const FastBlock> fast, const std::vector<Block>& blocks,
 bool tighten(std::span<const std::size_t> coarse, const std::vector<Block>& blocks,
              const EyePath& path, std::vector<double>& share);
 
-/// Fibre of each block as its speed counts it: longer than it is where it takes more time.
+/// Fibre length of each block as counted for its speed: longer than the true one where it takes
+/// more time.
 [[nodiscard]] std::vector<double> counted_fibre_mm(const BlockChoice& choice,
                                                    std::span<const double> longer);
 
-/// Numbers limits by the blocks that a controller gets, which may need two for one step.
+/// Renumbers limits by the blocks of the controller, which may need two for one step.
 /// \param blocks ends of all steps are among theirs
 void renumber(std::vector<BindingLimit>& binding, const BlockList& steps, const BlockList& blocks);
 

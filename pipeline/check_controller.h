@@ -1,4 +1,4 @@
-/// Whether a machine file's controller can be written for, before anything is planned.
+/// Checks before planning that programs can be written for a machine file's controller.
 #pragma once
 
 #include <filesystem>

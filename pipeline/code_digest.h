@@ -1,4 +1,4 @@
-/// Digests in a program's head: whether its code is what was written, and for which job.
+/// Digests in a program's head: they detect changes of its code, and name its job.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@
 
 namespace meshwind {
 
-/// Of what Dialect::code_of makes of a text (core/text/digest.h): nobody changes a program by
-/// chance without changing it.
+/// Digest of Dialect::code_of of a text (core/text/digest.h): an accidental change of a program
+/// changes it.
 [[nodiscard]] std::string code_digest(const Dialect& dialect, std::string_view text,
                                       const std::string& file);
 
-/// Of job_text().
+/// Digest of job_text().
 [[nodiscard]] std::string job_digest(const Job& job);
 
 /// The program with its own digest in the head.
@@ -25,7 +25,7 @@ namespace meshwind {
                                             const BlockList& list, const ProgramLayout& layout,
                                             ProgramHeader header);
 
-/// Check "code": the digest in the head is that of the code. Nothing where the head has none.
+/// Check "code": the digest in the head is that of the code. None where the head has none.
 [[nodiscard]] std::optional<Check> code_check(const Dialect& dialect, std::string_view text,
                                               const std::string& file, const BlockList& program);
 

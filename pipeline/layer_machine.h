@@ -1,4 +1,4 @@
-/// The machine that winds a layer: what planners ask of it, and the programs that answer.
+/// The machine that winds a layer: windability checks for planners, and the programs of a plan.
 #pragma once
 
 #include <cstddef>
@@ -31,9 +31,10 @@ struct LayerPrograms : TrialWinding {
 
 struct LayerMachineOptions {
     std::string suffix;  ///< in names of files: "", "-layer-2"
-    /// What every program's head says: version, mandrel, digests.
+    /// Content of every program's head: version, mandrel, digests.
     ProgramHeader header;
-    /// Of the layer before: its fibre is wound on where a plan does so. Null for the first.
+    /// Program of the layer before: its fibre is continued where a plan does so. Null for the
+    /// first.
     const FibreProgram* before = nullptr;
     RunContext context{};
     std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
@@ -50,8 +51,8 @@ public:
     [[nodiscard]] CourseFault wind_circuits(std::span<const Piece> pieces) const override;
     [[nodiscard]] std::unique_ptr<TrialWinding> wind_all(const Plan& plan) const override;
 
-    /// The way from a plan to its programs, and back: each is read from its text and wound again.
-    /// \param ignore_limits make programs even of what cannot be wound
+    /// Programs of a plan, and back: each is read from its text and wound again.
+    /// \param ignore_limits make programs even of pieces that cannot be wound
     [[nodiscard]] std::unique_ptr<LayerPrograms> programs_of(const Plan& plan,
                                                              bool ignore_limits) const;
 

@@ -1,4 +1,4 @@
-/// The planners that a layer may be given to.
+/// The planners of a layer, by kind and shape of the part.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace meshwind {
 
-/// A layer that is to be planned, with the shape of its part, found where it is asked for.
+/// A layer to be planned, with the shape of its part, found on demand.
 struct LayerTask {
     const Setup& setup;
     const LayerJob& layer;
@@ -29,9 +29,9 @@ struct LayerTask {
 
 struct LayerPlanner {
     Planner planner;
-    /// Whether it is for layers of this kind, not `auto`.
+    /// Whether it plans layers of this kind, not `auto`.
     bool (*makes)(LayerKind kind);
-    /// Empty where the part has the shape for it, else in words what it lacks.
+    /// Empty where the part has the shape for it, else what it lacks, in words.
     std::string (*why_not)(const LayerTask& task);
     /// \pre the part has the shape for it. For `auto` the plan covers kCoveredShare or fails.
     TriedPlan (*plan)(const LayerTask& task);

@@ -1,4 +1,4 @@
-/// Machine and job from their files, with the files that they name.
+/// Loads machine and job from their files, with the files that they name.
 #pragma once
 
 #include <filesystem>
@@ -14,25 +14,27 @@
 namespace meshwind {
 
 /// A machine with the triangles of its envelope and bodies.
-/// \throws IoError io.cannot_read; InputError as read_machine() and read_triangles() have it
+/// \throws IoError io.cannot_read; InputError as read_machine() and read_triangles()
 [[nodiscard]] Machine load_machine(const std::filesystem::path& file);
 
 /// A job with the landing points of its imported layers. \param file empty: settings alone
-/// \param base what it leaves out \throws IoError io.cannot_read; InputError as read_job() has it
+/// \param base values of keys that it omits \throws IoError io.cannot_read; InputError as
+/// read_job()
 [[nodiscard]] Job load_job(const std::filesystem::path& file,
                            std::span<const JobSetting> settings = {}, const Job& base = {});
 
-/// The same of a text. \param name for messages \param folder where imported layers' files are
+/// The same from a text. \param name for messages \param folder where imported layers' files are
 [[nodiscard]] Job job_of_text(std::string_view text, const std::string& name,
                               const std::filesystem::path& folder,
                               std::span<const JobSetting> settings = {}, const Job& base = {});
 
-/// A material or process: a file with keys of a job, for `base`. \param base those before it
-/// \throws IoError io.cannot_read, with those that come with meshwind; InputError as read_job()
+/// A material or process: a file with keys of a job, for `base`. \param base profiles before it
+/// \throws IoError io.cannot_read, with a list of those that come with meshwind; InputError as
+/// read_job()
 [[nodiscard]] Job load_profile(const std::filesystem::path& file, const Job& base = {});
 
-/// Reads a mandrel's file as a job asks for it, for wind(). \param digest is told what the
-/// programs' heads say of the file; must outlive the reader
+/// Reads a mandrel's file as a job asks for it, for wind(). \param digest receives the file's
+/// digest for the programs' heads; must outlive the reader
 [[nodiscard]] MandrelOf mandrel_reader(std::filesystem::path file, double unit_mm,
                                        std::string& digest);
 
@@ -44,7 +46,7 @@ namespace meshwind {
                                                      const std::string& name,
                                                      const std::string& digest);
 
-/// Its machine file, looked for in the same places. \throws InputError origin.not_named,
+/// Its machine file, searched for in the same places. \throws InputError origin.not_named,
 /// origin.no_file
 [[nodiscard]] std::filesystem::path machine_named_by(const std::filesystem::path& program,
                                                      const std::string& name);

@@ -1,5 +1,5 @@
-/// The room that head, part and turns take, and how far the eye comes around a part: known before
-/// anything is planned.
+/// Estimates before planning: room taken by head, part and turns, and the reach of the eye around a
+/// part.
 #pragma once
 
 #include <array>
@@ -19,12 +19,13 @@
 
 namespace meshwind {
 
-/// From the eye to the nearest part of the head; where the eye is within a part, less the radius of
-/// the ball about it that this part fills.
+/// Distance from the eye to the nearest part of the head; where the eye is within a part, minus the
+/// radius of the ball about it that this part fills.
 [[nodiscard]] double head_gap_mm(const Machine& machine, const HeadEnvelope& envelope);
 
-/// Free fibre with which the eye is so far off a cylinder. The fibre leaves along its tangent, so
-/// with L mm of it at the winding angle a the eye is sqrt(R^2 + (L sin a)^2) from the axis.
+/// Free fibre length with which the eye is `off_mm` off a cylinder. The fibre leaves along its
+/// tangent, so with L mm of it at the winding angle a the eye is sqrt(R^2 + (L sin a)^2) from the
+/// axis.
 /// \param off_mm >= 0 \param sine of the winding angle, > 0
 [[nodiscard]] double free_length_over_cylinder_mm(double radius_mm, double off_mm, double sine);
 
@@ -32,19 +33,19 @@ namespace meshwind {
 /// thousand slices. Each goes round a circle.
 [[nodiscard]] std::vector<Eigen::Vector2d> outline(const TriangleSoup& part);
 
-/// What blocks may be off their stations, meshes off their circles and samples between points: no
+/// Slack for blocks off their stations, meshes off their circles and samples between points: no
 /// part is refused for less than this.
 inline constexpr double kRoomSlack_mm = 1.0;
 
 /// How a job's fibre turns round at a rim.
 struct TurnRoom {
     bool takes_run = false;     ///< by friction, along the extension
-    Friction friction = 0.0;    ///< what no layer has more of
+    Friction friction = 0.0;    ///< the largest of all layers
     double extension_mm = 0.0;  ///< > 0
     double tow_width_mm = 0.0;  ///< > 0
 };
 
-/// Extension that the least turn by friction takes at a rim.
+/// Extension length that the least turn by friction needs at a rim.
 [[nodiscard]] double needed_extension_mm(const TurnRoom& turns, const Rim& rim);
 
 /// Whether a rim leaves room for a turn by friction at all.
@@ -56,27 +57,27 @@ struct TurnRoom {
 /// Height of the hoop of the least turn at a rim about the spindle.
 [[nodiscard]] double hoop_height_mm(const TurnRoom& turns, const Rim& rim);
 
-/// Whether an end is one at which patterns turn before they come to it. \param end 0 or 1
+/// Whether patterns turn round before they reach an end of the body. \param end 0 or 1
 [[nodiscard]] bool has_cap(const BodyOfRevolution& body, std::size_t end);
 
-/// How far the eye comes, and how far off a part it has to be.
+/// Range of the eye, and its least distance from a part.
 struct EyeReach {
     EyeRange range;
     double shortest_fibre_mm = 0.0;  ///< free fibre
     double longest_fibre_mm = 0.0;
-    double off_wall_mm = 0.0;  ///< that the eye keeps at least, for the head's clearance
+    double off_wall_mm = 0.0;  ///< least distance of the eye, for the head's clearance
 };
 
-/// Whether the eye comes to a height, but for kRoomSlack_mm.
+/// Whether the eye reaches a height, to within kRoomSlack_mm.
 [[nodiscard]] bool in_height(const EyeReach& eye, double z_mm);
 
 /// Distance from the spindle that the eye needs for a hoop of a radius.
 [[nodiscard]] double hoop_eye_mm(const EyeReach& eye, double radius_mm);
 
-/// A part that is to be wound, and how far the eye comes around it.
+/// A part to be wound, and the reach of the eye around it.
 struct PartReach {
     const Mandrel& mandrel;
-    const std::optional<BodyOfRevolution>& body;  ///< that the part is, if it is one
+    const std::optional<BodyOfRevolution>& body;  ///< the part as one, if it is one
     const TurnRoom& turns;
     const EyeReach& eye;
 };
@@ -88,13 +89,14 @@ struct PartReach {
 /// widest place.
 [[nodiscard]] bool patterns_fit(const PartReach& part);
 
-/// Whether courses can: over some rim, on enough of the wall. True where there is no rim.
+/// Whether courses can be wound: over some rim, on enough of the wall. True where there is no rim.
 [[nodiscard]] bool courses_fit(const PartReach& part);
 
-/// Whether hoops can, on the widest cylinder of a body of revolution; true for other parts.
+/// Whether hoops can be wound, on the widest cylinder of a body of revolution; true for other
+/// parts.
 [[nodiscard]] bool hoops_fit(const PartReach& part);
 
-/// The least and the greatest height that the eye has to come to: hoops at rims, the caps of domes.
+/// Least and greatest height that the eye has to reach: hoops at rims, the caps of domes.
 [[nodiscard]] std::array<double, 2> needed_heights_mm(const PartReach& part);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Pieces of a plan on their way to a program, and back: the program is wound again.
+/// Turns pieces of a plan into a program, and winds that program again.
 #pragma once
 
 #include <functional>
@@ -25,46 +25,46 @@ struct PieceProgram {
     EyePathResult eyes;           ///< at the stations
     std::size_t path_points = 0;  ///< points that blocks were chosen from
     BlockChoice choice;
-    BlockList blocks;      ///< what the program runs, one by one
-    BlockList exact;       ///< the ends of these as planned, rounded to nothing but 1e-9 mm or deg
-    ProgramLayout layout;  ///< how they are written
-    bool optimal = false;  ///< no other free lengths and turns that are known save 1 % of the time
+    BlockList blocks;         ///< blocks that the program runs, one by one
+    BlockList exact;          ///< the ends of these as planned, rounded only to 1e-9 mm or deg
+    ProgramLayout layout;     ///< how they are written
+    bool optimal = false;     ///< no other known free lengths and turns save 1 % of the time
     double duration_s = 0.0;  ///< of the blocks, starting from rest and stopping, corner_s of it
-    double corner_s = 0.0;    ///< what the controller adds at corners to the program's durations
-    double least_s = 0.0;     ///< were the fibre at its full speed all along
+    double corner_s = 0.0;    ///< added by the controller at corners to the program's durations
+    double least_s = 0.0;     ///< duration with the fibre at its full speed all along
     std::vector<BindingLimit> binding;
     BlockList read;             ///< the blocks as they were wound again
     Verification verification;  ///< of these
-    /// Pieces that the machine cannot wind, or that the blocks do not lay as they are planned, each
-    /// with the first reason.
+    /// Pieces that the machine cannot wind, or that the blocks do not lay as planned, each with the
+    /// first reason.
     std::map<std::size_t, CourseFault> refused;
 };
 
 struct PieceProgramOptions {
-    /// Make a program even of what the machine cannot wind.
+    /// Make a program even of pieces that the machine cannot wind.
     bool ignore_limits = false;
     /// All: seconds where no near free length is clear.
     LengthSearch lengths = LengthSearch::Near;
     /// Free lengths and turns of the mandrel for the least time.
     bool optimal = false;
-    /// Where the spindle stands before, if the fibre goes on from there: it is turned on from the
-    /// nearest whole turn, where it turns without end.
+    /// Spindle angle before, if the fibre continues from there: an endless spindle is turned on
+    /// from the nearest whole turn.
     std::optional<double> spindle_rad{};
-    /// From the blocks to their text and back. Empty: they are wound as they are.
+    /// Writes the blocks to text and reads them back. Empty: they are wound as they are.
     std::function<BlockList(const PieceProgram&)> round_trip;
     RunContext context{};
     std::function<void(const char* stage)> stage_done;  ///< "post", "verify"
 };
 
 /// Pieces, in a stretch of the plan, that the machine cannot wind, each with the first reason: no
-/// free length, beyond an axis' travel, or hitting something. Of a run of pieces that all lead
-/// beyond one axis' travel the worst one is named. Empty: all can be wound. Thread-safe.
+/// free length, beyond an axis' travel, or hitting something. Where consecutive pieces all lead
+/// beyond one axis' travel, the worst one is named. Empty: all can be wound. Thread-safe.
 [[nodiscard]] std::map<std::size_t, CourseFault> refused_by_machine(const Setup& setup,
                                                                     std::span<const Piece> pieces);
 
-/// Eye, axes, blocks and time law of the pieces; then the blocks are wound again, and where that
-/// shows them too coarse they are made finer, a few times. Without blocks where the machine cannot
-/// wind the pieces, unless `ignore_limits`. Thread-safe. \pre there are pieces, all of one fibre
+/// Eye, axes, blocks and time law of the pieces. Then the blocks are wound again and, where too
+/// coarse, made finer, a few times. Without blocks where the machine cannot wind the pieces, unless
+/// `ignore_limits`. Thread-safe. \pre there are pieces, all of one fibre
 [[nodiscard]] PieceProgram program_of(const Setup& setup, std::span<const Piece> pieces,
                                       const PieceProgramOptions& options = {});
 

@@ -1,4 +1,4 @@
-/// Names of what a run makes. "program.ngc" and "path.csv" belong to the first layer and fibre,
+/// File names of a run's output. "program.ngc" and "path.csv" belong to the first layer and fibre,
 /// "program-2.ngc" to the second fibre, "program-layer-3-2.ngc" to the second fibre of the third
 /// layer.
 #pragma once

@@ -1,4 +1,4 @@
-/// One fibre path as a table.
+/// Traces one fibre path, as a table.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct TraceRequest {
     bool file_frame = false;  ///< output in the file's axes, in mm; else the mandrel frame
 };
 
-/// A path of the surface, and what holds on it. Mandrel frame.
+/// A path of the surface, with its taut string and slip. Mandrel frame.
 struct TracedPath {
     SurfacePath path;
     TautString string;

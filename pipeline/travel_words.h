@@ -1,4 +1,4 @@
-/// What is said of a part that the axes do not bring the eye around.
+/// Messages about a part that the axes do not bring the eye around.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace meshwind {
 
 /// "axis Z needs -220.0 to 220.0 mm for the turns at the part's ends, has -150.0 to 150.0 mm".
-/// \param low_mm, high_mm heights along the spindle; told as what the axis reads where it is one
+/// \param low_mm, high_mm heights along the spindle; given as readings of the axis where it is one
 [[nodiscard]] std::string along_words(const EyeRange& eye, double low_mm, double high_mm);
 
 /// "there the eye needs to be 57.5 mm from the spindle axis; axis X brings it to 40.0 mm", or

@@ -1,4 +1,4 @@
-/// A program wound again from its text alone, and judged. No file is read or written.
+/// Verifies a program by winding it again from its text alone. No file is read or written.
 #pragma once
 
 #include <filesystem>
@@ -51,12 +51,12 @@ struct VerifyPlan {
     std::vector<PlannedMotion> motion;
 };
 
-/// Reads a program, and readies the setup for it: pins that its head names stand on the mandrel,
-/// and what friction holds is that of the layer in its name (run_names.h). \throws InputError as a
-/// dialect's reader; nc.pins where pins are not those of the mandrel or the job
+/// Reads a program, and prepares the setup for it: pins named in its head stand on the mandrel, and
+/// friction is that of the layer in its name (run_names.h). \throws InputError as a dialect's
+/// reader; nc.pins where pins are not those of the mandrel or the job
 [[nodiscard]] BlockList read_program(Setup& setup, const VerifyInputs& inputs);
 
-/// Checks for which nothing is wound.
+/// Checks of the text, without winding.
 struct TextChecks {
     std::vector<Check> checks;  ///< "program" where there is a plan, "code" where the head has a
                                 ///< digest (code_digest.h)
@@ -64,14 +64,14 @@ struct TextChecks {
 };
 
 /// \param file name used in messages
-/// \param program what was read of the text
+/// \param program as read from the text
 [[nodiscard]] TextChecks check_text(const Setup& setup, std::string_view text,
                                     const std::string& file, const BlockList& program,
                                     const VerifyPlan& plan);
 
 /// Winds the program again (postproc/verify/verify.h). With a plan the first check is "program":
 /// block by block its positions and times are those of motion.csv, and the eye is where the plan's
-/// machine had it. \throws InputError for input that cannot be used
+/// machine has it. \throws InputError for input that cannot be used
 [[nodiscard]] VerifyOutcome verify_text(Setup setup, const VerifyInputs& inputs,
                                         const RunContext& context = {});
 

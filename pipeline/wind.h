@@ -22,20 +22,20 @@ namespace meshwind {
 
 struct WindOptions {
     RunContext context{};
-    /// Landing points to wind instead of what the job's layers ask for.
+    /// Landing points to wind instead of the job's layers.
     std::optional<ImportRequest> import{};
-    bool force = false;  ///< the program is for use although a check failed
+    bool force = false;  ///< release the program although a check failed
     InputFiles files{};  ///< named in messages
-    /// What the programs' heads say of the mandrel's file, "sha256/128 ..."; empty: digest of its
+    /// Digest of the mandrel's file in the programs' heads, "sha256/128 ..."; empty: digest of its
     /// mesh.
     std::string mandrel_digest{};
-    double reading_s = 0.0;  ///< that the inputs took before; counts as "import"
-    /// A cover of less than this share of what courses reach is not wound: its plan fails.
+    double reading_s = 0.0;  ///< time spent on reading the inputs before; counts as "import"
+    /// A cover of less than this share of the wall that courses reach is not wound: its plan fails.
     double least_covered = 0.0;
     /// Nor one whose fibres can join less than this share of the wall.
     double least_joined = 0.0;
-    /// Where a part has patterns and none holds, courses do not cover it instead: the plan fails.
-    /// So it does, before it is wound, where none covers least_covered of the wall.
+    /// Where a part has patterns and none holds, the plan fails instead of covering it by courses.
+    /// It also fails, before it is wound, where none covers least_covered of the wall.
     bool patterns_first = false;
 };
 
@@ -47,21 +47,21 @@ struct WoundWall {
     std::vector<std::int32_t> asked_of_faces;  ///< layers, per triangle of the bare mandrel
 };
 
-/// Everything that was found.
+/// The result of the main job.
 struct Run {
     std::vector<WoundLayer> layers;  ///< >= 1, in winding order, as far as they could be wound
-    /// Of all layers: those of a further one end in its number, "slip-layer-2".
+    /// Checks of all layers: those of a further layer end in its number, "slip-layer-2".
     std::vector<Check> checks;
-    std::vector<std::string> remarks;  ///< what may be meant otherwise, one line each
+    std::vector<std::string> remarks;  ///< inputs that may be meant otherwise, one line each
     std::map<std::string, double> timing_s;
     std::vector<WoundWall> walls;  ///< of the job's layers of kind Wall
     std::uint64_t seed = 1;
     double effort = 1.0;
     std::string job = "{}";  ///< as told_job_text()
-    bool complete = false;   ///< every layer that the job asks for has been come to
-    bool usable = false;     ///< the programs may be run: all was planned and passed, or by force
+    bool complete = false;   ///< every layer of the job was reached
+    bool usable = false;     ///< the programs may be run: all was planned and passed, or forced
 
-    /// Every layer that the job asks for has a plan.
+    /// Whether every layer of the job has a plan.
     [[nodiscard]] bool planned() const;
 
     [[nodiscard]] bool passed() const {
@@ -75,10 +75,9 @@ struct Run {
 };
 
 /// Plans every layer of the job, makes its programs and winds them again from their text.
-/// \param mandrel as load_mandrel() has it, with mandrel_options(job) \param machine as
-/// load_machine() has it
-/// \throws InputError for input that cannot be wound at all; what a plan cannot do is a check of
-/// the result that failed
+/// \param mandrel from load_mandrel(), with mandrel_options(job) \param machine from load_machine()
+/// \throws InputError for input that cannot be wound at all; failures of a plan are failed checks
+/// of the result
 [[nodiscard]] Run wind(Mandrel mandrel, const Machine& machine, const Job& job,
                        const WindOptions& options = {});
 

@@ -1,4 +1,4 @@
-/// One layer: its plan, its programs, and what they lay.
+/// Winds one layer: its plan, its programs and their checks.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,15 @@ namespace meshwind {
 
 struct WoundLayer {
     LayerJob job;
-    Setup setup;  ///< its mandrel is what the layers before have left
+    Setup setup;  ///< its mandrel is grown by the layers before
     Plan plan;
-    std::string no_pattern;  ///< in words why courses cover a body that has patterns; else empty
+    std::string no_pattern;  ///< why courses cover a body that has patterns, in words; else empty
     std::optional<ImportFit> import;     ///< of landing points
     std::vector<FibreProgram> programs;  ///< one for each fibre of the plan
     std::vector<Check> checks;  ///< of the plan, then of each program: those of a further fibre end
                                 ///< in its number, "slip-2"
-    /// Per vertex of the mandrel's surface, what this layer adds; empty where it is the only one.
+    /// Thickness added by this layer, per vertex of the mandrel's surface; empty where it is the
+    /// only one.
     std::vector<double> build_up_mm;
 
     [[nodiscard]] double duration_s() const;
@@ -36,9 +37,9 @@ struct WoundLayer {
 
 struct WindLayerOptions {
     std::string suffix;  ///< in names of files: "", "-layer-2"
-    /// What every program's head says: version, mandrel, digests.
+    /// Content of every program's head: version, mandrel, digests.
     ProgramHeader header;
-    /// Landing points to wind instead of what the layer asks for.
+    /// Landing points to wind instead of the layer's own plan.
     std::optional<ImportRequest> import;
     const WoundLayer* before = nullptr;  ///< none for the first
     const Mandrel* bare = nullptr;       ///< under all layers; none for the first
@@ -51,8 +52,8 @@ struct WindLayerOptions {
     std::function<void(const char* stage)> stage_done;  ///< "plan", "post", "verify"
 };
 
-/// Plans the layer on its setup's mandrel, makes the programs and winds them again. What cannot be
-/// is a check that failed: "plan" where there is no plan.
+/// Plans the layer on its setup's mandrel, makes the programs and winds them again. A failure is a
+/// failed check: "plan" where there is no plan.
 /// \param layer has job and setup; the rest is filled in
 /// \throws InputError what import_plan and dialects throw
 void wind_layer(WoundLayer& layer, const WindLayerOptions& options);

@@ -1,4 +1,4 @@
-/// What `inspect` finds of a part: in words, as JSON, and as a page.
+/// Inspection of a part for `inspect`: in words, as JSON, and as a page.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +34,7 @@ struct Inspection {
     /// Per face of the winding surface 1 where a ball as wide as the tow cannot touch its middle;
     /// empty where hardly any is so
     std::vector<char> sharp;
-    std::string refused;  ///< why the main job would not plan it, in words; empty: it would try
+    std::string refused;  ///< why the main job would refuse it, in words; empty: it would try
     std::optional<RefinedFile> refined;
     std::string page;  ///< file of the page that was written; empty: none
 };
@@ -43,17 +43,18 @@ struct Inspection {
 [[nodiscard]] Inspection inspect(Mandrel mandrel, double tow_width_mm);
 
 /// "meshwind" (version), "mandrel" (mandrel_report with "revolution", "tube", "accuracy", "places",
-/// and "candidates" of its "axis"), and of what was written "refined" and "page".
+/// and "candidates" of its "axis"), and "refined" and "page" of the written files.
 [[nodiscard]] nlohmann::json inspection_report(const Inspection& found);
 
-/// The same for people.
+/// The same in words.
 void print_inspection(std::ostream& out, const Inspection& found);
 
-/// Refuses before any work what would fail after it; an empty name asks for no page.
+/// Checks the name before any work, so that writing does not fail after it; an empty name asks for
+/// no page.
 /// \throws InputError cli.page, cli.page_name
 void check_part_page(const std::string& file);
 
-/// The same as a text; nothing where the program was built without its pages.
+/// Text of the page; empty where the program was built without its pages.
 [[nodiscard]] std::string part_page(const Inspection& found);
 
 /// The page of the part in one file: its triangles by region, rims, spindle, places of the remarks

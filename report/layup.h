@@ -1,5 +1,5 @@
-/// The lay-up of a run on the triangles of its bare mandrel, measured once for all files that tell
-/// of it.
+/// The lay-up of a run on the triangles of its bare mandrel, measured once for all files that use
+/// it.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct LayupPly {
     double angle_to_spindle_rad = 0.0;  ///< 0 .. pi/2
 };
 
-/// Per triangle: of one layer or of all.
+/// Values per triangle, of one layer or of all.
 struct LayupArrays {
     explicit LayupArrays(std::size_t faces)
         : layers(faces),

@@ -1,5 +1,5 @@
-/// The lay-up and the fibre of a run for those who go on with them: layup.vtu, layup.json,
-/// fibre.obj, fibre.step (docs/files.md, "Lay-up").
+/// Exports the lay-up and the fibre of a run for other programs: layup.vtu, layup.json, fibre.obj,
+/// fibre.step (docs/files.md, "Lay-up").
 #pragma once
 
 #include <string>

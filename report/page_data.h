@@ -1,4 +1,4 @@
-/// What report.html shows, in one binary text.
+/// Data of report.html, in one binary text.
 #pragma once
 
 #include <string>

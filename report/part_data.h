@@ -1,4 +1,4 @@
-/// What the page of `inspect --page` shows, in one binary text.
+/// Data of the page of `inspect --page`, in one binary text.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace meshwind {
 /// "tow_width_mm", and "details_mm", by which details stand out of the wall. Arrays, positions in
 /// the mandrel's frame, mm:
 ///
-///     part/points, part/faces   every triangle of the part: what is wound, and all else of it
+///     part/points, part/faces   every triangle of the part: the winding surface and all others
 ///     part/region               per triangle: id of its region
 ///     part/sharp                per triangle: 1 where a ball as wide as the tow cannot touch it
-///     details/points, .../faces what was taken off the wall
+///     details/points, .../faces details removed from the wall
 ///     rimN/loop                 the vertices of rim N in their order
 [[nodiscard]] std::string part_data(const Inspection& found);
 

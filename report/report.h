@@ -11,7 +11,7 @@
 namespace meshwind {
 
 /// report.json; keys as in docs/files.md.
-/// \param timing_s seconds by stage: the run's, with what its writing took
+/// \param timing_s seconds by stage: the run's, with those of writing it
 [[nodiscard]] nlohmann::json report_of(const Run& run,
                                        const std::map<std::string, double>& timing_s);
 

@@ -1,4 +1,4 @@
-/// What `meshwind carry` writes: report.json, the other files, and the summary.
+/// Output of `meshwind carry`: report.json, the other files, and the summary.
 #pragma once
 
 #include <filesystem>

@@ -21,7 +21,7 @@ namespace meshwind {
 /// number, or a number; none: no limit) and least (the limit is a lower one).
 [[nodiscard]] nlohmann::json check_kinds_report(const std::vector<Check>& checks);
 
-/// What was laid and in what time, and the first wrong block where there is one.
+/// The laid fibre and its time, and the first wrong block where there is one.
 [[nodiscard]] nlohmann::json verification_report(const Verification& verification,
                                                  const BlockList& program);
 
@@ -32,7 +32,7 @@ void print_checks(std::ostream& out, const std::vector<Check>& checks);
 void print_failed_checks(std::ostream& out, const std::vector<Check>& checks);
 
 /// Indented by one, with a line break at the end. Bytes of names that are no UTF-8 become U+FFFD,
-/// as JSON has no other place for them.
+/// since JSON cannot hold them otherwise.
 [[nodiscard]] std::string json_text(const nlohmann::json& json);
 
 /// Numbers of a report: finer than any tolerance, free of rounding noise in the last digits.

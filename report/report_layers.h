@@ -1,4 +1,4 @@
-/// Several layers in one report: what each adds, and what they are together.
+/// Figures of several layers in one report, of each and of all together.
 #pragma once
 
 #include <optional>
@@ -18,21 +18,21 @@ struct LayerFigures {
     double mean_thickness_mm = 0.0;  ///< over the wall
     double most_thickness_mm = 0.0;
     double fibre_m = 0.0;
-    double mass_g = 0.0;   ///< of the tow as it is laid
-    double scrap_m = 0.0;  ///< of the fibre, what lies in turns and is cut off
+    double mass_g = 0.0;   ///< of the laid tow
+    double scrap_m = 0.0;  ///< fibre in turns, which is cut off
     double time_s = 0.0;
-    std::optional<double> price{};  ///< of the tow, where the job says what a kilogram costs
+    std::optional<double> price{};  ///< of the tow, where the job gives a price per kilogram
 };
 
 /// \pre the layer has a plan
 [[nodiscard]] LayerFigures figures_of(const WoundLayer& layer);
 
-/// What adds up, and its price. The angle is left at 0; the thickness of several layers is that of
-/// the sum per vertex.
+/// Sums over all layers, and their price. The angle is left at 0; the thickness of several layers
+/// is that of the sum per vertex.
 [[nodiscard]] LayerFigures figures_of_all(const Run& run);
 
-/// The least fibre that is known to be needed, turns included: of the layers and walls that have a
-/// bound. 0 where one has none.
+/// Lower bound of the fibre needed, turns included: of the layers and walls that have a bound. 0
+/// where one has none.
 [[nodiscard]] double least_fibre_m(const Run& run);
 
 [[nodiscard]] FibreUse use_of_fibre(const WoundLayer& layer);
@@ -43,23 +43,24 @@ struct LayerFigures {
 /// "leading" or "lagging".
 [[nodiscard]] const char* word_of(BandOrder order);
 
-/// Adds "cost": fibre, mass, scrap and time of all that is wound, and how little fibre would do.
+/// Adds "cost": fibre, mass, scrap and time of all that is wound, and the lower bound of the fibre.
 void add_cost_report(nlohmann::json& report, const Run& run);
 
 /// Adds "plan", "program" and "laminate" of all layers together, and for each of "layers" its
 /// figures.
 void add_laminate_report(nlohmann::json& report, const Run& run);
 
-/// How little fibre would do, and by what share more is laid. \param factors as FibreUse has them
+/// Lower bound of the fibre, and the share by which more is laid. \param factors as FibreUse has
+/// them
 [[nodiscard]] nlohmann::json bound_report(double least_factor, double factor);
 
-/// Adds "walls": those of the job's layers that are walls, as they lie there.
+/// Adds "walls": the job's layers that are walls, as laid.
 void add_walls_report(nlohmann::json& report, const Run& run);
 
-/// Of each wall: how thick it is, what it took, and how little it could take.
+/// Prints for each wall its thickness, its fibre and the lower bound of that.
 void print_walls(std::ostream& out, const Run& run);
 
-/// A line for each layer and one for all.
+/// Prints a line for each layer and one for all.
 void print_laminate(std::ostream& out, const Run& run);
 
 }  // namespace meshwind

@@ -13,8 +13,9 @@
 
 namespace meshwind {
 
-/// file, unit_mm, unit_rule, triangles, file_to_mandrel (4x4, rows), axis, rims, area_mm2 (of what
-/// is wound), regions, repairs, smooth_fit, remarks. Rims and lengths in the mandrel frame, mm.
+/// file, unit_mm, unit_rule, triangles, file_to_mandrel (4x4, rows), axis, rims, area_mm2 (of the
+/// winding surface), regions, repairs, smooth_fit, remarks. Rims and lengths in the mandrel frame,
+/// mm.
 [[nodiscard]] nlohmann::json mandrel_report(const Mandrel& mandrel);
 
 /// The object "revolution": residual_mm, length_mm, ends, parts; only why_not where there is none.

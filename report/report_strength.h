@@ -1,4 +1,4 @@
-/// What a finite element model of a run is made from, and what is told of it.
+/// Inputs and report of a finite element model of a run.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct ShellRequest {
     std::filesystem::path run;  ///< folder of a run, or its layup.json
     std::filesystem::path material;
     ShellLoads loads;
-    double merge_deg = 5.0;       ///< plies of a layer within that are one
+    double merge_deg = 5.0;       ///< plies of a layer within this angle are merged
     std::size_t most_plies = 15;  ///< of an element: memory grows with it
 };
 
@@ -30,16 +30,16 @@ struct ShellWall {
 /// \throws Error as read_shell_mesh() and read_wall_material()
 [[nodiscard]] ShellWall read_shell_wall(const ShellRequest& request);
 
-/// Material, loads, elements, plies and rims.
+/// JSON of material, loads, elements, plies and rims.
 [[nodiscard]] std::string shell_wall_json(const ShellWall& wall);
 void print_shell_wall(std::ostream& out, const ShellWall& wall);
 
-/// That, and the weakest ply of all and of each layer, with its place, angle and stresses.
+/// The same, and the weakest ply of all and of each layer, with its place, angle and stresses.
 [[nodiscard]] std::string strength_json(const ShellWall& wall, const Strength& strength);
 void print_strength(std::ostream& out, const ShellWall& wall, const Strength& strength);
 
-/// A page for the browser: the wall by utilisation and thickness, its weakest places, all that is
-/// printed. Empty where the program was built without pages. The header of its data
+/// A page for the browser: the wall by utilisation and thickness, its weakest places, and the
+/// printed text. Empty where the program was built without pages. The header of its data
 /// (page_arrays.h) has "strength" (strength_json), "text" (print_strength) and "name"; arrays,
 /// positions in the mandrel's frame, mm:
 ///

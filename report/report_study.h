@@ -1,4 +1,4 @@
-/// A study of mesh size: study.json, the files of its folder, and the table on the terminal.
+/// Report of a mesh-size study: study.json, the files of its folder, and the table on the terminal.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,10 @@ namespace meshwind {
 /// docs/study.md. Timing is left out: it differs from run to run.
 [[nodiscard]] std::string study_json(const StudyOutcome& outcome);
 
-/// The plot and the tables, for a browser: one file that asks no network.
+/// The plot and the tables, for a browser: one file that needs no network.
 [[nodiscard]] std::string study_page(const StudyOutcome& outcome);
 
-/// The table and what it says about the advice of fu_2009_post_processing.
+/// Prints the table and its verdict on the advice of fu_2009_post_processing.
 void print_study(std::ostream& out, const StudyOutcome& outcome,
                  const std::filesystem::path& folder);
 

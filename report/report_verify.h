@@ -9,18 +9,18 @@
 
 namespace meshwind {
 
-/// Text of verify.json; keys as in docs/files.md. \param reading_s that the inputs took
+/// Text of verify.json; keys as in docs/files.md. \param reading_s time spent on reading the inputs
 [[nodiscard]] std::string verify_json(const VerifyOutcome& outcome, double reading_s);
 
-/// What is left of a program that stopped, as JSON; keys as in docs/files.md.
-/// \param file that it was written to, empty where a check failed
+/// The rest of a stopped program, as JSON; keys as in docs/files.md.
+/// \param file its file, empty where a check failed
 [[nodiscard]] std::string resume_json(const ResumedProgram& rest, const std::string& program,
                                       const std::string& file);
 
-/// Where the program goes on, what is left of it, the checks.
+/// Prints the block where the program continues, its rest and the checks.
 void print_resume(std::ostream& out, const ResumedProgram& rest, const std::string& program);
 
-/// What was wound, the checks, and where the program first goes wrong.
+/// Prints the wound fibre, the checks, and the first wrong block of the program.
 void print_verify(std::ostream& out, const VerifyOutcome& outcome);
 
 }  // namespace meshwind

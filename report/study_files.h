@@ -1,4 +1,4 @@
-/// The files of a mesh-size study.
+/// Writes the files of a mesh-size study.
 #pragma once
 
 #include <string>

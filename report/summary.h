@@ -1,4 +1,4 @@
-/// The summary of a run that a user reads on the terminal.
+/// Prints the summary of a run on the terminal.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@ namespace meshwind {
 
 enum class Detail { Brief, Full };
 
-/// Brief: ten lines for one layer. The part with unit and size, what is laid in the trade's words,
-/// how it covers and how thick, fibre with mass and scrap, time, what failed and where, where the
-/// files are. Full: all figures and every check as well.
+/// Brief: ten lines for one layer. The part with unit and size, the lay-up in the trade's words,
+/// its coverage and thickness, fibre with mass and scrap, time, failures with their places, and the
+/// folder of the files. Full: all figures and every check as well.
 void print_summary(std::ostream& out, const Run& run, const std::filesystem::path& folder,
                    Detail detail);
 

@@ -1,4 +1,4 @@
-/// The error of the tangent rules on an exact helix: the law without any mesh.
+/// Errors of the tangent rules on an exact helix, without any mesh.
 #pragma once
 
 #include "study/path_reference.h"

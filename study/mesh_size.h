@@ -1,4 +1,4 @@
-/// How accurate fibre paths and the machine's motion are on meshes of different edge lengths.
+/// Study of mesh size: accuracy of fibre paths and machine motion over the edge length.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace meshwind {
 
-/// A way to trace, as the study names it.
+/// A tracing method with its name in the study.
 struct PathMethod {
     const char* name;
     TraceMethod method;
 };
 
-/// Every way that geodesic/trace.h offers.
+/// Every method of geodesic/trace.h.
 [[nodiscard]] std::span<const PathMethod> path_methods();
 
-/// What is wrong on a mesh.
+/// Error measured on a mesh.
 ///  PathEnd       mm: distance of the path's end from that of the exact path of the same length.
 ///  WindingAngle  rad: angle between path and exact path at the same arc length, the exact one
 ///                turned by the minimal rotation into the tangent plane; on a cylinder the
@@ -94,7 +94,7 @@ struct MeshSizeStudy {
 [[nodiscard]] MeshSizeStudy mesh_size_study(std::span<const StudyMandrel> mandrels,
                                             const MeshSizeOptions& options);
 
-/// Slope of log rms over log mean edge by least squares; nothing for fewer than two meshes with an
+/// Slope of log rms over log mean edge by least squares; none for fewer than two meshes with an
 /// error above 0.
 [[nodiscard]] std::optional<double> fitted_order(const MeshSizeLine& line);
 

@@ -1,4 +1,5 @@
-/// What traced paths are measured against: fibre paths of one law on a surface known otherwise.
+/// Reference paths for traced ones: fibre paths of constant slip ratio on a surface known
+/// otherwise.
 #pragma once
 
 #include <memory>
@@ -64,7 +65,7 @@ public:
 /// tests/study/path_reference_test.cpp.
 [[nodiscard]] std::unique_ptr<PathReference> made_reference(std::string kind, MakeValues values);
 
-/// Traces on a mesh, for surfaces of which nothing better is known.
+/// Traces on a mesh, for surfaces without a better reference.
 /// \param surface must outlive the reference
 [[nodiscard]] std::unique_ptr<PathReference> mesh_reference(const Surface& surface,
                                                             const TraceOptions& options);
@@ -73,8 +74,8 @@ public:
 [[nodiscard]] RayQuery query_of(const Surface& surface);
 [[nodiscard]] SurfacePoint nearest_point(const RayQuery& query, const Eigen::Vector3d& near_mm);
 
-/// Where a trace must start to begin at a point of the ideal surface: the facet's point nearest to
-/// it by TraceMethod::Walk, the one whose patch lies there by TraceMethod::Patches (to 1e-9 of an
+/// Start of a trace that begins at a point of the ideal surface: the facet's point nearest to it
+/// for TraceMethod::Walk, the one whose patch lies there for TraceMethod::Patches (to 1e-9 of an
 /// edge; the nearest one is off by the third order in the edge length).
 [[nodiscard]] SurfacePoint start_at(const Surface& surface, const RayQuery& query,
                                     const Eigen::Vector3d& point_mm, TraceMethod method);

@@ -1,4 +1,4 @@
-/// The parts of a study: meshes of any edge length of one surface, and what is exact on it.
+/// Mandrels of a study: meshes of any edge length of one surface, and its exact paths.
 #pragma once
 
 #include <array>
@@ -23,13 +23,13 @@ struct StudyMeshOptions {
 
 struct StudyMandrel {
     std::string name;             ///< "cylinder-70", "torus", "tee.stl"
-    std::string reference_words;  ///< what the paths are compared with, in a few words
+    std::string reference_words;  ///< reference of the paths, in a few words
     std::unique_ptr<PathReference> reference;
-    /// \throws InputError make.* or study.edge when the surface cannot be shown with such edges
+    /// \throws InputError make.* or study.edge when the surface cannot be meshed with such edges
     std::function<Surface(const StudyMeshOptions&)> mesh;
     TriangleSoup samples;              ///< triangles on or near the surface: where paths may start
-    std::unique_ptr<Mandrel> mandrel;  ///< of a file; what `mesh` uses
-    std::unique_ptr<Surface> refined;  ///< of a file; what `reference` uses
+    std::unique_ptr<Mandrel> mandrel;  ///< of a file; used by `mesh`
+    std::unique_ptr<Surface> refined;  ///< of a file; used by `reference`
 };
 
 /// Cylinder around z, 400 mm long, against the closed form. \throws InputError make.not_positive
@@ -48,23 +48,23 @@ inline constexpr std::array kStudyRadii_mm = {20.0, 70.0, 450.0};
 [[nodiscard]] std::vector<StudyMandrel> known_studies(const std::string& name,
                                                       std::span<const double> radii_mm);
 
-/// A part of which only its mesh is known: the mesh and coarser ones of it, against paths by
+/// A part known only by its mesh: that mesh and coarser ones of it, against paths by
 /// TraceMethod::Patches on the mesh refined once. \throws InputError refine.too_many
 [[nodiscard]] StudyMandrel file_study(Mandrel mandrel);
 
-/// A CAD part: the wall that is wound of it with triangles of each edge length, against paths on
-/// its exact faces, as triangles of a third of the shortest have them (81 times as near, by the
-/// fourth order). \param shortest_mm of the study \throws Error as load_mandrel()
+/// A CAD part: its winding surface with triangles of each edge length, against paths on its exact
+/// faces, approximated by triangles of a third of the shortest (81 times as near, by the fourth
+/// order). \param shortest_mm of the study \throws Error as load_mandrel()
 [[nodiscard]] StudyMandrel cad_study(const std::filesystem::path& file, double shortest_mm);
 
-/// By the ending of its name: cad_study() or file_study().
+/// cad_study() or file_study(), by the ending of the file's name.
 [[nodiscard]] StudyMandrel study_of_file(const std::filesystem::path& file, double unit_mm,
                                          double shortest_mm);
 
 /// The winding surface of triangles, creases and rims as the import finds them.
 [[nodiscard]] Surface frozen_surface(const TriangleSoup& soup);
 
-/// Where a path starts, on the reference's surface, into any direction in it.
+/// Random starts of paths on the reference's surface, in any direction in it.
 /// \return `count` starts, spread evenly by area; the same for the same seed
 [[nodiscard]] std::vector<CurveState> random_starts(const StudyMandrel& mandrel, int count,
                                                     std::uint64_t seed);

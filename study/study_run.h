@@ -1,4 +1,4 @@
-/// Which mesh a part needs: a study of mandrels against their references.
+/// Runs a mesh-size study of mandrels against their references: the mesh that a part needs.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace meshwind {
 
 struct StudyOutcome {
     MeshSizeOptions options;
-    std::vector<std::pair<std::string, std::string>> references;  ///< mandrel, compared with what
+    std::vector<std::pair<std::string, std::string>> references;  ///< mandrel, its reference
     MeshSizeStudy study;
 };
 
@@ -19,7 +19,7 @@ struct StudyOutcome {
 [[nodiscard]] StudyOutcome run_study(const std::vector<StudyMandrel>& mandrels,
                                      const MeshSizeOptions& options);
 
-/// The number a reader gets for an error, degrees for angles; and its unit: "mm", "deg", "-".
+/// Number shown for an error, degrees for angles; and its unit: "mm", "deg", "-".
 [[nodiscard]] double shown_error(Quantity quantity, double error);
 [[nodiscard]] std::string unit_of(Quantity quantity);
 

@@ -1,4 +1,4 @@
-/// How the fibre's direction is taken from landing points, and what an error of it does at the eye.
+/// Rules for the fibre's tangent from landing points, and the resulting error at the eye.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// Even triangles over a part whose faces are known exactly.
+/// Even remeshing of a part whose faces are known exactly.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace meshwind {
 
-/// The faces of a part, by number. A face's surface goes on beyond its borders as far as it can.
+/// The faces of a part, by number. A face's surface is extended beyond its borders as far as
+/// possible.
 class ExactFaces {
 public:
     ExactFaces() = default;
@@ -36,11 +37,11 @@ public:
                                                  double reach_mm) = 0;
 };
 
-/// Even triangles (mesh/even/even_mesh.h) with borders of faces along their edges. Vertices that
-/// are of one face lie on its surface, those on a border on its edge, others are the given ones.
-/// \param start oriented manifold, mm, vertices on the faces; it may be of long and narrow
-/// triangles \param face of each of them \param edge_mm longest edge; 0: by the part's size
-/// \return without what only the file knows: kinds of faces, units
+/// Even triangles (mesh/even/even_mesh.h) with borders of faces along their edges. Vertices of one
+/// face lie on its surface, those on a border on its edge; others are the given ones.
+/// \param start oriented manifold, mm, vertices on the faces; its triangles may be long and narrow
+/// \param face of each of them \param edge_mm longest edge; 0: by the part's size
+/// \return without data that only the file holds: kinds of faces, units
 [[nodiscard]] CadMesh even_part(const TriangleSoup& start, std::span<const std::int32_t> face,
                                 ExactFaces& exact, double edge_mm);
 

@@ -1,4 +1,4 @@
-/// A smooth surface where some vertices of a mesh are free, or some triangles missing.
+/// Fairing of free vertices and smooth filling of holes in a mesh.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace meshwind {
 /// has no solution; the soup is then as it was. Source: botsch_2004_modeling, as CGAL has it.
 [[nodiscard]] bool fair(TriangleSoup& soup, const std::vector<char>& free);
 
-/// Such a surface in a hole of the mesh: new points and faces stand after the given ones.
+/// Fills a hole of the mesh with such a surface: new points and faces follow the given ones.
 /// \param edge_from, edge_to points of an edge of a face, from the one to the other in that face's
 /// order, on the hole's border \return false as above, also where the edge is on no border
 [[nodiscard]] bool fill_hole(TriangleSoup& soup, std::int32_t edge_from, std::int32_t edge_to);

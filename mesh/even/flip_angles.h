@@ -1,4 +1,4 @@
-/// Smallest angles of triangles, before and after the edge between two of them is turned.
+/// Smallest angles of two triangles before and after a flip of the edge between them.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct FlipCosines {
     double after;
 };
 
-/// Of the two triangles on an edge from a to b, the worse one.
+/// Worse cosine of the two triangles on an edge from a to b, before and after its flip.
 /// \param c, d their third corners, left and right of the edge
 [[nodiscard]] inline FlipCosines flip_cosines(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                               const Eigen::Vector3d& c, const Eigen::Vector3d& d) {

@@ -1,4 +1,4 @@
-/// A part with faces struck out, and the hole that further ones would leave.
+/// A part with some faces removed, and the hole left by removing more.
 /// Included by .cpp files of this folder only.
 #pragma once
 
@@ -25,7 +25,7 @@ struct StruckPart {
     std::vector<char> struck;                             ///< per face
 };
 
-/// Nothing is struck out of it. \param kept per region: whether it is wall
+/// The part with no face struck out. \param kept per region: whether it is wall
 [[nodiscard]] StruckPart unstruck(const LabelledMesh& part, const std::vector<char>& kept);
 
 /// Unit normal of one face.
@@ -39,16 +39,16 @@ struct BorderEdge {
     std::size_t to = 0;
 };
 
-/// What faces that go leave open.
+/// The hole left by removed faces.
 struct Hole {
     std::vector<BorderEdge> border;  ///< one loop
     std::int32_t region = 0;         ///< around it
 };
 
-/// None where the faces leave more than one hole, or one whose wall around is not one: in several
-/// regions, ended by what is no wall or struck out, or turning too much.
+/// The hole that `gone` leaves. None for more than one hole, or where the wall around it is not
+/// one: in several regions, bounded by faces off the wall or struck out, or turning too much.
 /// \param gone faces that go; some are added where the hole's outline touches itself
-/// \param near_mm over which the wall around may hardly turn
+/// \param near_mm distance over which the wall around may hardly turn
 [[nodiscard]] std::optional<Hole> hole_of(const StruckPart& part, std::set<std::int32_t>& gone,
                                           double near_mm);
 

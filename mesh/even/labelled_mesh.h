@@ -1,4 +1,4 @@
-/// Triangles with what segmentation found of them.
+/// Triangles labelled with their region, creases and shape.
 #pragma once
 
 #include <array>

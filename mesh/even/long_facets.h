@@ -1,4 +1,4 @@
-/// Long facets along the rulings of cylinders and cones, of which CAD programs make one row from
+/// Subdivides long facets along the rulings of cylinders and cones, as CAD programs make them from
 /// end to end.
 #pragma once
 
@@ -16,11 +16,11 @@ struct LongFacets {
     double residual_mm = 0.0;  ///< largest distance of a vertex from its shape
 };
 
-/// Halves edges above `edge_mm` of the facets that lie on one exact plane, cylinder or cone, or are
-/// several times as long as high and lie with those beside them on one cylinder or cone as nearly
-/// as facets do: the new vertices lie on it. Other facets stay, as do lines, but for straight
-/// creases between exact shapes. \param kept per region: whether it is wall \param exact those that
-/// `part.shape` names
+/// Halves edges above `edge_mm` of two kinds of facets: those on one exact plane, cylinder or cone,
+/// and those several times as long as high that lie with their neighbours on one cylinder or cone
+/// as nearly as facets do. The new vertices lie on it. Other facets stay, as do lines, except
+/// straight creases between exact shapes. \param kept per region: whether it is wall \param exact
+/// shapes that `part.shape` names
 [[nodiscard]] LongFacets halve_long_facets(const LabelledMesh& part, const std::vector<char>& kept,
                                            double edge_mm,
                                            const std::vector<WallShape>& exact = {});

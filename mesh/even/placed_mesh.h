@@ -1,4 +1,4 @@
-/// A part's triangles while they are made anew, with where each vertex may go.
+/// A part's mesh during remeshing, with a constraint for each vertex: inside, on a line, fixed.
 /// Included by .cpp files of this folder only.
 #pragma once
 
@@ -29,7 +29,7 @@ struct CornerLine {
 };
 
 /// The triangles with a place for each vertex. Lines run between corners: vertices where they meet,
-/// end or bend. One that closes without a corner, or at one alone, gets corners.
+/// end or bend. A closed line with one corner or none gets corners.
 class PlacedMesh {
 public:
     /// Wanted lengths are 0. \param kept per region: whether it is wall
@@ -43,7 +43,7 @@ public:
         return work.mesh.property(place_, v);
     }
     [[nodiscard]] const WallLine& curve(std::int32_t line) const;
-    /// Ways of both ends of an edge along its line.
+    /// Positions of both ends of an edge along its line.
     [[nodiscard]] std::array<double, 2> ways_of(WorkMesh::Edge edge) const;
 
 private:

@@ -1,4 +1,4 @@
-/// Where a ball that rolls over a wall touches it.
+/// Finds the places of a wall that a rolling ball cannot touch.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace meshwind {
 enum class WallSide { Outside, Inside };
 
 /// Per face 1 where a ball of the radius cannot touch its middle: from outside in crotches, at the
-/// foot of steps and in grooves; from inside in what stands out, when it is narrower than the ball.
+/// foot of steps and in grooves; from inside in protrusions narrower than the ball.
 /// \param wall oriented, mm \param radius_mm > 0
 [[nodiscard]] std::vector<char> out_of_reach(const TriangleSoup& wall, double radius_mm,
                                              WallSide side);

@@ -1,4 +1,4 @@
-/// Cylinders and cones of revolution, and balls, through given points.
+/// Least-squares fits of cylinders, cones of revolution and balls to points.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,10 @@ struct RuledShape {
     [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
     /// Distance of a point near the surface from it, >= 0.
     [[nodiscard]] double distance_mm(const Eigen::Vector3d& p) const;
-    /// Unit normal away from the axis, on the line along the surface past `p`.
+    /// Unit normal away from the axis, on the ruling past `p`.
     /// \pre p is not on the axis
     [[nodiscard]] Eigen::Vector3d normal_at(const Eigen::Vector3d& p) const;
-    /// Unit vector along that line. \pre p is not on the axis
+    /// Unit vector along that ruling. \pre p is not on the axis
     [[nodiscard]] Eigen::Vector3d ruling_at(const Eigen::Vector3d& p) const;
 };
 
@@ -34,7 +34,7 @@ struct RuledFacet {
 };
 
 /// Least squares of the distances (Gauss and Newton), begun from the facets: their normals lie on a
-/// cone about the axis and meet it. None where the facets turn too little to tell an axis.
+/// cone about the axis and meet it. None where the facets turn too little to determine an axis.
 [[nodiscard]] std::optional<RuledShape> fit_ruled_shape(std::span<const Eigen::Vector3d> points_mm,
                                                         std::span<const RuledFacet> facets);
 
@@ -46,7 +46,7 @@ struct BallShape {
     double radius_mm = 0.0;
 };
 
-/// Least squares of |p - c|^2 = r^2. None where the points tell no ball.
+/// Least squares of |p - c|^2 = r^2. None where the points determine no ball.
 [[nodiscard]] std::optional<BallShape> fit_ball(std::span<const Eigen::Vector3d> points_mm);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Creases where exact shapes meet.
+/// Marks creases where exact shapes meet.
 #pragma once
 
 #include <vector>

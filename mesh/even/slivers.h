@@ -1,4 +1,4 @@
-/// Triangles too narrow to tell a direction.
+/// Triangle quality, and removal of slivers from a wall.
 #pragma once
 
 #include <vector>
@@ -21,11 +21,10 @@ namespace meshwind {
 [[nodiscard]] double share_below(const LabelledMesh& part, const std::vector<char>& kept,
                                  double quality);
 
-/// The wall without its narrow triangles, as far as that can be done by leaving out vertices and
-/// turning edges: every vertex left is one of the given ones. Short edges of narrow triangles
-/// collapse where they are below `short_mm` and the vertex that goes is no farther than `off_mm`
-/// from the triangles that stay; long ones between nearly coplanar facets turn. Lines stay lines.
-/// The outcome depends on the input alone.
+/// Removes narrow triangles of the wall as far as edge collapses and flips can: every remaining
+/// vertex is one of the given ones. Short edges of narrow triangles collapse where they are below
+/// `short_mm` and the removed vertex is at most `off_mm` from the remaining triangles; long ones
+/// between nearly coplanar facets flip. Lines stay lines. The outcome depends on the input alone.
 [[nodiscard]] LabelledMesh without_slivers(const LabelledMesh& part, const std::vector<char>& kept,
                                            double short_mm, double off_mm);
 

@@ -1,4 +1,4 @@
-/// Ends of a wall as circles on their legs.
+/// Trims the ends of a wall to circles on their legs.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ struct SquareEnds {
     std::vector<EndCut> cuts;
 };
 
-/// Cuts off what is no part of an end's leg: rounded lips, fillets and chamfers that lead from the
-/// leg to its end face or bore, tabs and notches. The leg is the cylinder or cone of the wall
+/// Cuts off all that is no part of an end's leg: rounded lips, fillets and chamfers that lead from
+/// the leg to its end face or bore, tabs and notches. The leg is the cylinder or cone of the wall
 /// beside the rim; the cut is square to its axis, where the last of it begins. An end that would
 /// lose more than a quarter of its radius stays as it is, and so does one without such a leg (a
 /// dome, an oblique end), or with a collar, which stands out from its leg.

@@ -1,4 +1,4 @@
-/// What of a wall hangs together.
+/// Connected pieces of a wall.
 #pragma once
 
 #include <vector>

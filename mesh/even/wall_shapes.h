@@ -1,4 +1,4 @@
-/// Planes, balls, cylinders and cones that a file's facets lie on exactly.
+/// Detects planes, balls, cylinders and cones on which a file's facets lie exactly.
 #pragma once
 
 #include <cmath>
@@ -52,10 +52,10 @@ struct WallShapes {
     std::vector<std::int32_t> of_face;  ///< per face of the part, -1: none
 };
 
-/// The shapes of the wall's facets, begun from the largest ones. A shape takes what hangs together,
-/// without a crease, of facets whose vertices lie on it but for rounding and whose normals are its
-/// own. A ring of facets between two circles lies on a cone as well as on a fillet: it is a cone
-/// where it is longer than what it turns into, or turns to different sides.
+/// The shapes of the wall's facets, begun from the largest ones. A shape takes connected facets,
+/// across no crease, whose vertices lie on it but for rounding and whose normals are its own. A
+/// ring of facets between two circles lies on a cone as well as on a fillet: it is a cone where it
+/// is longer than what it turns into, or turns to different sides.
 /// \param kept per region: whether it is wall
 [[nodiscard]] WallShapes find_wall_shapes(const LabelledMesh& part, const std::vector<char>& kept);
 

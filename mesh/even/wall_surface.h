@@ -16,8 +16,8 @@ namespace meshwind {
 /// \return frozen; its faces are those of the wall in the part's order
 [[nodiscard]] Surface frozen_wall(const LabelledMesh& part, const std::vector<char>& kept);
 
-/// Largest principal curvature per vertex, 1/mm, the median over a vertex and those next to it: one
-/// wrong fit does not tell.
+/// Largest principal curvature per vertex, 1/mm, the median over a vertex and its neighbours: one
+/// wrong fit has no effect.
 [[nodiscard]] std::vector<double> vertex_curvatures_per_mm(const Surface& surface);
 
 /// Points of a wall's smooth surface nearest to given ones. Thread-safe.
@@ -32,7 +32,7 @@ public:
         Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  ///< on the smooth surface
     };
     [[nodiscard]] bool has(std::int32_t region) const { return part_.count(region) != 0; }
-    /// \param region that the surface has: its faces alone count
+    /// \param region of the surface: only its faces count
     [[nodiscard]] Foot nearest(const Eigen::Vector3d& point, std::int32_t region) const;
 
     [[nodiscard]] const SmoothShape& shape() const { return shape_; }
@@ -48,8 +48,8 @@ private:
     double reach_mm_ = 0.0;
 };
 
-/// A chain of edges along which a wall ends or has a crease, from corner to corner; one that closes
-/// has its first vertex as corner. Places are told by the length of way along its chords.
+/// A chain of edges along which a wall ends or has a crease, from corner to corner; a closed one
+/// has its first vertex as corner. Positions are lengths along its chords.
 class WallLine {
 public:
     /// An edge of a face of the frozen wall.
@@ -62,7 +62,7 @@ public:
     explicit WallLine(std::vector<Step> steps);
 
     [[nodiscard]] double length_mm() const { return begin_mm_.back(); }
-    /// On the curve through the line's vertices. \param way_mm clamped to the line
+    /// Point on the curve through the line's vertices. \param way_mm clamped to the line
     [[nodiscard]] Eigen::Vector3d at(const SmoothShape& shape, double way_mm) const;
 
 private:

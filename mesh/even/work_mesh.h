@@ -1,4 +1,4 @@
-/// A part's triangles while they are made anew: topology with what belongs to faces and edges.
+/// Mesh data structure for remeshing: topology with labels of faces and edges.
 /// Included by .cpp files of this folder only.
 #pragma once
 
@@ -35,13 +35,13 @@ public:
     using Face = Mesh::FaceHandle;
     using Halfedge = Mesh::HalfedgeHandle;
 
-    /// Of a face.
+    /// Label of a face.
     struct FaceLabel {
         std::int32_t region = 0;
         std::int32_t shape = -1;  ///< index of the cylinder or cone it lies on, or -1
         bool wall = false;
     };
-    /// Of an edge.
+    /// Label of an edge.
     struct EdgeLabel {
         std::int32_t line = kNoLine;
         bool crease = false;
@@ -68,7 +68,7 @@ public:
     void move(Vertex v, const Eigen::Vector3d& p) { mesh.set_point(v, {p.x(), p.y(), p.z()}); }
     [[nodiscard]] double length(Edge edge) const { return mesh.calc_edge_length(edge); }
     [[nodiscard]] bool is_wall(Face face) const { return face.is_valid() && label(face).wall; }
-    /// Whether a face of the wall is on one side at least.
+    /// Whether at least one side is a face of the wall.
     [[nodiscard]] bool touches_wall(Edge edge) const;
     [[nodiscard]] bool is_line(Edge edge) const { return label(edge).line != kNoLine; }
     [[nodiscard]] int lines_at(Vertex v) const;
@@ -86,10 +86,10 @@ public:
     /// leaves there.
     [[nodiscard]] double collapse_leaves_mm(Halfedge half) const;
 
-    /// Whether the edge between two triangles of one region of the wall may be turned without
+    /// Whether the edge between two triangles of one region of the wall may be flipped without
     /// turning one of them by more than the angle of `cosine`.
     [[nodiscard]] bool may_flip(Edge edge, double cosine) const;
-    /// Turns it. Of different shapes, neither triangle has one afterwards.
+    /// Flips it. Triangles of different shapes have none afterwards.
     void flip(Edge edge);
     /// Cosine of the smallest angle of the two triangles, before and after.
     [[nodiscard]] FlipCosines angles(Edge edge) const;
@@ -97,7 +97,7 @@ public:
     /// Whether a vertex may be moved without turning a triangle by more than the angle of `cosine`.
     [[nodiscard]] bool may_move(Vertex v, const Eigen::Vector3d& target, double cosine) const;
 
-    /// Drops what was removed, and returns the part.
+    /// Erases removed elements, and returns the part.
     [[nodiscard]] LabelledMesh part();
 
 private:

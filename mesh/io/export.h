@@ -1,4 +1,4 @@
-/// Triangles as the bytes of a mesh file.
+/// Writes triangles to mesh files: STL, OBJ, PLY, OFF.
 #pragma once
 
 #include <filesystem>

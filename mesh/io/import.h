@@ -1,4 +1,4 @@
-/// Triangles from mesh files, in the units and the frame of the file.
+/// Reads triangles from mesh files (STL, OBJ, PLY, OFF), in the units and the frame of the file.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace meshwind {
 /// the byte; Interrupted
 [[nodiscard]] TriangleSoup read_triangles(const std::filesystem::path& file);
 
-/// The bytes of a file of a part. \throws as read_triangles() for a file that cannot be read
+/// Reads the bytes of a part's file. \throws as read_triangles() for a file that cannot be read
 [[nodiscard]] std::string read_part_file(const std::filesystem::path& file);
 
 /// ".stl" of "PART.STL"; empty without an ending.

@@ -1,5 +1,5 @@
-/// Points and polygons of each mesh format. Nothing but the given bytes is read, time and memory
-/// are linear in them, and every count and index is checked.
+/// Parsers of the mesh formats: points and polygons. Nothing but the given bytes is read, time and
+/// memory are linear in them, and every count and index is checked.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace meshwind {
 
-/// Wavefront OBJ: `v` and `f`. What else the format has (normals, groups, materials, lines, curves)
-/// is passed over; files that it names are not opened.
+/// Wavefront OBJ: `v` and `f`. Other statements (normals, groups, materials, lines, curves) are
+/// skipped; files that it names are not opened.
 /// \param file name for the errors
 /// \throws InputError mesh.bad_line, mesh.bad_index, mesh.large_polygon; Interrupted
 [[nodiscard]] PolygonSoup read_obj(std::string_view bytes, const std::string& file);
 
-/// OFF as text, also with normals, colours or texture (NOFF, COFF, STOFF), which are passed over.
+/// OFF as text, also with normals, colours or texture (NOFF, COFF, STOFF), which are skipped.
 /// \throws InputError as read_obj() and mesh.not_a_mesh, mesh.truncated; Interrupted
 [[nodiscard]] PolygonSoup read_off(std::string_view bytes, const std::string& file);
 
 /// PLY as text or binary of either order of bytes: x, y, z of `vertex`, vertex_indices of `face` or
-/// of `tristrips`; other elements and properties are passed over.
+/// of `tristrips`; other elements and properties are skipped.
 /// \throws InputError as read_off(); Interrupted
 [[nodiscard]] PolygonSoup read_ply(std::string_view bytes, const std::string& file);
 

@@ -1,4 +1,4 @@
-/// Lines and words of a mesh file that is text, each with its place for the error that it causes.
+/// Tokeniser for mesh files in text: lines and words, each with its place for error messages.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace meshwind {
 
 /// How a format breaks its text into lines.
 struct MeshTextRules {
-    char comment = '\0';   ///< from here to the end of the line nothing is read; '\0': no such sign
+    char comment = '\0';   ///< starts a comment that runs to the end of the line; '\0': none
     bool joined = false;   ///< a line that ends in '\' goes on in the next one
     std::size_t skip = 0;  ///< bytes before the first line
     std::int64_t lines_before = 0;  ///< lines in those bytes
@@ -28,13 +28,13 @@ public:
     /// Takes the next word of the line; empty at its end.
     std::string_view word();
 
-    /// Takes the next word over the ends of lines; empty at the end of the text.
+    /// Takes the next word across line ends; empty at the end of the text.
     std::string_view word_of_text();
 
-    /// Passes over the rest of the line.
+    /// Skips the rest of the line.
     void pass_line();
 
-    /// Takes a number; "nan" and "inf" are numbers here, what is too large for a double is
+    /// Takes a number; "nan" and "inf" are numbers here, and values too large for a double are
     /// infinite. \param of for the error: what the number is one of, e.g. "a point's three
     /// coordinates" \throws InputError mesh.bad_line
     double number(std::string_view of);
@@ -67,7 +67,7 @@ private:
     bool started_ = false;
 };
 
-/// What is in quotes in an error: the word itself if it is short and printable.
+/// Text to quote in an error: the word itself if it is short and printable.
 [[nodiscard]] std::string shown(std::string_view word);
 
 /// The whole of `word` as a whole number. \return false if it is none or beyond 64 bits

@@ -44,7 +44,7 @@ public:
     virtual void begin_row() = 0;
     /// \throws InputError mesh.truncated, mesh.bad_line
     virtual double number(PlyType type) = 0;
-    /// The same, a whole number. \throws InputError mesh.bad_line for one that is none
+    /// Takes a whole number. \throws InputError mesh.bad_line for any other
     virtual std::int64_t integer(PlyType type) = 0;
     /// After each row of text nothing may be left on its line. \throws InputError mesh.bad_line
     virtual void end_row() = 0;

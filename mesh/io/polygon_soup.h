@@ -1,4 +1,4 @@
-/// Points and polygons as files hold them, and the triangles that polygons are split into.
+/// Points and polygons as files hold them, and the triangulation of polygons.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace meshwind {
 
-/// A polygon with more corners is refused: no surface of a part has one, and to split it takes the
+/// A polygon with more corners is refused: no surface of a part has one, and splitting it takes the
 /// square of their number.
 constexpr std::size_t kMaxCorners = 1000;
 
@@ -21,10 +21,10 @@ struct PolygonSoup {
     std::vector<std::size_t> ends;        ///< per polygon: where its corners end in `corners`
 };
 
-/// The words of mesh.large_polygon.
+/// Message of mesh.large_polygon.
 [[nodiscard]] std::string large_polygon_words();
 
-/// The words of mesh.bad_index. \param index as the file counts, from `first`
+/// Message of mesh.bad_index. \param index as the file counts, from `first`
 [[nodiscard]] std::string bad_index_words(std::int64_t index, std::int64_t first,
                                           std::size_t point_count);
 

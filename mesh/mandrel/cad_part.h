@@ -1,4 +1,4 @@
-/// What a CAD part's exact faces tell of the mandrel. Included by .cpp files of this folder only.
+/// Transfers a CAD part's exact faces to the mandrel. Included by .cpp files of this folder only.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@
 
 namespace meshwind {
 
-/// What is kept of a CAD part's faces becomes a region of its own. \param cad that the triangles
-/// are of, or nullptr \param words each means one face at least; empty: regions stay
+/// Makes the kept faces of a CAD part a region of their own. \param cad the triangles' part, or
+/// nullptr \param words each names at least one face; empty: regions stay
 /// \throws InputError mesh.no_such_face
 void keep_named_faces(const CadMesh* cad, const TriangleSoup& whole,
                       const std::vector<std::string>& words, const std::string& name,
                       Segmentation& segmentation);
 
-/// What the faces tell of the wall. \pre the CAD part outlives it
+/// The exact faces of the wall. \pre the CAD part outlives it
 struct ExactWall {
     const CadMesh& cad;
     ExactCorners corners;
@@ -31,15 +31,15 @@ struct ExactWall {
 };
 
 /// Marks borders of faces on the wall, see mark_bend_borders.
-/// \param cad that the triangles are of, or nullptr \param wall in the part's frame
+/// \param cad the triangles' part, or nullptr \param wall in the part's frame
 [[nodiscard]] std::optional<ExactWall> exact_wall(const CadMesh* cad, const TriangleSoup& whole,
                                                   const Segmentation& segmentation,
                                                   LabelledMesh& wall);
 
-/// The faces become the mandrel's. \param motion from the part's frame to the mandrel's
+/// Stores the faces in the mandrel. \param motion from the part's frame to the mandrel's
 void take_cad_faces(ExactWall&& exact, const Eigen::Isometry3d& motion, Mandrel& mandrel);
 
-/// Sewn and open edges, edges off their faces.
+/// Adds remarks on sewn edges, open edges and edges off their faces.
 void add_cad_remarks(const CadMesh& cad, Mandrel& mandrel);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// From a user's file to the surface that is wound: units, repair, regions, rims, spindle axis.
+/// Loads a mandrel from a user's file: units, repair, regions, rims, spindle axis.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,8 @@
 namespace meshwind {
 
 /// Reads, repairs, segments and freezes a mandrel file: triangles (STL, OBJ, PLY, OFF), outlines
-/// (mesh/profile/profile_file.h) or CAD (mesh/brep/read_cad.h), of which normals and curvature are
-/// exact.
-/// \throws IoError mesh.unreadable; InputError mesh.* with the file, the place and the mend
+/// (mesh/profile/profile_file.h) or CAD (mesh/brep/read_cad.h), with exact normals and curvature.
+/// \throws IoError mesh.unreadable; InputError mesh.* with the file, the place and the remedy
 [[nodiscard]] Mandrel load_mandrel(const std::filesystem::path& file,
                                    const MandrelOptions& options = {});
 

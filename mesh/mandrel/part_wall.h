@@ -1,4 +1,4 @@
-/// The wall of a part while its mandrel is read: found, laid out anew, filled up.
+/// Steps of loading a mandrel's wall: detection, remeshing, filling up.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace meshwind {
 
-/// What is wound with its ends and its spindle, still in the file's frame.
+/// The winding surface with its ends and its spindle, still in the file's frame.
 struct Wall {
     LabelledMesh kept;
     Rims rims;
@@ -28,7 +28,7 @@ struct Wall {
 /// Per region whether it is wall.
 [[nodiscard]] std::vector<char> kept_of(const std::vector<Region>& regions);
 
-/// Area and triangles of regions that have changed. What is cut off an end is an end cap.
+/// Updates area and triangles of changed regions. Pieces cut off an end are end caps.
 /// \param count of regions
 void count_regions(const TriangleSoup& whole, std::size_t count, Segmentation& segmentation);
 
@@ -36,24 +36,24 @@ void move(TriangleSoup& soup, const Eigen::Isometry3d& motion);
 void move(std::vector<Eigen::Vector3d>& points, const Eigen::Isometry3d& motion);
 void move(std::vector<Rim>& rims, const Eigen::Isometry3d& motion);
 
-/// \param axis_mm the spindle's, where it is given
+/// \param axis_mm spindle axis, where it is given
 [[nodiscard]] Wall find_wall(const TriangleSoup& whole, const Segmentation& segmentation,
                              const std::optional<MandrelOptions::Axis>& axis_mm);
 
-/// The part takes the place of the mandrel's whole.
+/// Replaces the mandrel's whole by the part.
 void take(LabelledMesh&& part, Mandrel& mandrel, Segmentation& segmentation);
 
-/// A body of revolution gets a wall in rings where the file's triangles are uneven. The spindle
-/// stays. \return whether it is one, and its rings are not too many
+/// Remeshes the wall of a body of revolution in rings where the file's triangles are uneven. The
+/// spindle stays. \return whether it is one, and its rings are not too many
 [[nodiscard]] bool make_rings(Mandrel& mandrel, Segmentation& segmentation, Wall& wall);
 
-/// The wall gets triangles of our own where the file's are uneven.
+/// Remeshes the wall with triangles of our own where the file's are uneven.
 void make_even(Mandrel& mandrel, Segmentation& segmentation, Wall& wall,
                const std::optional<MandrelOptions::Axis>& axis_mm,
                const std::optional<double>& details_mm);
 
-/// Fills up what a ball of the radius cannot touch: what is wound then is no more what the file's
-/// triangles stand for. A body of revolution stays one (rolled_meridian.h). The spindle stays.
+/// Fills up the places that a ball of the radius cannot touch: the winding surface then differs
+/// from the file's. A body of revolution stays one (rolled_meridian.h). The spindle stays.
 /// \throws InputError mesh.no_blend
 void blend(Mandrel& mandrel, Segmentation& segmentation, Wall& wall, double radius_mm,
            const std::string& name);

@@ -1,4 +1,4 @@
-/// Ends that are no circles: nothing turns round on a cylinder beyond them.
+/// Finds ends that are no circles: fibre cannot turn round on a cylinder beyond them.
 #pragma once
 
 #include <string>
@@ -19,10 +19,11 @@ inline constexpr double kMaxOffCircle = 0.05;
     return rim.circularity_mm <= kMaxOffCircle * rim.radius_mm;
 }
 
-/// Which rim, where, how far off, what may be the cause and what mends it. \pre rim of the mandrel
+/// Message: which rim, where, how far off, the possible cause and the remedy. \pre rim of the
+/// mandrel
 [[nodiscard]] std::string off_circle_words(const Mandrel& mandrel, const Rim& rim);
 
-/// Where the largest of a part's ends is that are angular, and what mends it. \pre there is one
+/// Message: place of the part's largest angular end, and the remedy. \pre there is one
 [[nodiscard]] std::string angular_end_words(const Mandrel& mandrel);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Lines and arcs of a DXF drawing. Included by .cpp files of this folder only.
+/// Reads lines and arcs of a DXF drawing. Included by .cpp files of this folder only.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ struct DrawnPiece {
 };
 
 struct DxfDrawing {
-    std::vector<DrawnPiece> pieces;  ///< as they come
+    std::vector<DrawnPiece> pieces;  ///< in file order
     double unit_mm = 0.0;            ///< 0: the drawing states none
 };
 

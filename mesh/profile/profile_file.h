@@ -1,4 +1,4 @@
-/// Bodies of revolution as their outline: a table of points, or a drawing of lines and arcs.
+/// Reads outlines of bodies of revolution: a table of points, or a drawing of lines and arcs.
 #pragma once
 
 #include <filesystem>
@@ -22,11 +22,11 @@ struct ProfileFile {
 [[nodiscard]] bool is_profile(const std::filesystem::path& file);
 
 /// Points in order, columns `x` (along the axis) and `r`, or `x_mm` and `r_mm`, which state the
-/// unit. They are of a smooth curve that goes through them, but where
+/// unit. They lie on one smooth curve, except where
 ///  - the outline turns by more than 30 degrees at a point, or column `crease` is 1: a crease;
 ///  - a chord is more than three times as long as those beside it, or goes on in the direction of
 ///    one of them to rounding, or column `line` is 1: a straight line to the next point. A curve
-///    that starts beside it goes on in its direction, if its first chord does not deny that.
+///    that starts beside it goes on in its direction, unless its first chord contradicts that.
 /// A point on the axis at either end is a smooth pole, or the tip of a cone.
 /// \param file name for the errors
 /// \throws InputError profile.column, profile.number, profile.points (fewer than two, more than
@@ -34,11 +34,11 @@ struct ProfileFile {
 [[nodiscard]] ProfileFile read_profile_csv(std::string_view text, const std::string& file);
 
 /// A DXF drawing as text (R12 and later) with X along the axis and Y the radius: LINE, ARC,
-/// POLYLINE and LWPOLYLINE with their bulges, in any order, which hang together from one end to
-/// the other. Lines on the axis, texts, points and dimensions are passed over. Where two pieces
-/// meet at more than half a degree there is a crease. $INSUNITS states the unit.
+/// POLYLINE and LWPOLYLINE with their bulges, in any order, connected from one end to the other.
+/// Lines on the axis, texts, points and dimensions are passed over. Where two pieces meet at more
+/// than half a degree there is a crease. $INSUNITS states the unit.
 /// \throws InputError profile.drawing (not a DXF, binary, cut off, an entity of another kind),
-/// profile.chain (pieces that do not hang together, or in a closed line) with the place,
+/// profile.chain (pieces that are not connected, or in a closed line) with the place,
 /// profile.radius, profile.points, profile.ends
 [[nodiscard]] ProfileFile read_profile_dxf(std::string_view text, const std::string& file);
 

@@ -30,7 +30,7 @@ inline OpenTriMesh open_mesh_of(const TriangleSoup& soup) {
     return mesh;
 }
 
-/// Drops what is marked as deleted. \post vertices and faces in the mesh's order
+/// Drops elements marked as deleted. \post vertices and faces in the mesh's order
 inline TriangleSoup soup_of(OpenTriMesh& mesh) {
     mesh.garbage_collection();
     TriangleSoup soup;

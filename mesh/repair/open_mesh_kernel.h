@@ -1,5 +1,5 @@
 /// The kernel of OpenMesh without its own assertions, which compare names of types at every access:
-/// with them a mesh is made and refined in one and a half times the time. Assertions of this
+/// they make building and refining a mesh take one and a half times as long. Assertions of this
 /// project stay. Included by .cpp files of this folder only.
 #pragma once
 

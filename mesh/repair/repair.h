@@ -1,4 +1,4 @@
-/// From a heap of welded triangles to an oriented manifold whose outside is known.
+/// Repairs welded triangles to an oriented manifold with its outside in front.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ inline constexpr double kDegenerateHeightShare = 1e-12;
 void repair(TriangleSoup& soup, const std::string& name, RepairReport& report);
 
 /// Gives each fan of faces around a vertex its own copy of the vertex, as is needed after faces
-/// were taken away. New copies stand behind the old points. \return number of copies made
+/// were removed. New copies follow the old points. \return number of copies made
 int split_vertex_fans(TriangleSoup& soup);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Faces that cross others (CGAL).
+/// Finds self-intersections of a mesh (CGAL).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace meshwind {
 
-/// Faces that cross or overlap another beyond what they share, ascending. Exact decisions.
+/// Faces that cross or overlap another beyond shared vertices and edges, ascending. Exact
+/// decisions.
 /// \pre soup is an oriented manifold
 [[nodiscard]] std::vector<std::int32_t> self_intersecting_faces(const TriangleSoup& soup);
 

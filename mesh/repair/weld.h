@@ -1,4 +1,4 @@
-/// Joins the copies of a point that files hold per face or per object.
+/// Welds the copies of a point that files hold per face or per object.
 #pragma once
 
 #include "mesh/triangle_soup.h"

@@ -1,4 +1,4 @@
-/// Shallow creases of bodies of revolution, as feature edges.
+/// Marks shallow creases of bodies of revolution as feature edges.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 namespace meshwind {
 
 /// Marks as features the edges that lie on a crease of the meridian, where these make a full
-/// circle: by its meridian a cone on a cylinder is known to be sharp at angles far below
-/// `kFeatureAngleRad`, from which single edges are. Kinks of less than a degree stay smooth, and so
+/// circle. The meridian shows a cone on a cylinder to be sharp at angles far below
+/// `kFeatureAngleRad`, the limit for single edges. Kinks of less than a degree stay smooth, and so
 /// do creases that the triangles' edges do not follow.
 /// \param soup, feature per face, of the mandrel's surface in its frame
 /// \return whether any edge was marked

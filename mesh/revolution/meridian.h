@@ -1,4 +1,4 @@
-/// The curve whose turn about the spindle axis is a body of revolution, by arc length.
+/// Meridian of a body of revolution by arc length: the curve swept about the spindle axis.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,14 @@
 
 namespace meshwind {
 
-/// A point that a meridian goes through, and what is known of it there.
+/// A point on a meridian, with the slope and breaks given there.
 struct MeridianNode {
     double radius_mm = 0.0;
     double z_mm = 0.0;
     bool crease = false;  ///< the slope jumps here
-    /// Of the tangent where a run of curved pieces starts or ends (at an end, a crease, a joint or
-    /// beside a straight piece); elsewhere it is not read. At a crease, of the piece behind it.
+    /// Slope of the tangent where a run of curved pieces starts or ends (at an end, a crease, a
+    /// joint or beside a straight piece); not read elsewhere. At a crease, that of the piece behind
+    /// it.
     std::optional<double> slope_rad{};
     std::optional<double> slope_before_rad{};  ///< at a crease, of the piece before it
     bool joint = false;                        ///< the slope goes on, the curvature may jump
@@ -31,7 +32,7 @@ struct MeridianPlace {
     double curvature_per_mm = 0.0;  ///< -d slope / d arc: > 0 where convex seen from outside
 };
 
-/// Where a meridian is nearest to a point of the half plane (radius, z).
+/// Nearest point of a meridian to a point of the half plane (radius, z).
 struct MeridianFoot {
     double arc_mm = 0.0;
     double distance_mm = 0.0;  ///< >= 0
@@ -55,8 +56,8 @@ struct MeridianPiece {
 /// A piece is straight where its first node says so, where four or more nodes in a row, or all
 /// between two breaks, lie on one line to rounding. Straight and curved pieces meet with one slope
 /// and a jump in curvature; two straight pieces at an angle make a crease. Where no slope is given,
-/// a run ends as its neighbours go on (not-a-knot), except at a radius of 0, which is a smooth pole
-/// with slope +-pi/2 unless the piece there is straight (the tip of a cone).
+/// a run ends with the not-a-knot condition, except at a radius of 0, which is a smooth pole with
+/// slope +-pi/2 unless the piece there is straight (the tip of a cone).
 ///
 /// Accuracy: nodes h apart on an arc of radius R give slopes within h^3 / R^3 / 50 and, over an arc
 /// of 1.5 R, places within h^4 / R^3 / 200, where the slopes at its ends are known; free ends lose
@@ -79,14 +80,14 @@ public:
     /// Arc lengths of all nodes, ascending from 0: between two of them the curve is smooth.
     [[nodiscard]] std::span<const double> nodes_mm() const { return arc_mm_; }
 
-    /// Arc length of the first largest radius; of a cylinder, of its middle. A cylinder that is as
-    /// wide to rounding goes before.
+    /// Arc length of the first largest radius; on a cylinder, its middle. A cylinder that is as
+    /// wide to rounding takes precedence.
     [[nodiscard]] double widest_mm() const;
 
     /// The nearest place; of several equally near, the first.
     [[nodiscard]] MeridianFoot foot(double radius_mm, double z_mm) const;
 
-    /// Between each node and the next.
+    /// The pieces between each node and the next.
     [[nodiscard]] std::span<const MeridianPiece> pieces() const { return pieces_; }
 
 private:

@@ -1,4 +1,4 @@
-/// Nodes on the curved stretches of a profile given by scattered points.
+/// Fits nodes to the curved stretches of a profile given by scattered points.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// Straight stretches of a profile given by scattered points.
+/// Finds straight stretches of a profile given by scattered points.
 #pragma once
 
 #include <span>
@@ -51,8 +51,8 @@ struct ProfileStretch {
     ProfileLine line;  ///< of a straight one
 };
 
-/// How far places lie off a smooth curve through their neighbours, as a rule, or less where they
-/// are rings whose vertices lie nearer together.
+/// Typical distance of places from a smooth curve through their neighbours, or less where they are
+/// rings whose vertices lie nearer together.
 [[nodiscard]] double scatter_mm(std::span<const std::vector<ProfilePlace>> sections);
 
 /// \param tolerance_mm places this near to a line are on it \param precision_mm of the coordinates

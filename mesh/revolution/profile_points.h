@@ -1,5 +1,4 @@
-/// The vertices of a surface of revolution in the half plane (radius, z), in the order of its
-/// meridian.
+/// Orders the vertices of a surface of revolution along its meridian (radius, z).
 #pragma once
 
 #include <array>
@@ -14,7 +13,7 @@
 
 namespace meshwind {
 
-/// Where a body of revolution ends.
+/// An end of a body of revolution.
 struct MeridianEnd {
     enum class Kind { Rim, Pole };
     Kind kind = Kind::Rim;
@@ -42,9 +41,9 @@ struct ProfilePoints {
     std::string why_not;  ///< not empty: the surface is no body of revolution about Z, in words
 };
 
-/// Arc lengths are shortest ways over the edges where only the way in the half plane counts: going
-/// about the axis costs nothing, so meridians of any form are put in order. The first end is the
-/// lower one, unless outside would lie on the left of the way up.
+/// Arc lengths are shortest paths over the edges, measured in the half plane: motion about the axis
+/// costs nothing, so meridians of any form are put in order. The first end is the lower one, unless
+/// outside would lie on the left of the way up.
 [[nodiscard]] ProfilePoints profile_points(const Surface& surface, std::span<const Rim> rims);
 
 }  // namespace meshwind

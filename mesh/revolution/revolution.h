@@ -1,4 +1,4 @@
-/// Which mandrels are bodies of revolution about their spindle, and along which meridian.
+/// Detects mandrels that are bodies of revolution about their spindle, with their meridian.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace meshwind {
 
 /// A body of revolution has no vertex farther than this from the surface of its meridian: enough
-/// for what exports and facets leave (0.02 mm on a pipe of 50 mm), too little for an oval or a dent
+/// for errors of exports and facets (0.02 mm on a pipe of 50 mm), too little for an oval or a dent
 /// that shows in a pattern.
 inline constexpr double kRevolutionResidualMm = 0.5;
 
@@ -47,7 +47,7 @@ struct RevolutionFinding {
     std::string why_not;  ///< in words where there is none: "it has 3 rims, ..."
 };
 
-/// Compares the winding surface with the surface that its meridian sweeps about Z. Refused are more
+/// Compares the winding surface with the surface that its meridian sweeps about Z. It refuses more
 /// than two rims, rims or normals off the spindle, holes, creases along the spindle, surfaces in
 /// pieces, and a residual above the tolerances above. The meridian starts at the lower end, except
 /// where outside would then lie on its left.

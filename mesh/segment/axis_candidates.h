@@ -1,4 +1,4 @@
-/// Lines that a mandrel might turn about, with figures to choose by.
+/// Candidates for the spindle axis of a mandrel, with figures to choose by.
 #pragma once
 
 #include <string>
@@ -16,13 +16,13 @@ struct AxisCandidate {
     std::string rule;
     Eigen::Vector3d through_mm = Eigen::Vector3d::Zero();  ///< mandrel frame
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, mandrel frame
-    double residual_mm = 0.0;  ///< as find_spindle has it for the rule; of a chord 0
-    double swing_mm = 0.0;     ///< farthest from the line that the part reaches
-    int rims = 0;              ///< that lie around it, see kCoaxialSine
+    double residual_mm = 0.0;  ///< by find_spindle for the rule; 0 for a chord
+    double swing_mm = 0.0;     ///< largest distance of the part from the line
+    int rims = 0;              ///< number of rims that lie around it, see kCoaxialSine
     double gap_rad = 0.0;      ///< widest angle about it without wall
     double angle_rad = 0.0;    ///< to the chosen one, 0 to pi / 2
     double off_mm = 0.0;       ///< of the chosen one's origin from the line
-    std::string why;           ///< it was chosen, or was not
+    std::string why;           ///< why it was chosen, or was not
 };
 
 /// The chosen axis first, then the others by rule; lines that coincide with an earlier one are left

@@ -1,4 +1,4 @@
-/// Where the wall of a part and its bore run into each other, and which faces are the bore's.
+/// Parts the wall of a part from its bore where they run into each other.
 /// Included by .cpp files of this folder only.
 #pragma once
 
@@ -20,15 +20,15 @@ inline constexpr double kMaxDirections = 0.5;
 /// Share of its area from which a blind region may see.
 inline constexpr double kBlindShare = 0.05;
 
-/// Regions that hang together without crossing an end cap or a bore.
+/// Groups of regions that are connected without crossing an end cap or a bore.
 [[nodiscard]] std::vector<std::vector<std::int32_t>> pieces_of(
     const std::vector<Region>& regions, const std::vector<RegionFacts>& facts);
 
 /// Where an end face is notched or its lip rounded, wall and bore run into each other: such pieces
-/// touch one end cap from both sides, or a region of theirs sees the outside here and nothing
-/// there. They are parted halfway between the two. Returns per face 1 where it is on the bore's
-/// side; empty when nothing runs together. \param normals unit, per face \param face_area mm^2, per
-/// face
+/// touch one end cap from both sides, or a region of theirs sees the outside in one place and
+/// nothing in another. They are parted halfway between the two. Returns per face 1 where it is on
+/// the bore's side; empty when no pieces run together. \param normals unit, per face \param
+/// face_area mm^2, per face
 [[nodiscard]] std::vector<char> bore_sides(const TriangleSoup& soup, const Segmentation& s,
                                            const std::vector<RegionFacts>& facts,
                                            const std::vector<Eigen::Vector3d>& normals,

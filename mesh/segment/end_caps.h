@@ -1,4 +1,4 @@
-/// The flat ends of a part: what closes its openings and is not wound.
+/// Detects the end caps of a part: flat ends that close its openings and are not wound.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace meshwind {
 
-/// What the decisions about a region rest on.
+/// Measures of a region that decide its kind.
 struct RegionFacts {
     double area_mm2 = 0.0;
     Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
@@ -37,8 +37,9 @@ void trace_outline(const TriangleSoup& soup, const Segmentation& s, std::int32_t
                    RegionFacts& facts);
 
 /// Sets the kind of the regions that are end caps: flat ends, and regions that are mostly planar
-/// with all edges convex, so that nothing stands before them; as large as the part's other ends,
-/// and no mere speck of it. A disc beside another such region is the flat of a box, not an end.
+/// with all edges convex, so that nothing stands before them. They are as large as the part's other
+/// ends, and no mere speck of it. A disc beside another such region is the flat of a box, not an
+/// end.
 /// \param flat_end per face, see flat_ends.h; each end is a region of its own
 void mark_end_caps(const TriangleSoup& soup, const std::vector<std::int32_t>& flat_end,
                    Segmentation& s, std::vector<RegionFacts>& facts);

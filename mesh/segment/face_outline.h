@@ -1,4 +1,4 @@
-/// Outlines of sets of faces of a part. Included by .cpp files of this folder only.
+/// Traces outlines of sets of faces of a part. Included by .cpp files of this folder only.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace meshwind {
 
-/// Faces of a part with what is known of each. \pre what it refers to outlives it
+/// Faces of a part with their measures. \pre the referenced arrays outlive it
 struct MeasuredFaces {
     const TriangleSoup& soup;
     const std::vector<std::array<std::int32_t, 3>>& neighbours;  ///< see face_neighbours
@@ -31,7 +31,8 @@ struct MeasuredFaces {
     }
 };
 
-/// One number per face: which set it was put into last. No set is emptied, each has a new number.
+/// Set membership: per face the number of the set it was put into last. Sets are not emptied; each
+/// new one gets a new number.
 struct FaceMarks {
     std::vector<int> of_face;  ///< 0: in none yet
     int last = 0;

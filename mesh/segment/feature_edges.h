@@ -1,4 +1,4 @@
-/// Creases: edges where the surface turns too sharply to be one smooth piece.
+/// Detects feature edges (creases): edges where the surface turns too sharply to be smooth.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline constexpr double kFeatureAngleRad = rad_from_deg(34.0);
 inline constexpr double kSliverHeightShare = 2e-5;
 
 /// Unit facet normals, except that slivers take over the normal of the sound face beyond their
-/// longest edge: what is noise on a sliver then turns neither a crease on nor off.
+/// longest edge: noise on a sliver then neither makes nor hides a crease.
 /// \param neighbours see face_neighbours
 [[nodiscard]] std::vector<Eigen::Vector3d> steady_normals(
     const TriangleSoup& soup, const std::vector<std::array<std::int32_t, 3>>& neighbours);

@@ -1,4 +1,4 @@
-/// Boundary loops of the winding surface and the circles they lie on.
+/// Finds the rims of the winding surface: boundary loops and the circles they lie on.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// Which part of a file's surface is wound: smooth regions and what each of them is.
+/// Segments a file's surface into smooth regions: outer wall (which is wound), end caps, bore.
 #pragma once
 
 #include <array>

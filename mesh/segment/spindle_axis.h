@@ -1,4 +1,4 @@
-/// The line a mandrel turns about, and the frame that stands on it.
+/// Finds the spindle axis of a mandrel, and the mandrel frame on it.
 #pragma once
 
 #include <optional>
@@ -31,8 +31,8 @@ struct SpindleFrame {
 /// axis, or the rms scatter of the surface's distance from the axis. +Z points along the larger
 /// component of the file's axes; the origin is the middle between coaxial rims, else the centroid's
 /// foot on the axis; +X points to the rim farthest off the axis, where there is one off it, else
-/// along the file's X (or Y). \param surface what is wound, in the file's frame, mm \param rims its
-/// rims
+/// along the file's X (or Y). \param surface the winding surface, in the file's frame, mm \param
+/// rims its rims
 [[nodiscard]] SpindleFrame find_spindle(const TriangleSoup& surface, std::span<const Rim> rims,
                                         const std::optional<MandrelOptions::Axis>& given);
 

@@ -1,4 +1,4 @@
-/// Lines that a mandrel might turn about, and how a surface lies about a line.
+/// Possible spindle axes of a mandrel, and measures of a surface about a line.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ namespace meshwind {
 struct SpindleLine {
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
-    double residual_mm = 0.0;                              ///< of the rule that it is found by
+    double residual_mm = 0.0;                              ///< of the rule that found it
 };
 
 /// A vertex with area-weighted normal: on a regular tessellation the noise of facets cancels.
@@ -56,7 +56,7 @@ struct CoaxialRims {
 
 [[nodiscard]] std::vector<CoaxialRims> coaxial_rims(std::span<const Rim> rims);
 
-/// Least-squares axis of the surface's normals, whatever it is worth; the residual is the rms
+/// Least-squares axis of the surface's normals, however good the fit; the residual is the rms
 /// distance by which they miss it.
 [[nodiscard]] SpindleLine line_of_normals(const std::vector<WeighedPoint>& points,
                                           const Eigen::Vector3d& centroid);

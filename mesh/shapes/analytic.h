@@ -1,4 +1,4 @@
-/// Nearest points on the ideal shapes: what made meshes and traced paths are measured against.
+/// Nearest points on the ideal shapes, the references for made meshes and traced paths.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@ namespace meshwind {
 /// The smooth piece a point belongs to.
 enum class ShapePart { Run, Branch, Blend, Cylinder, Cone, Dome, Leg, Bend };
 
-/// Nearest point of an ideal surface. The surface is taken without its ends: cylinders go on for
-/// ever.
+/// Nearest point of an ideal surface. The surface is taken without its ends: cylinders are
+/// infinite.
 struct ShapeFoot {
     Eigen::Vector3d point_mm;
     Eigen::Vector3d normal;    ///< unit, outward
@@ -19,16 +19,16 @@ struct ShapeFoot {
     ShapePart part = ShapePart::Run;
 };
 
-/// A place as the branch of a tee sees it: x along the branch's axis, y across, z the way to which
-/// it leans; and back. Without a lean both change nothing. \pre |lean| < pi / 2
+/// Transforms a place into the frame of a tee's branch, and back: x along the branch's axis, y
+/// across, z towards its lean. Without a lean both change nothing. \pre |lean| < pi / 2
 [[nodiscard]] Eigen::Vector3d seen_from_branch(const TeeShape& shape, const Eigen::Vector3d& p);
 [[nodiscard]] Eigen::Vector3d seen_from_run(const TeeShape& shape, const Eigen::Vector3d& p);
 
-/// The point where the blend's ball stands at angle `psi_rad` around the branch axis, from the way
-/// to which it leans (+z) to +y. \pre shape is valid
+/// Centre of the blend's ball at angle `psi_rad` around the branch axis, from the direction of its
+/// lean (+z) to +y. \pre shape is valid
 [[nodiscard]] Eigen::Vector3d tee_spine_mm(const TeeShape& shape, double psi_rad);
 
-/// The blend across the ball that stands there: from `to_run`, where it touches the run, to
+/// Cross section of the blend on the ball there: from `to_run`, where it touches the run, to
 /// `to_branch`; unit, seen from its centre.
 struct BlendArc {
     Eigen::Vector3d centre_mm;
@@ -48,8 +48,8 @@ struct BlendArc {
 /// tests/mesh/shapes/make_tee_test.cpp.
 [[nodiscard]] ShapeFoot tee_foot(const TeeShape& shape, const Eigen::Vector3d& point_mm);
 
-/// The same of a wye and of a cross; their stem and one half of the run are the Run, their other
-/// pipes Branches; tests/mesh/shapes/make_star_test.cpp.
+/// The same for a wye and a cross; the stem and one half of the run are the Run, the other pipes
+/// Branches; tests/mesh/shapes/make_star_test.cpp.
 [[nodiscard]] ShapeFoot wye_foot(const WyeShape& shape, const Eigen::Vector3d& point_mm);
 [[nodiscard]] ShapeFoot cross_foot(const CrossShape& shape, const Eigen::Vector3d& point_mm);
 

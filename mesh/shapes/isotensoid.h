@@ -1,4 +1,4 @@
-/// Domes in which a fibre wound along geodesics is strained alike everywhere under pressure.
+/// Isotensoid domes: under pressure a fibre wound along geodesics is strained alike everywhere.
 #pragma once
 
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace meshwind {
 
-/// What such a dome is made for.
+/// Design values of such a dome.
 struct IsotensoidDesign {
     double equator_radius_mm = 75.0;
-    /// Clairaut radius of the geodesics it is made for: there they turn; below the equator's.
+    /// Clairaut radius of the geodesics it is made for, at which they turn; below the equator's.
     double design_radius_mm = 15.0;
     /// k_e = E2 (1 + nu12) / (E1 (1 + nu21)), 0 to below 1; 0: the fibres carry all (netting).
     double stiffness_ratio = 0.0;
     /// Axial force on the end besides the pressure on the whole cross section, as a share of that.
-    /// 0: the opening is capped and nothing pulls at it.
+    /// 0: the opening is capped and no other force pulls at it.
     double axial_share = 0.0;
 
     /// \throws InputError make.not_positive, make.negative, make.stiffness_ratio,
@@ -24,7 +24,7 @@ struct IsotensoidDesign {
 };
 
 /// Meridian of the dome by a parameter t: 0 at the equator, pi / 2 where the profile turns back,
-/// which no opening can be narrower than. Negative t: the same dome upside down.
+/// the least radius of an opening. Negative t: the same dome upside down.
 ///
 /// With u = (Y / Y_eq)^2, g = design radius / Y_eq, q = (k_e - 1) g^2 the profile is
 ///     (dZ/dY)^2 = u (u + r)^2 / G,   G = ((q + u) / (q + 1))^(k_e + 1) (1 + r)^2 - u (u + r)^2,
@@ -45,9 +45,9 @@ public:
     [[nodiscard]] double radius_mm(double t) const;
     /// Above the equator; odd in t. \pre |t| <= pi / 2
     [[nodiscard]] double height_mm(double t) const;
-    /// Of radius and height by t; its length is the rate of the meridian's length.
+    /// Derivative of radius and height by t; its length is the rate of the meridian's length.
     [[nodiscard]] Eigen::Vector2d rate_mm(double t) const;
-    /// Along the meridian from the equator to t >= 0.
+    /// Length of the meridian from the equator to t >= 0.
     [[nodiscard]] double meridian_mm(double t) const;
 
     /// Principal curvatures, > 0 convex: along the meridian and along the parallel.

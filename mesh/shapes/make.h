@@ -1,4 +1,4 @@
-/// Parametric mandrels as triangles: `meshwind make` and the meshes of the accuracy studies.
+/// Makes meshes of parametric mandrels, for `meshwind make` and the accuracy studies.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// CandidateFault of impossible dimensions, one wording for all shapes.
+/// Checks of shape dimensions, with one wording for all shapes.
 #pragma once
 
 namespace meshwind {

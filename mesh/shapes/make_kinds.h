@@ -34,7 +34,7 @@ struct MakeKind {
     std::span<const MakeParameter> parameters;
 };
 
-/// Values by parameter name, mm, rad or without unit; what is missing takes its default.
+/// Values by parameter name, mm, rad or without unit; missing ones take their default.
 using MakeValues = std::map<std::string, double, std::less<>>;
 
 /// cylinder, cone, vessel, isotensoid, elbow, tee, wye, cross, combination, frame, torus,

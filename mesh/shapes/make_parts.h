@@ -14,7 +14,7 @@ using VertexRow = std::vector<std::int32_t>;
 /// length / step rounded, but at least `least`.
 [[nodiscard]] std::int32_t steps_of(double length_mm, double step_mm, std::int32_t least);
 
-/// Distance of the rows of equilateral triangles of this edge.
+/// Distance between rows of equilateral triangles of this edge.
 [[nodiscard]] double row_step_mm(double edge_mm);
 
 /// Triangles between two rows by the shorter diagonal each time; `upper` lies left of `lower`'s

@@ -1,5 +1,5 @@
 /// Pipes whose wall is cut along a curve where other pipes meet them: unrolled, filled and
-/// triangulated. What made tees, wyes and crosses consist of besides their blends.
+/// triangulated. Tees, wyes and crosses consist of them and of blends.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ void join_rows(TriangleSoup& soup, const VertexRow& right, const VertexRow& left
 struct SheetPiece {
     double from_mm;     ///< axial, a rim or below the piece
     double to_mm;       ///< axial, a rim
-    bool piece_across;  ///< which side of the curve is meshed: that above it, or outside
+    bool piece_across;  ///< meshed side of the curve: that above it, or outside
     std::function<Eigen::Vector3d(const Eigen::Vector2d&)> roll;  ///< from the sheet into space
 };
 

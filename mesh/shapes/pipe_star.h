@@ -1,5 +1,5 @@
 /// Equal pipes whose axes lie in one plane and meet in one point, joined by a rolling-ball blend:
-/// what wyes and crosses are.
+/// the geometry of wyes and crosses.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ struct PipeStar {
 
     /// From pipe k to the next, in (0, pi].
     [[nodiscard]] double angle_after(std::size_t k) const;
-    /// How far the blends beside pipe k go on it, from the meeting point.
+    /// Extent of the blends along pipe k, from the meeting point.
     [[nodiscard]] double blend_end_mm(std::size_t k) const;
 };
 

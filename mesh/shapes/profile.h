@@ -1,4 +1,4 @@
-/// Meridians of the shapes of revolution: what turning them about z gives.
+/// Meridians that sweep the shapes of revolution about z.
 #pragma once
 
 #include <optional>
@@ -40,7 +40,7 @@ using Profile = std::vector<ProfilePiece>;
 [[nodiscard]] Profile profile_of(const CombinationShape& shape);
 [[nodiscard]] Profile profile_of(const EllipsoidShape& shape);
 
-/// Nearest point of the surface of revolution; the profile's ends go on as ShapeFoot says.
+/// Nearest point of the surface of revolution; the profile's ends are extended as ShapeFoot says.
 [[nodiscard]] ShapeFoot profile_foot(const Profile& profile, const Eigen::Vector3d& point_mm);
 
 }  // namespace meshwind

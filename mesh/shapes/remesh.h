@@ -1,4 +1,4 @@
-/// Isotropic remeshing onto a surface that is known exactly, and its opposite.
+/// Isotropic remeshing onto a surface that is known exactly, and random roughening of a mesh.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace meshwind {
 
 struct RemeshOptions {
-    double edge_mm = 5.0;  ///< > 0; edges between 4/5 and 4/3 of it are left in peace
+    double edge_mm = 5.0;  ///< > 0; edges between 4/5 and 4/3 of it are left alone
     int sweeps = 12;       ///< of split, collapse, flip and smooth; angles settle after about ten
     int polish = 6;        ///< closing sweeps that only flip towards larger angles and smooth
 };

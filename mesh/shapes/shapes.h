@@ -1,4 +1,4 @@
-/// Ideal mandrel shapes: their dimensions and the rules these must keep. Frame: spindle = z.
+/// Parametric mandrel shapes: their dimensions and the limits of these. Frame: spindle = z.
 #pragma once
 
 #include "core/units.h"
@@ -122,7 +122,7 @@ struct TeeShape {
     double branch_length_mm = 236.0;  ///< from the run's axis to the branch's end
     double lean_rad = 0.0;  ///< of the branch, from square to the run towards +z; at most pi / 3
 
-    /// How far the blend goes on the run, towards the rim to which the branch leans, and on the
+    /// Extent of the blend on the run, towards the rim to which the branch leans, and on the
     /// branch, from the run's axis.
     [[nodiscard]] double blend_end_on_run_mm() const;
     [[nodiscard]] double blend_end_on_branch_mm() const;

@@ -1,4 +1,4 @@
-/// The smooth surface about corners: height fits to the vertices around them.
+/// Fits the smooth surface about corners, as heights through the vertices around them.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace meshwind {
 
-/// Rings of neighbours that the fits of a frozen surface see: 18 vertices on a regular mesh.
+/// Rings of neighbours that the fits of a frozen surface use: 18 vertices on a regular mesh.
 inline constexpr int kFitRings = 2;
 
-/// Jets at the corners `wanted`, from the vertices within `rings` rings on the corner's smooth
-/// side (one ring more where they are few); curvature from facet normals where nothing can be
-/// fitted. \param surface positions, faces and corner indices are read, nothing else
+/// Jets at the corners `wanted`, from the vertices within `rings` rings on the corner's smooth side
+/// (one ring more where they are few); curvature from facet normals where no fit is possible.
+/// \param surface only positions, faces and corner indices are read
 [[nodiscard]] std::vector<Jet> fit_corners(const Surface& surface,
                                            std::span<const std::int32_t> wanted, int rings);
 

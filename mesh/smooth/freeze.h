@@ -1,4 +1,4 @@
-/// From triangles to the winding surface: adjacency, smooth normals, curvature.
+/// Builds the winding surface from triangles: adjacency, smooth normals, curvature.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace meshwind {
 
-/// What `freeze_surface` needs beside the triangles; all spans are per face and as long as
+/// Input of `freeze_surface` beside the triangles; all spans are per face and as long as
 /// `soup.faces`.
 struct FreezeInput {
     std::span<const std::array<std::uint8_t, 3>> feature;  ///< 1 = feature edge
@@ -27,7 +27,7 @@ struct FreezeInput {
 /// length).
 [[nodiscard]] Surface freeze_surface(const TriangleSoup& soup, const FreezeInput& input);
 
-/// Replaces the fit about a corner index, where the surface is known. \param jet passes through the
+/// Replaces the fit about a corner index by the known surface. \param jet passes through the
 /// corner's vertex
 void set_jet(Surface& surface, std::size_t corner, const Jet& jet);
 

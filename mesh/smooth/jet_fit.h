@@ -1,4 +1,4 @@
-/// Height polynomials of the surface, fitted to the neighbours of a vertex.
+/// Jet fitting: height polynomials of the surface through the neighbours of a vertex.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace meshwind {
 
 inline constexpr int kMaxJetDegree = 4;
-/// Which terms the neighbours determined: all up to a degree; some of the quadratic ones and above;
+/// Terms that the neighbours determined: all up to a degree; some of the quadratic ones and above;
 /// none, so that normal and curvature are averages of the facets.
 enum class JetTerms : std::uint8_t { Quartic, Cubic, Quadratic, Reduced, Averaged };
 

@@ -1,4 +1,4 @@
-/// The curved patch over a triangle: the smooth surface that the mesh stands for.
+/// Curved patches over triangles: the smooth surface that the mesh approximates.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct PatchPlace {
     /// Unit, outward.
     [[nodiscard]] Eigen::Vector3d normal() const { return along_u.cross(along_v).normalized(); }
 
-    /// Derivative along given rates of u and v, and the second one.
+    /// First and second derivative along given rates of u and v.
     [[nodiscard]] Eigen::Vector3d along(const Eigen::Vector2d& rates) const {
         return rates.x() * along_u + rates.y() * along_v;
     }
@@ -52,8 +52,8 @@ public:
     /// \param uv barycentric coordinates of the second and the third corner
     [[nodiscard]] PatchPlace at(const Eigen::Vector2d& uv) const;
 
-    /// Whether a normal is one of a surface over this triangle: within 60 deg of the facet's. Fits
-    /// on far too coarse a mesh may turn a patch over. False for what is not a number.
+    /// Whether a normal is plausible over this triangle: within 60 deg of the facet's. Fits on far
+    /// too coarse a mesh may turn a patch over. False for NaN.
     [[nodiscard]] bool holds(const Eigen::Vector3d& normal) const;
 
     /// Whether the surface is known at its corners, not fitted.

@@ -1,4 +1,4 @@
-/// Finer triangles of the surface that a mesh stands for.
+/// Refines a mesh over the smooth surface that it approximates.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace meshwind {
 
-/// More triangles than this are not made: a file of 500 MB.
+/// Limit of the number of triangles: a file of 500 MB.
 inline constexpr std::size_t kMaxRefinedFaces = 10'000'000;
 
-/// A mesh with what belongs to its faces, as `freeze_surface` takes it. Mandrel frame.
+/// A mesh with the data of its faces, as `freeze_surface` takes it. Mandrel frame.
 struct RefinedMesh {
     TriangleSoup soup;
     std::vector<std::array<std::uint8_t, 3>> feature;
@@ -24,11 +24,11 @@ struct RefinedMesh {
 };
 
 /// Halves edges until none is longer than `edge_mm`: each triangle becomes two, three or four by
-/// how many of its edges are too long, so that the mesh stays conforming and is fine only where it
+/// the number of its edges that are too long. The mesh stays conforming and is fine only where it
 /// must be. The given vertices stay; new ones lie on the curved patch of the triangle that they
 /// come from (mesh/smooth/patch.h), on rims on the curve through the rim's vertices. Feature edges,
-/// rims and regions stay what they are. The same surface gives the same mesh. Accuracy: new
-/// vertices on smooth surfaces are off by the fourth order in the edge length or better
+/// rims and regions are kept. The same surface gives the same mesh. Accuracy: new vertices on
+/// smooth surfaces are off by the fourth order in the edge length or better
 /// (tests/mesh/smooth/refine_test.cpp). \throws InputError refine.not_positive; refine.too_many
 /// above kMaxRefinedFaces triangles
 [[nodiscard]] RefinedMesh refined(const Surface& surface, double edge_mm);

@@ -1,4 +1,4 @@
-/// Points of the smooth surface that a frozen mesh stands for.
+/// Evaluates the smooth surface that a frozen mesh approximates.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace meshwind {
 
-/// Where a line of rim or crease edges turns by more than this at a vertex it has a corner there.
+/// A line of rim or crease edges has a corner at a vertex where it turns by more than this.
 inline constexpr double kLineCornerRad = rad_from_deg(34.0);
 
 /// The curved patches of a surface, led to curves through the vertices of its rims.
@@ -20,8 +20,8 @@ public:
     /// \pre `surface` outlives the shape
     explicit SmoothShape(const Surface& surface);
 
-    /// On the patch of the face, which is moved within the surface to meet the arcs of the rim: by
-    /// all of the gap on the rim, by nothing on the other edges.
+    /// Point on the patch of the face, moved within the surface to meet the arcs of the rim: by all
+    /// of the gap on the rim, by none on the other edges.
     /// \param uv barycentric coordinates of the second and the third corner
     [[nodiscard]] Eigen::Vector3d point_at(std::int32_t face, const Eigen::Vector2d& uv) const;
 
@@ -34,7 +34,8 @@ private:
     [[nodiscard]] Eigen::Vector3d rim_arc(std::int32_t from, std::int32_t to, double share) const;
 
     const Surface& surface_;
-    /// Of rims at their vertices, unit, in the direction of the rim's faces; a corner has none.
+    /// Tangents of rims at their vertices, unit, in the direction of the rim's faces; a corner has
+    /// none.
     std::vector<Eigen::Vector3d> rim_tangent_;
 };
 

@@ -1,5 +1,5 @@
-/// Lines in space made of circular arcs and straight stretches that meet with common tangents, with
-/// a frame that is carried along without twist.
+/// Centre lines of tubes: circular arcs and straight stretches with common tangents, and a frame
+/// carried along them without twist.
 #pragma once
 
 #include <span>
@@ -30,9 +30,9 @@ struct CentrePlace {
     [[nodiscard]] Eigen::Vector3d across() const;
 };
 
-/// The frame turns with the tangent and no more (a Bishop frame), so the angle about the tangent
-/// from `reference` is the same direction all along, and on bends that lie in one plane it never
-/// leaves it. Before its start and beyond its end the line goes on straight.
+/// The frame turns with the tangent and no more (a Bishop frame), so an angle about the tangent
+/// from `reference` keeps its direction all along, and on bends in one plane it never leaves that
+/// plane. Before its start and beyond its end the line goes on straight.
 class CentreLine {
 public:
     /// \param start its arc and curvature are not read; tangent and reference unit and square to
@@ -42,15 +42,15 @@ public:
     [[nodiscard]] double length_mm() const { return nodes_.back().arc_mm; }
     [[nodiscard]] std::span<const CentreArc> arcs() const { return arcs_; }
 
-    /// Where the arcs meet, with both ends: n + 1 for n arcs. Curvature is that of the arc that
+    /// Joints of the arcs, with both ends: n + 1 for n arcs. Curvature is that of the arc that
     /// begins there, at the end that of the last one.
     [[nodiscard]] std::span<const CentrePlace> nodes() const { return nodes_; }
 
     /// \param arc_mm any; exact to rounding
     [[nodiscard]] CentrePlace at(double arc_mm) const;
 
-    /// The nearest place; exact to rounding. Of the line beyond its ends only where no other node
-    /// is nearer, lest an end that points back at the line be taken for it. \pre nearer to the line
+    /// The nearest place; exact to rounding. It lies beyond an end only where no other node is
+    /// nearer, lest an end that points back at the line be taken for it. \pre nearer to the line
     /// than its centres of curvature
     [[nodiscard]] CentrePlace foot(const Eigen::Vector3d& point_mm) const;
 

@@ -1,4 +1,4 @@
-/// Which mandrels are tubes: round all along a line that may bend.
+/// Detects mandrels that are tubes: round all along a line that may bend.
 #pragma once
 
 #include <array>
@@ -55,13 +55,13 @@ struct TubeFinding {
     std::string why_not;  ///< in words where there is none: "it has 3 rims, a tube has two"
 };
 
-/// Looks for a line about which the winding surface is round. Circles are fitted to sections square
-/// to the line, the line is drawn through their centres, and so on until it rests. Where it is made
-/// of straight stretches and arcs of circles with one radius all along, it is fitted anew as such;
-/// the first place of `parts` is then exact. The tube runs from the rim of lower id. The
-/// `reference` of the line lies in the plane of the first bend, away from its centre.
-/// Refused are surfaces without two rims, with holes or handles, in pieces, and a residual above
-/// the limits above. Accuracy: docs/geometry.md, "Tubes"; tests/mesh/tube/tube_test.cpp.
+/// Finds a line about which the winding surface is round. Circles are fitted to sections square to
+/// the line and the line is drawn through their centres, until it converges. Where it is made of
+/// straight stretches and arcs of circles with one radius all along, it is refitted as such; the
+/// first place of `parts` is then exact. The tube runs from the rim of lower id. The `reference` of
+/// the line lies in the plane of the first bend, away from its centre. Surfaces without two rims,
+/// with holes or handles, in pieces, or with a residual above the limits above are refused.
+/// Accuracy: docs/geometry.md, "Tubes"; tests/mesh/tube/tube_test.cpp.
 [[nodiscard]] TubeFinding find_tube(const Mandrel& mandrel);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Centres of a tube's sections, found from its vertices without knowing its line.
+/// Finds the centres of a tube's sections from its vertices, without knowing its line.
 #pragma once
 
 #include <vector>
@@ -16,10 +16,10 @@ struct TubeSection {
 };
 
 /// From the mandrel's first rim to its second, evenly spaced by about `spacing_mm` along the line;
-/// n >= 5; empty where no line is found. First guesses are where the normals of vertices about as
-/// far from both rims meet; then about each place a centre and a radius that change quadratically
-/// along the line are fitted to the vertices near it, the line is drawn through the centres anew,
-/// and so on. \pre two rims, one piece
+/// n >= 5; empty where no line is found. First guesses are the meeting points of the normals of
+/// vertices about as far from both rims. Then about each place a centre and a radius that change
+/// quadratically along the line are fitted to the vertices near it, the line is redrawn through the
+/// centres, and this is repeated. \pre two rims, one piece
 [[nodiscard]] std::vector<TubeSection> tube_sections(const Mandrel& mandrel, double spacing_mm);
 
 }  // namespace meshwind

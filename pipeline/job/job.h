@@ -1,4 +1,4 @@
-/// The user's request: what to wind on the mandrel, and how. docs/files.md describes the file.
+/// The winding job: layers, tow, tolerances and turns. docs/files.md describes the file.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +26,13 @@ enum class LengthUnit { Auto, Micrometre, Millimetre, Centimetre, Metre, Inch };
 
 enum class LayerKind { Auto, Helical, Hoop, Polar, Cover, Imported, Lattice, Wall };
 
-/// Who decides the mandrel's turn where several would do; docs/post.md.
+/// Rule for the mandrel's turn where several are possible (redundancy); docs/post.md.
 enum class RedundancyRule { CentralAngle, Hold, Oscillate, Optimal };
 
-/// What the pattern of a layer is to be; what is left out is free
+/// Constraints on the pattern of a layer; omitted values are free
 /// (winding/revolution/pattern_constraints.h).
 struct PatternJob {
-    std::int64_t circuits = 0;  ///< > 0: so many; not of lattices
+    std::int64_t circuits = 0;  ///< > 0: the number of circuits; not of lattices
     std::int64_t starts = 0;    ///< > 0: the pattern number
     std::optional<BandOrder> lead{};
     std::optional<double> most_overlap{};    ///< 0 .. 1, share of the bands' distance
@@ -41,13 +41,13 @@ struct PatternJob {
     double band_offset_mm = 0.0;             ///< > 0: distance of bands; 0: the tow's width
 };
 
-/// How thick a wall is to be at least: one of both.
+/// Least thickness of a wall: one of both.
 struct WallAmount {
     std::optional<double> layers{};        ///< > 0, of the tow
     std::optional<double> thickness_mm{};  ///< > 0
 };
 
-/// A part of a wall with a thickness of its own: one of the places.
+/// A part of a wall with its own thickness: one of the places is set.
 struct WallPart {
     struct Box {
         Eigen::Vector3d least;
@@ -64,7 +64,7 @@ struct WallPart {
 
 struct WallJob {
     WallAmount amount{};
-    std::vector<WallPart> parts{};  ///< of several that hold a place the last one counts
+    std::vector<WallPart> parts{};  ///< where several contain a place, the last one counts
 };
 
 /// A table of landing points (postproc/tables/landing_csv.h).
@@ -73,19 +73,19 @@ struct LandingText {
     std::string text;
 };
 
-/// One layer; each kind reads what concerns it.
+/// One layer; each kind reads the keys that concern it.
 struct LayerJob {
     LayerKind kind = LayerKind::Auto;
     std::optional<double> angle_deg;  ///< 0 (axial) .. 90 (hoop), from the local axial direction
-    double target_layers = 1.0;       ///< > 0; how often each place is to be covered
+    double target_layers = 1.0;       ///< > 0; number of times each place is to be covered
     std::optional<PatternJob> pattern{};          ///< Helical, Polar and Lattice layers only
     std::optional<LatticeConstraints> lattice{};  ///< set for Lattice layers and no others
     std::optional<WallJob> wall{};                ///< set for Wall layers and no others
     std::string file;      ///< landing points of an Imported layer; empty for all others
-    LandingText points{};  ///< what that file holds, once read (pipeline/load_inputs.h)
+    LandingText points{};  ///< content of that file, once read (pipeline/load_inputs.h)
 };
 
-/// Each fibre more is one more time that somebody cuts it and ties it on.
+/// Limit of fibres: each further one has to be cut and tied on by hand.
 inline constexpr int kMaxFibres = 9;
 
 struct Job {
@@ -98,7 +98,7 @@ struct Job {
         std::optional<MandrelAxis> axis;         ///< none: found
         std::vector<std::int32_t> keep_regions;  ///< region ids; empty: the outer wall
         std::vector<std::string> keep_faces;  ///< of a CAD file, as is_named(); empty: by regions
-        std::optional<double> cut_ends_mm;    ///< >= 0; none: what is no part of an end's leg
+        std::optional<double> cut_ends_mm;    ///< >= 0; none: all that is no part of an end's leg
         std::optional<double> remove_details_mm;  ///< >= 0; none: lettering
         std::optional<double> blend_mm = 0.0;  ///< 0: crotches and steps stay sharp; none: by trial
         MandrelOptions::Mesh mesh = MandrelOptions::Mesh::Even;
@@ -133,7 +133,8 @@ struct Job {
     MandrelJob mandrel;
     TowJob tow;
     std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
-    int fibres = 1;  ///< 1 .. kMaxFibres; that may be wound one after the other, cut in between
+    int fibres =
+        1;  ///< 1 .. kMaxFibres; number that may be wound one after the other, cut in between
     bool fibres_given = false;  ///< by the job's author; else there may be more
     EyeLaw eye;
     RedundancyRule redundancy = RedundancyRule::Optimal;
@@ -144,19 +145,19 @@ struct Job {
 /// Millimetres per unit; 0 for Auto, which leaves the choice to the reader of the mandrel.
 [[nodiscard]] double mm_per(LengthUnit unit);
 
-/// The same of a unit's word in job files, "mm"; none where there is no such unit.
+/// The same for a unit's word in job files, "mm"; none where there is no such unit.
 [[nodiscard]] std::optional<double> mm_per(std::string_view word);
 
-/// The unit of so many millimetres; Auto where there is none.
+/// The unit of `mm` millimetres; Auto where there is none.
 [[nodiscard]] LengthUnit length_unit(double mm);
 
-/// One value that is put over what a file says: key layers.0.kind, value hoop.
+/// A value that overrides one of the job file: key layers.0.kind, value hoop.
 struct JobSetting {
     std::string key;    ///< keys and indices, joined by dots
-    std::string value;  ///< JSON; what is none is a word
+    std::string value;  ///< JSON; anything else is a word
 };
 
-/// Reads a job from text, then puts the settings over it; what both leave out stays as in `base`.
+/// Reads a job from text, then applies the settings; keys that both omit stay as in `base`.
 /// \param name file name for messages \param base of a material or process, else the defaults
 /// \throws InputError json.* (syntax, unknown or doubled key, type, range), job.zero_direction,
 ///         job.file_missing, job.file_unused, job.eye_unused, job.pattern_unused, job.turn_forced,
@@ -173,14 +174,14 @@ struct JobSetting {
 /// give equal text. Reads back as the same job.
 [[nodiscard]] std::string job_text(const Job& job);
 
-/// The same without what is as in an empty job file, unless the job's file gave it: what a file
-/// must say for the same job.
+/// The same without keys that equal those of an empty job file, unless the job's file gave them:
+/// the content that a file needs for the same job.
 [[nodiscard]] std::string told_job_text(const Job& job);
 
 /// JSON Schema of job files; data/schema/job.schema.json holds it.
 [[nodiscard]] std::string job_schema_text();
 
-/// As the job file says it.
+/// The word of the job file.
 [[nodiscard]] std::string_view name_of(LayerKind kind);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// The friction law: what a job says of friction, as a layer has it.
+/// The friction law: the friction of each layer of a job.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace meshwind {
 
-/// Under a layer of the job; nothing else reads the job's friction. Another law, by ground, layer
-/// or tension, is written here.
+/// Friction under a layer of the job; nothing else reads the job's friction. Another law, by
+/// ground, layer or tension, belongs here.
 /// \param layer counted from 0, which lies on the bare mandrel; all others lie on fibre
 [[nodiscard]] Friction friction_of(const Job& job, std::size_t layer);
 
-/// The largest of all layers: what it does not hold none of them holds.
+/// The largest of all layers: fibre that slips with it slips on all of them.
 [[nodiscard]] Friction most_friction_of(const Job& job);
 
 }  // namespace meshwind

@@ -1,5 +1,5 @@
-/// Which numbers the keys of a job take. The ends lie far beyond what anybody winds; behind them
-/// sums and ratios of these numbers stay finite, and a slip of the unit is told as what it is.
+/// Allowed ranges of the job's numbers. Their limits lie far beyond anything that is wound; within
+/// them sums and ratios of these numbers stay finite, and a slip of the unit is reported as such.
 /// data/schema/job.schema.json is made from them.
 #pragma once
 
@@ -37,7 +37,7 @@ inline constexpr JsonRange kShareRange = {.min = 0.0, .max = 1.0};
 inline constexpr JsonRange kClearanceRange = {.min = 0.0, .max = 10'000.0};  ///< mm
 inline constexpr JsonRange kSpeedRange = {.min = 1e-3, .max = 10'000.0};     ///< m/min
 
-// More circuits than patterns are looked for (winding/revolution/pattern.cpp), more series and
+// More circuits than patterns are searched for (winding/revolution/pattern.cpp), more series and
 // plies than anybody winds.
 inline constexpr std::int64_t kMaxCircuits = 10'000;
 inline constexpr std::int64_t kMaxSeries = 1'000;

@@ -1,4 +1,4 @@
-/// Keys of the job file by what people call them.
+/// Finds keys of the job file by their short names.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace meshwind {
 
-/// The whole key that a word names, as `--set` takes it: tow.friction for friction and
-/// tow-friction, layers.0.angle for angle; empty where the job has none of that name.
-/// \param word with or without dashes ahead; within it they stand for underscores
+/// The full key that a word names, as `--set` takes it: tow.friction for friction and tow-friction,
+/// layers.0.angle for angle; empty where the job has none of that name.
+/// \param word with or without leading dashes; dashes within it stand for underscores
 [[nodiscard]] std::string job_key_named(std::string_view word);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// Kinds of turns beyond a rim, each as one row: all that is asked of a kind elsewhere.
+/// Kinds of turns beyond a rim, one row each with all their properties.
 #pragma once
 
 #include <memory>
@@ -16,18 +16,18 @@ struct Job;
 /// How the fibre turns round beyond a rim.
 enum class TurnKind { Friction, Pins, Pole };
 
-/// What else is known of a kind. Words are for the user; empty: there is nothing to say.
+/// Properties of a kind. Words are for the user; empty: nothing to say.
 struct TurnKindTraits {
     TurnKind kind = TurnKind::Friction;
     std::string_view word;            ///< in job files
-    std::string_view meaning{};       ///< for the reference, where the word does not say it
+    std::string_view meaning{};       ///< for the reference, where the word alone is not clear
     bool takes_run = false;           ///< along the extension, by friction (least_run_mm)
     bool reads_pins = false;          ///< the job's `pins` are for it
-    std::string_view why_patterns{};  ///< why nothing but patterns of bodies of revolution is wound
-    /// Why a job is not wound with it. Null: every job is. \param points_given landing points made
-    /// elsewhere are wound, and the job's layers not read
+    std::string_view why_patterns{};  ///< why only patterns of bodies of revolution are wound
+    /// Why a job cannot be wound with it. Null: every job can. \param points_given landing points
+    /// made elsewhere are wound, and the job's layers not read
     std::string (*why_not)(const Job& job, bool points_given) = nullptr;
-    /// What patterns turn over rims by (RimTurnsMaker); never null.
+    /// Maker of the turns of patterns over rims (RimTurnsMaker); never null.
     std::unique_ptr<RimTurns> (*turns)(const Job& job, const Tow& tow,
                                        double extension_mm) = nullptr;
 };

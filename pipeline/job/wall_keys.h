@@ -11,7 +11,7 @@ namespace meshwind {
 /// For the table of layers. Other kinds refuse them.
 [[nodiscard]] std::vector<Key<LayerJob>> wall_keys();
 
-/// That a wall says how thick it is to be. \throws InputError job.wall_amount
+/// Checks that a wall states its thickness. \throws InputError job.wall_amount
 void check_wall(const JsonObject& object, const LayerJob& layer);
 
 }  // namespace meshwind

@@ -1,4 +1,4 @@
-/// A program to be run in the air: the same increments, from a start so far out that nothing can
+/// Dry run of a program in the air: the same increments, from a start so far out that nothing can
 /// meet the part.
 #pragma once
 
@@ -13,15 +13,15 @@ namespace meshwind {
 struct DryRun {
     std::string text;
     BlockList blocks;       ///< as read from the text
-    char axis = '?';        ///< that starts elsewhere
-    double moved_mm = 0.0;  ///< how far, with its sign
+    char axis = '?';        ///< axis that starts elsewhere
+    double moved_mm = 0.0;  ///< shift of its start, with sign
 };
 
 /// A linear axis across the spindle starts farther out, so that in every block the head stays
-/// `clearance_mm` off the mandrel, its extensions and all bodies; what the axes do from there on is
-/// that of the program. Time, speeds and the controller's words stay as they are.
-/// \param clearance_mm > 0 \throws InputError as verify_text(); dry_run.no_axis where no such axis
-/// is, dry_run.no_room where its travel does not reach
+/// `clearance_mm` off the mandrel, its extensions and all bodies; from there on the axes move as in
+/// the program. Time, speeds and the controller's words stay as they are.
+/// \param clearance_mm > 0 \throws InputError as verify_text(); dry_run.no_axis where there is no
+/// such axis, dry_run.no_room where its travel does not reach
 [[nodiscard]] DryRun dry_run(Setup setup, const VerifyInputs& inputs, double clearance_mm);
 
 }  // namespace meshwind

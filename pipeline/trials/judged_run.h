@@ -1,4 +1,4 @@
-/// What a run of the main job came to, and which of two is better.
+/// Judges runs of the main job, and compares two.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace meshwind {
 
-/// More fibres or a larger blend cover so much more of the wall, or they are not worth it.
+/// Least gain in the covered share of the wall that is worth more fibres or a larger blend.
 inline constexpr double kWorthMore = 0.005;
 
-/// Share of what courses reach that fibres have to be able to join: a plan has to cover
-/// kCoveredShare of it, and what is planned later to join the courses covers .02 on top at most.
+/// Least share of the reached wall that fibres must be able to join: a plan has to cover
+/// kCoveredShare of it, and paths planned later to join the courses cover at most .02 more.
 inline constexpr double kMinReach = kCoveredShare - 0.02;
 
 [[nodiscard]] const Plan& first_plan(const Run& run);
@@ -21,13 +21,13 @@ inline constexpr double kMinReach = kCoveredShare - 0.02;
 /// Share of the wall that the run's first layer covers.
 [[nodiscard]] double covered_share(const Run& run);
 
-/// Share of the wall that fibres could join, as many as the job may take.
+/// Share of the wall that fibres could join, up to the number that the job may take.
 [[nodiscard]] double can_cover(const Run& run);
 
 /// Whether its plan was too bare to be wound (WindOptions::least_covered).
 [[nodiscard]] bool was_too_bare(const Run& run);
 
-/// Whether it is a cover that was not wound, and that fibres could join enough of.
+/// Whether it is a cover that was not wound and of which fibres could join enough.
 [[nodiscard]] bool joins_enough(const Run& run);
 
 /// Whether it was wound and passed every check.
@@ -35,21 +35,21 @@ inline constexpr double kMinReach = kCoveredShare - 0.02;
 
 [[nodiscard]] bool turns_on_pins(const Job& job);
 
-/// Whether a run is to be taken instead of another: one that stands, then one that is planned, then
-/// what covers more by as much as what it asks for besides is worth.
+/// Whether a run is preferred to another: one that stands, then one that is planned, then one whose
+/// gain in coverage is worth its further demands.
 [[nodiscard]] bool is_better(const Run& run, const Run& than);
 
-/// A cover that is wound, covers most of what it can, and fails: courses that the machine refuses
-/// in their places, which another choice of courses has elsewhere, leave wall bare or fail
-/// themselves. What fails for bare wall alone does so by chance where little lacks.
+/// Whether a cover is wound, covers most of the possible share, and fails: courses that the machine
+/// refuses in their places, which another choice of courses has elsewhere, leave wall bare or fail
+/// themselves. A failure by bare wall alone is by chance where little is missing.
 [[nodiscard]] bool fails_by_chance(const Run& run);
 
 /// "with seed 3, 2 fibres, extensions of 150 mm and a blend of 6.0 mm 97.1 % of the wall is
 /// covered, and 1 check fails: slip"
-/// \param usual_seed with which no seed is told
+/// \param usual_seed seed that is not mentioned
 [[nodiscard]] std::string tried_words(const Run& run, std::uint64_t usual_seed);
 
-/// What the job has to say for the same run.
+/// Settings that a job needs for the same run, in words.
 [[nodiscard]] std::string settings_words(const Job& job);
 
 }  // namespace meshwind

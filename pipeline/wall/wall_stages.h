@@ -1,4 +1,4 @@
-/// A wall, laid in stages: what each is asked for, and what lies there behind the last.
+/// Winds a wall to a wanted thickness in stages: the demand on each, and the result after the last.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace meshwind {
 
-/// A region of the mandrel with what lacks there.
+/// A region of the mandrel with its missing thickness.
 struct ThinRegion {
     std::int32_t region = -1;
     double below_share = 0.0;                         ///< of the region's wall in reach
@@ -23,15 +23,15 @@ struct ThinRegion {
     Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  ///< that place, on the bare mandrel
 };
 
-/// A wall as it lies there, against what was asked for. Ratios are those of a place's layers to
-/// the layers asked for there; all are shares of the wall.
+/// Figures of the laid wall against the wanted one. Ratios are those of a place's layers to the
+/// layers asked for there; all are shares of the wall.
 struct WallFigures {
     double asked_layers = 0.0;  ///< on average
-    double reachable = 0.0;     ///< that some course passes
-    double below_share = 0.0;   ///< of what is reachable, with a ratio below 1
+    double reachable = 0.0;     ///< share that some course passes
+    double below_share = 0.0;   ///< of the reachable wall, with a ratio below 1
     double mean_ratio = 0.0;
     double cv = 0.0;            ///< standard deviation of the ratio over its mean
-    double p1_ratio = 0.0;      ///< 99 % of what is reachable has at least so much
+    double p1_ratio = 0.0;      ///< 99 % of the reachable wall has at least this ratio
     double fibre_mm = 0.0;      ///< turns included
     double turn_share = 0.0;    ///< of the fibre
     double fibre_factor = 0.0;  ///< the fibre over that of the asked layers without gap and overlap
@@ -49,29 +49,29 @@ struct WallPlaces {
 
 class WallStages {
 public:
-    /// \param bare what the wall lies on \param index of a layer of kind Wall
+    /// \param bare mandrel under the wall \param index of a layer of kind Wall
     /// \throws InputError job.wall_thin, job.no_region, job.no_rim, job.wall_place with the place
     /// in the job
     WallStages(const Mandrel& bare, const Job& job, std::size_t index, std::uint64_t seed,
                const std::filesystem::path& job_file);
 
-    /// As many stages are laid as the thickness takes; what follows fills thin places.
+    /// Whether as many stages are laid as the thickness takes; later ones fill thin places.
     [[nodiscard]] bool laid() const { return stages_ >= planned_stages_; }
 
     [[nodiscard]] int stages() const { return stages_; }
 
-    /// What the stages so far were asked for where most is asked for.
+    /// Layers asked of the stages so far, where most is asked for.
     [[nodiscard]] double layers_so_far() const {
         return static_cast<double>(most_asked_) * stages_ / planned_stages_;
     }
 
-    /// Nothing more is asked for, or further stages would not help.
+    /// Whether no more is asked for, or further stages would not help.
     [[nodiscard]] bool done() const;
 
-    /// What the next stage is to lay. \pre !done()
+    /// Demand on the next stage. \pre !done()
     [[nodiscard]] StageAsk next() const;
 
-    /// A stage has been laid. \param surface that it lies on, with the triangles of the bare one
+    /// Records a laid stage. \param surface under it, with the triangles of the bare one
     void enter(const Surface& surface, const Plan& plan);
 
     [[nodiscard]] WallFigures figures() const;
@@ -99,23 +99,23 @@ private:
     double area_mm2_;
     WallPlaces measured_;
     WallPlaces weighed_;
-    WallPlaces judged_;          // others again, so that figures are not those that were planned on
-    std::vector<char> reached_;  // per measured place
+    WallPlaces judged_;  // further ones, so that figures are not taken where the plan was made
+    std::vector<char> reached_;          // per measured place
     std::vector<std::int32_t> nearest_;  // per judged place: the measured one that is nearest
     std::int32_t most_asked_ = 1;
     int planned_stages_ = 1;
     int stages_ = 0;
-    bool in_vain_ = false;  // the last stage brought no place to what is asked for
+    bool in_vain_ = false;  // the last stage brought no place to its wanted layers
     double fibre_mm_ = 0.0;
     double turns_mm_ = 0.0;
     double least_mm_ = 0.0;
 };
 
-/// That a layer of kind Wall can be asked for on its mandrel. \throws as WallStages does
+/// Checks that a layer of kind Wall is possible on its mandrel. \throws as WallStages does
 void require_wall(const Mandrel& bare, const Job& job, std::size_t index,
                   const std::filesystem::path& job_file);
 
-/// Check "wall": at most a share of what is reachable is below what was asked for.
+/// Check "wall": at most a share of the reachable wall is below the wanted layers.
 [[nodiscard]] Check wall_check(const WallFigures& figures, double most_below);
 
 }  // namespace meshwind

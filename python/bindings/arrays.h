@@ -1,5 +1,4 @@
-/// Arrays of NumPy over memory of ours: nothing is copied, nobody can write to it, and it lives as
-/// long as an array does.
+/// Read-only NumPy arrays over memory of ours, without a copy; it lives as long as an array does.
 #pragma once
 
 #include <array>
@@ -32,13 +31,13 @@ pybind11::array array_over(const Number* first, std::size_t rows, std::size_t co
     return array;
 }
 
-/// n numbers.
+/// Array of n numbers.
 template <typename Number>
 pybind11::array array_over(const std::vector<Number>& numbers, const pybind11::object& owner) {
     return array_over(numbers.data(), numbers.size(), 0, sizeof(Number), owner);
 }
 
-/// n x 3.
+/// Array n x 3.
 inline pybind11::array array_over(const std::vector<Eigen::Vector3d>& points,
                                   const pybind11::object& owner) {
     return array_over(reinterpret_cast<const double*>(points.data()), points.size(), 3,

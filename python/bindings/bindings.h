@@ -13,7 +13,7 @@
 
 namespace meshwind {
 
-/// A run with what is made of it on demand. The lay-up refers to the run: both stay in their place.
+/// A run with its lay-up, made on demand. The lay-up refers to the run: both stay in their place.
 struct OwnedRun {
     explicit OwnedRun(Run wound) : run(std::move(wound)) {}
     OwnedRun(const OwnedRun&) = delete;
@@ -23,7 +23,7 @@ struct OwnedRun {
     std::optional<Layup> layup;
 };
 
-/// Part of a run, which stays while the part is held.
+/// Part of a run, which lives while the part is held.
 struct LayerOfRun {
     std::shared_ptr<OwnedRun> owner;
     std::size_t layer = 0;

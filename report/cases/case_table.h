@@ -1,4 +1,4 @@
-/// Many runs of the main job as the rows of a table.
+/// Batch runs of the main job: one case per row of a table.
 #pragma once
 
 #include <string>
@@ -16,11 +16,11 @@ struct Case {
     int line = 0;                       ///< of the table
 };
 
-/// Columns `id` and `mandrel`, may be `machine` and `job`; every other one is named like a job's
-/// key, `tow.width` or `layers.0.angle`, and empty cells leave that key as it is. Blanks around
-/// cells are passed over. \param file for the errors \throws InputError case.column, case.cell (no
-/// or too many cells, an empty mandrel), case.id (not the name of a folder, or twice), case.none
-/// (no row), each with its line
+/// Columns `id` and `mandrel`, optionally `machine` and `job`; every other one is named like a
+/// job's key, `tow.width` or `layers.0.angle`, and empty cells leave that key as it is. Blanks
+/// around cells are skipped. \param file for the errors \throws InputError case.column, case.cell
+/// (no or too many cells, an empty mandrel), case.id (not the name of a folder, or twice),
+/// case.none (no row), each with its line
 [[nodiscard]] std::vector<Case> read_cases(std::string_view text, const std::string& file);
 
 }  // namespace meshwind

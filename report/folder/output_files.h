@@ -15,11 +15,11 @@ namespace meshwind {
 
 /// The output folder of one run, which no other run can have at the same time. Files are collected
 /// under temporary names and appear together with `publish`; without it nothing of the run remains,
-/// and what an earlier run left there is untouched.
+/// and files of an earlier run are untouched.
 class OutputFolder {
 public:
-    /// Creates the folder, with its parents, where it is missing; removes what killed runs left
-    /// under temporary names.
+    /// Creates the folder, with its parents, where it is missing; removes temporary files of killed
+    /// runs.
     /// \throws IoError output.locked while another run has the folder; output.unwritable, also when
     /// no file can be made in the folder
     explicit OutputFolder(std::filesystem::path folder);
@@ -34,17 +34,17 @@ public:
     /// The same piece by piece. \throws what the source throws
     void add(const std::string& name, const ByteSource& source);
 
-    /// Has `publish` remove the file that an earlier run left under this name.
+    /// Makes `publish` remove an earlier run's file of this name.
     void withdraw(const std::string& name);
 
-    /// Has `publish` remove all that an earlier run left and that the report of this one will not
+    /// Makes `publish` remove all files of an earlier run that the report of this one will not
     /// describe (files_of_earlier_run), so that no program lies beside a report that is not its
     /// own.
     void withdraw_earlier_run();
 
-    /// Gives all files their names. At every moment the folder has no program but those that the
-    /// report in it describes: the old programs and their report go first, then tables come, the
-    /// new report, and its programs last. All is on the disk on return.
+    /// Gives all files their names. At every moment the folder has only programs that the report in
+    /// it describes: the old programs and their report go first, then tables come, the new report,
+    /// and its programs last. All is on the disk on return.
     /// \throws IoError output.unwritable; the folder is then as it was before
     void publish();
 

@@ -1,4 +1,4 @@
-/// Which files of an output folder are a run's, and what each is to the others.
+/// Files of a run in an output folder, and their roles.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace meshwind {
 
-/// What a file of an output folder is to the others.
+/// Role of a file of an output folder.
 enum class FileRole {
-    Report,   ///< says what the others are worth
-    Program,  ///< what a machine may run, of any controller language
+    Report,   ///< judges the others
+    Program,  ///< a machine may run it; of any controller language
     Table,    ///< all else
 };
 
 [[nodiscard]] FileRole role_of(const std::filesystem::path& name);
 
-/// Whether the main job writes files of this name, with a machine of whatever controller.
+/// Whether the main job writes files of this name, with a machine of any controller.
 [[nodiscard]] bool is_run_file(const std::filesystem::path& name);
 
 /// Files in an output folder that an earlier run has left there, be it of the main job, `post`,
@@ -26,7 +26,8 @@ enum class FileRole {
 /// be listed
 [[nodiscard]] std::vector<std::string> files_of_earlier_run(const std::filesystem::path& folder);
 
-/// A run must not replace what it reads. \param inputs files that exist; empty ones do not count
+/// Makes sure that a run does not replace its own inputs. \param inputs files that exist; empty
+/// ones do not count
 /// \throws InputError output.holds_input for one that files_of_earlier_run() of `folder` has
 void spare_inputs(const std::filesystem::path& folder,
                   const std::vector<std::filesystem::path>& inputs);

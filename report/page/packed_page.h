@@ -1,4 +1,4 @@
-/// The pages that viewer/ builds, with data in them.
+/// Packs data into the pages that viewer/ builds.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace meshwind {
 
-/// The pages without data, as viewer/ built them: of report.html, of `inspect --page`, and of
+/// The pages without data, as built by viewer/: of report.html, of `inspect --page`, and of
 /// `strength`. Empty in a program that was built without them.
 [[nodiscard]] std::string_view report_page_template();
 [[nodiscard]] std::string_view part_page_template();

@@ -1,4 +1,4 @@
-/// What a page shows, as one binary text that viewer/src/payload.ts reads.
+/// Data of a page, as one binary text that viewer/src/payload.ts reads.
 #pragma once
 
 #include <array>
@@ -26,14 +26,14 @@ public:
     template <typename T>
     void add(const std::string& name, std::size_t width, std::span<const T> entries);
 
-    /// \param step to whole multiples of which values are rounded: a power of two packs well; 0:
-    /// not
+    /// \param step values are rounded to whole multiples of it: a power of two packs well; 0: no
+    /// rounding
     void add_floats(const std::string& name, const std::vector<double>& values, double step = 0.0);
     void add_points(const std::string& name, const std::vector<Eigen::Vector3d>& points,
                     double step = 0.0);
     void add_faces(const std::string& name, const std::vector<std::array<std::int32_t, 3>>& faces);
 
-    /// All of it behind its header. \param header of the page, an object
+    /// All arrays behind their header. \param header of the page, an object
     [[nodiscard]] std::string behind(nlohmann::json header) const;
 
 private:

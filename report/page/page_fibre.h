@@ -13,7 +13,7 @@
 
 namespace meshwind {
 
-/// How much of a run's fibres, blocks and text its page shows.
+/// Amount of a run's fibres, blocks and text that its page shows.
 struct PageExtent {
     const Setup& first;             ///< of the run's first layer
     bool usable = false;            ///< Run::usable: else no program is named or listed

@@ -9,7 +9,7 @@
 
 namespace meshwind {
 
-/// The machine's entry in the page's header; adds its meshes, of the head, then of bodies.
+/// The machine's entry in the page's header; adds the meshes of its head, then of bodies.
 [[nodiscard]] nlohmann::json page_machine(const Machine& machine, PageArrays& arrays);
 
 /// Extensions and pins of a mandrel as one mesh, which is added; null where there are none.

@@ -1,4 +1,4 @@
-/// What a program lays, as a run that the page can show.
+/// Converts a verified program into a run that the page can show.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace meshwind {
 
-/// A run of one layer, whose pieces are what the program lays between its course marks, all of it
-/// without any. Where it lays nothing the layer has no plan, and the reason.
+/// A run of one layer. Its pieces are the fibre that the program lays between its course marks, or
+/// one piece without marks. Where it lays nothing the layer has no plan, and the reason.
 /// \param text of the program
 [[nodiscard]] Run run_of(VerifyOutcome outcome, std::string text, std::uint64_t seed);
 

@@ -7,7 +7,7 @@
 
 namespace meshwind {
 
-/// How a line looks: colours count from 0 and repeat after six.
+/// Style of a line: colours count from 0 and repeat after six.
 struct PlotStyle {
     int colour = 0;
     bool dashed = false;
@@ -24,7 +24,7 @@ struct PlotKey {
 };
 
 /// A table of panels. One x axis for all; one y axis for each column, of eight decades at most:
-/// what lies lower leaves its panel.
+/// lower values leave their panel.
 struct LogPlot {
     std::string title;
     std::string x_label;

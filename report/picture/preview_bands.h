@@ -1,4 +1,4 @@
-/// Bands of a picture: what was wound as coloured triangles.
+/// Bands of a picture: the wound fibre as coloured triangles.
 /// Included by .cpp files of this folder only.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace meshwind {
 
-/// In winding order, as wide as the first layer's tow. \pre colour is not Layers
+/// Bands in winding order, as wide as the first layer's tow. \pre colour is not Layers
 [[nodiscard]] PreviewMesh preview_bands(std::span<const WoundLayer> layers, PreviewColour colour);
 
 }  // namespace meshwind

@@ -8,14 +8,14 @@
 
 namespace meshwind {
 
-/// sRGB, 0xRRGGBB, as light.
+/// Linear light of an sRGB colour, 0xRRGGBB.
 [[nodiscard]] Eigen::Vector3f linear_colour(std::uint32_t rgb);
 
-/// Seven in turn, told apart with any of the common kinds of colour blindness.
+/// Seven colours in turn, distinguishable with any of the common kinds of colour blindness.
 /// Source: okabe_ito_2008_colour, its seven colours beside black.
 [[nodiscard]] Eigen::Vector3f course_colour(std::size_t course);
 
-/// From dark to light, evenly bright steps: five colours of matplotlib's viridis.
+/// Colour scale from dark to light in evenly bright steps: five colours of matplotlib's viridis.
 /// \param share clamped to 0..1
 [[nodiscard]] Eigen::Vector3f scale_colour(double share);
 

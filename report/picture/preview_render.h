@@ -1,4 +1,4 @@
-/// Pictures of shaded triangles without a display: a z-buffer that takes several samples a pixel.
+/// Renders shaded triangles without a display, by a z-buffer with several samples a pixel.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace meshwind {
 
-/// Triangles with what is interpolated over them; all but `face` per vertex. Mandrel frame.
+/// Triangles with values to interpolate over them; all but `face` per vertex. Mandrel frame.
 struct PreviewMesh {
     std::vector<Eigen::Vector3f> position_mm;
     std::vector<Eigen::Vector3f> normal;  ///< unit, outward
@@ -22,10 +22,12 @@ struct PreviewMesh {
 /// A body, and bands painted on it.
 struct PreviewScene {
     PreviewMesh body;
-    /// Each band over those before it, wherever it is not behind the body: what lies on the body is
-    /// not compared by depth, so the winding order is kept exactly. It is lit as the body under it.
+    /// Each band is drawn over those before it, wherever it is not behind the body: bands on the
+    /// body are not compared by depth, so the winding order is kept exactly. It is lit as the body
+    /// under it.
     PreviewMesh bands;
-    float depth_mm = 0.0F;  ///< a band so far above the body is free of it, so far below it hidden
+    float depth_mm =
+        0.0F;  ///< a band this far above the body is free of it, this far below it hidden
     Eigen::Vector3d toward = Eigen::Vector3d::UnitZ();  ///< to the viewer, unit
     Eigen::Vector3d up = Eigen::Vector3d::UnitY();      ///< not along `toward`
 };

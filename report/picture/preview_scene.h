@@ -1,4 +1,5 @@
-/// From wound layers to the picture of them: mandrel, extensions and bands as coloured triangles.
+/// Builds the scene of a picture from wound layers: mandrel, extensions and bands as coloured
+/// triangles.
 #pragma once
 
 #include <span>
@@ -9,7 +10,7 @@
 
 namespace meshwind {
 
-/// What colours show.
+/// Quantity shown by the colours.
 enum class PreviewColour {
     Course,  ///< seven colours in turn; turns are paler than the course before them
     Layers,  ///< of the wall, 0 to the most; no bands are drawn

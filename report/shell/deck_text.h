@@ -1,4 +1,4 @@
-/// What decks of several programs have in common.
+/// Text common to the decks of several programs.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@ namespace meshwind {
 
 inline constexpr double kTonnes_per_mm3 = 1e-9;  // of a density of 1 g/cm3
 
-/// Version, material, size.
+/// Title of a deck: version, material, size.
 [[nodiscard]] std::string deck_title(const ShellModel& model);
 
-/// To 13 digits, in 20 columns at most.
+/// Appends a value to 13 digits, in 20 columns at most.
 void append_value(std::string& text, double value);
 
-/// With commas between.
+/// Appends values separated by commas.
 void append_values(std::string& text, std::span<const double> values);
 
 // Keywords that CalculiX took over from Abaqus.

@@ -1,5 +1,6 @@
-/// A wound wall as input of finite element programs: shells with the plies, thickness and fibre
-/// direction of each element, loads and supports, ready to be run (docs/how-to/strength.md).
+/// Writes input decks of finite element programs for a wound wall: shells with the plies, thickness
+/// and fibre direction of each element, loads and supports, ready to be run
+/// (docs/how-to/strength.md).
 #pragma once
 
 #include <string>
@@ -11,8 +12,8 @@
 namespace meshwind {
 
 /// CalculiX 2.20: S6, an *ORIENTATION for each element and ply whose name is `ply_name()`.
-/// *DISTRIBUTION, which Abaqus has for it, takes memory there with the square of the elements. All
-/// elements have as many plies, as that program needs: films of matrix fill up.
+/// *DISTRIBUTION, its Abaqus counterpart, takes memory there with the square of the elements. All
+/// elements have the same number of plies, as that program needs: films of matrix fill up.
 /// \pre quadratic elements
 [[nodiscard]] std::string calculix_deck(const ShellModel& model);
 
@@ -36,7 +37,7 @@ struct DeckFormat {
 
 [[nodiscard]] const std::vector<DeckFormat>& deck_formats();
 
-/// What lies under a triangle's plies.
+/// The sheet under a triangle's plies.
 struct ShellSheet {
     bool liner = false;         ///< else of matrix
     double thickness_mm = 0.0;  ///< 0: nothing

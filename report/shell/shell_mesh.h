@@ -1,4 +1,4 @@
-/// A wound wall as shell elements have it: the bare mandrel's triangles with their plies.
+/// A wound wall as shell elements: the bare mandrel's triangles with their plies.
 #pragma once
 
 #include <array>
@@ -45,16 +45,15 @@ struct ShellMesh {
 /// \throws IoError io.cannot_read; InputError json.*, and layup.broken for indices out of range
 [[nodiscard]] ShellMesh read_shell_mesh(const std::filesystem::path& file);
 
-/// How plies of a triangle were made fewer.
+/// Report of merging plies.
 struct PlyMerge {
     std::size_t plies_before = 0, plies_after = 0;  ///< of all triangles
-    double worst_rad = 0.0;                         ///< furthest that a ply's angle was moved by it
+    double worst_rad = 0.0;                         ///< largest change of a ply's angle by it
 };
 
-/// Makes plies of one layer and of near angles one ply, at the place of the lowest: first those
-/// less than `near_rad` apart, then on triangles that have more than `most` left the two that are
-/// nearest, of any layer. Thickness is kept, the angle is the mean of their directions by
-/// thickness.
+/// Merges plies of one layer and of near angles into one, at the place of the lowest: first those
+/// less than `near_rad` apart, then on triangles with more than `most` left the two nearest, of any
+/// layer. Thickness is kept, the angle is the mean of their directions by thickness.
 PlyMerge merge_plies(ShellMesh& mesh, double near_rad, std::size_t most);
 
 }  // namespace meshwind

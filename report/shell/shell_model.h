@@ -1,5 +1,5 @@
-/// A wound wall ready to be computed by finite elements: nodes, elements, loads and supports, in no
-/// program's format yet.
+/// Finite element model of a wound wall: nodes, elements, loads and supports, in no program's
+/// format yet.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace meshwind {
 
-/// What pulls at the wall. All of it is in balance with itself.
+/// Loads on the wall, in balance with each other.
 struct ShellLoads {
     double pressure_mpa = 0.0;  ///< inside; lids over the rims bear it too and pull at them
     double axial_n = 0.0;       ///< tension between two rims, along the line of their centres
-    /// That the second of both rims takes, bending and twisting; the first takes the opposite.
+    /// Moment on the second of both rims, bending and twisting; the first takes the opposite.
     Eigen::Vector3d moment_nmm = Eigen::Vector3d::Zero();
     /// The two rims, from 0; by default those whose lids face away from each other most, and of
     /// such the furthest apart.
@@ -52,10 +52,11 @@ struct ShellModel {
     std::vector<Support> support;   ///< six: they hold the body still and strain nothing
 };
 
-/// Middles of sides lie on the smooth surface through the triangles, but on straight sides where
-/// triangles meet at more than 30 degrees. Forces at a rim are spread evenly along it, those of a
-/// moment in proportion to the distance from the neutral line. \pre mesh and material outlive it
-/// \throws InputError shell.no_rim for rims that are not there, shell.no_pair where a load between
+/// Middles of sides lie on the smooth surface through the triangles, except on sides where
+/// triangles meet at more than 30 degrees, which are straight. Forces at a rim are spread evenly
+/// along it, those of a moment in proportion to the distance from the neutral line. \pre mesh and
+/// material outlive it
+/// \throws InputError shell.no_rim for rims that do not exist, shell.no_pair where a load between
 /// two rims has none
 [[nodiscard]] ShellModel shell_model(const ShellMesh& mesh, const WallMaterial& material,
                                      const ShellLoads& loads, ElementOrder order);

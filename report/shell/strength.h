@@ -11,18 +11,18 @@
 
 namespace meshwind {
 
-/// In a ply's axes, MPa.
+/// Stress in a ply's axes, MPa.
 struct PlyStress {
     double along = 0.0;   ///< the fibre
     double across = 0.0;  ///< in the wall
     double shear = 0.0;   ///< between both
 };
 
-/// How many times the stress a ply bears, all of it grown alike, until Tsai and Wu's criterion
-/// tsai_1971_strength is met; infinite without stress.
+/// Reserve factor: multiple of the stress, all components scaled alike, at which Tsai and Wu's
+/// criterion tsai_1971_strength is met; infinite without stress.
 [[nodiscard]] double tsai_wu_reserve(const PlyStrength& strength, const PlyStress& stress);
 
-/// A ply at the point of it that fails first.
+/// A ply at its point that fails first.
 struct PlyState {
     std::size_t triangle = 0, ply = 0;  ///< from 0
     double reserve = std::numeric_limits<double>::infinity();
@@ -41,9 +41,9 @@ struct Strength {
 /// \pre the material has strengths
 [[nodiscard]] Strength read_strength(const std::filesystem::path& dat, const ShellModel& model);
 
-/// Runs `ccx` on the deck and reads what it found. \param folder for its files, which stay there:
+/// Runs `ccx` on the deck and reads its results. \param folder for its files, which stay there:
 /// `strength.inp`, `strength.dat`
-/// \throws InputError strength.no_program, strength.failed with what the program says
+/// \throws InputError strength.no_program, strength.failed with the program's message
 [[nodiscard]] Strength compute_strength(const ShellModel& model,
                                         const std::filesystem::path& folder);
 

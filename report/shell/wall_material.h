@@ -1,4 +1,4 @@
-/// What a wound wall is made of: the ply, the matrix between the tows, the liner under it.
+/// Materials of a wound wall: the ply, the matrix between the tows, the liner under it.
 #pragma once
 
 #include <filesystem>

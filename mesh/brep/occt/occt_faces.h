@@ -19,11 +19,12 @@ namespace meshwind {
 /// Not thread-safe: Open CASCADE keeps what it evaluated last.
 class OcctFaces : public ExactFaces {
 public:
-    /// \param shape of which faces and edges are numbered in its order
+    /// \param shape whose faces and edges are numbered in its order
     explicit OcctFaces(const TopoDS_Shape& shape);
     ~OcctFaces() override;
 
-    /// Also gives each face the places from which its points are looked for. \pre before the below
+    /// Also gives each face the start points of its projections. \pre called before the functions
+    /// below
     [[nodiscard]] OcctMesh first_mesh();
     [[nodiscard]] std::vector<CadFace> describe(const FaceColours& colours) const;
 

@@ -36,7 +36,7 @@ namespace meshwind {
 
 /// Triangles between points of the exact edges and faces, as narrow as the faces allow.
 struct OcctMesh {
-    TriangleSoup soup;  ///< points that faces share are there once
+    TriangleSoup soup;  ///< points shared by faces occur once
     std::vector<std::int32_t> face;
     double off_face_mm = 0.0;  ///< largest distance of a shared point from one of its faces
     std::int32_t off_face = -1;
@@ -44,10 +44,10 @@ struct OcctMesh {
     std::vector<std::int32_t> failed_faces;
 };
 
-/// Has Open CASCADE put triangles into the faces of a shape.
+/// Tessellates the faces of a shape by Open CASCADE.
 void tessellate(const TopoDS_Shape& shape);
 
-/// What it has put into a face. Nodes count from 1.
+/// The tessellation of a face. Nodes count from 1.
 struct FaceTriangles {
     TopLoc_Location location;
     Handle(Poly_Triangulation) triangles;
@@ -60,7 +60,7 @@ struct FaceTriangles {
     [[nodiscard]] std::vector<Eigen::Vector2d> uv() const;        ///< of the nodes; or empty
 };
 
-/// Gathers the triangles of a shape's faces, with the points that faces share there once.
+/// Gathers the triangles of a shape's faces; points shared by faces occur once.
 class SharedMesh {
 public:
     explicit SharedMesh(const TopoDS_Shape& shape);

@@ -1,4 +1,4 @@
-/// CAD files as Open CASCADE reads them.
+/// Reads CAD files by Open CASCADE.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace meshwind {
 
-/// "#rrggbb" of faces that have one, wherever they stand.
+/// "#rrggbb" of coloured faces, wherever they are placed.
 using FaceColours = std::map<const TopoDS_TShape*, std::string>;
 
 struct OcctPart {
@@ -21,10 +21,10 @@ struct OcctPart {
     FaceColours colours{};  ///< of STEP files
 };
 
-/// Reads a STEP, IGES or BREP file. Faces that hang together with no other are sewn.
-/// \param solid name or number, from 1, of the one that is meant; empty: the file has one only
-/// \throws InputError mesh.not_cad (nothing of the kind that the ending promises), mesh.empty_cad,
-/// mesh.several_solids, mesh.no_such_solid
+/// Reads a STEP, IGES or BREP file. Faces that are connected with no other are sewn.
+/// \param solid name or number, from 1, of the wanted one; empty: the file has one only
+/// \throws InputError mesh.not_cad (its content is not of the kind its ending names),
+/// mesh.empty_cad, mesh.several_solids, mesh.no_such_solid
 [[nodiscard]] OcctPart read_occt(const std::filesystem::path& file, const std::string& solid);
 
 }  // namespace meshwind
