@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 const std::string kSource = MESHWIND_SOURCE_DIR;
 
-// RimJoints by letter; what is missing is zero.
+// Joints by letter; what is missing is zero.
 struct Pose {
     double c = 0.0, z = 0.0, y = 0.0, x = 0.0, a = 0.0, b = 0.0;
 };

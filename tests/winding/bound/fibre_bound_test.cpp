@@ -223,7 +223,7 @@ TEST(FibreBound, RoundsLikeCoursesTogether) {
     FibreBound bound;
     bound.forward = {0.4, 0.4, 0.4, 0.4};
     bound.backward.assign(4, 0.0);
-    // LibraryCourse 2, 1, 3 and 0; from 0.5, sums of 0.9, 1.3, 0.7 and 1.1.
+    // Members 2, 1, 3 and 0; from 0.5, sums of 0.9, 1.3, 0.7 and 1.1.
     const std::vector<DirectedCourse> half{{1, false}, {0, false}};
     EXPECT_EQ(whole_courses(bound, members, 1.0), half);
 }

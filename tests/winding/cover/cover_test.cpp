@@ -62,7 +62,7 @@ const Mandrel& tee() {
     return mandrel;
 }
 
-// RimJoints within 0.2 mm and 0.5 degrees: a course ends on a chord of the rim, the turn begins on
+// Joints within 0.2 mm and 0.5 degrees: a course ends on a chord of the rim, the turn begins on
 // its circle. The sagitta is up to edge^2 / (8 R), here 0.1 mm.
 void expect_continuous(const Plan& plan) {
     for (std::size_t i = 0; i < plan.pieces.size(); ++i) {
