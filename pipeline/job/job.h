@@ -133,8 +133,7 @@ struct Job {
     MandrelJob mandrel;
     TowJob tow;
     std::vector<LayerJob> layers = {LayerJob{}};  ///< n >= 1, in winding order
-    int fibres =
-        1;  ///< 1 .. kMaxFibres; number that may be wound one after the other, cut in between
+    int fibres = 1;  ///< 1 .. kMaxFibres; most fibres, wound one after the other, cut in between
     bool fibres_given = false;  ///< by the job's author; else there may be more
     EyeLaw eye;
     RedundancyRule redundancy = RedundancyRule::Optimal;
