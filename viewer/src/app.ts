@@ -1,5 +1,6 @@
 /** State of the page and what follows from it. */
 import { Vector2, Vector3 } from 'three';
+import type { CameraMode } from './cameraMode';
 import { Checks } from './checks';
 import type { Colouring, ColouringId } from './colour';
 import { colouringsOf } from './colourings';
@@ -11,7 +12,7 @@ import type { Kinematics, Pose } from './kinematics';
 import { legendHtml } from './legend';
 import type { Listing } from './listing';
 import type { Plots } from './plots';
-import type { CameraMode, Stage } from './stage';
+import type { Stage } from './stage';
 import { landingPoint } from './timeline';
 import type { Landing, Moment, Program, Timeline } from './timeline';
 import type { Place } from './types';

@@ -1,8 +1,8 @@
 /** What the first view and Fit take in: the part as it turns, and the head wherever the program brings it. */
 import { Box3, Matrix4, Vector3 } from 'three';
+import type { CameraMode } from './cameraMode';
 import type { Page } from './data';
 import type { Kinematics, Pose } from './kinematics';
-import type { CameraMode } from './stage';
 import type { Timeline } from './timeline';
 import type { Body } from './types';
 

@@ -14,6 +14,7 @@ import {
 } from 'three';
 import type { Material } from 'three';
 import { Bands } from './bands';
+import type { CameraMode } from './cameraMode';
 import { kBare } from './colour';
 import type { Colouring } from './colour';
 import type { CourseRange } from './courseRange';
@@ -34,7 +35,6 @@ import type { Landing, Moment, Timeline } from './timeline';
 import { TravelBox } from './travelBox';
 import { Triad } from './triad';
 
-export type CameraMode = 'machine' | 'mandrel';
 
 /** From where the whole is first seen, in the machine's axes: from above, the arm to the right. */
 const kFirstView = new Vector3(0.6, 0.65, 0.48);

@@ -1,6 +1,6 @@
 /** The axes of the frame that the camera stands in, in the corner of the picture. */
 import { Quaternion, Vector3 } from 'three';
-import type { CameraMode } from './stage';
+import type { CameraMode } from './cameraMode';
 import type { Axis } from './types';
 
 const kNames = ['X', 'Y', 'Z'];
