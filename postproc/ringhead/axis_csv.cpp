@@ -207,6 +207,7 @@ AxisTable read_table(AxisLines& lines) {
 
 std::vector<Vector3d> points_of(const std::vector<AxisStation>& stations) {
     std::vector<Vector3d> points;
+    points.reserve(stations.size());
     for (const AxisStation& station : stations) {
         points.push_back(station.point_mm);
     }

@@ -102,6 +102,7 @@ Isometry3d tool_pose(const std::array<double, 6>& tool) {
 std::vector<KrlFrame> frames_at(const RingHead& head, const FrameAxis& axis,
                                 const std::vector<double>& s_mm) {
     std::vector<KrlFrame> frames;
+    frames.reserve(s_mm.size());
     for (const double s : s_mm) {
         frames.push_back(krl_frame(carried_pose(head, axis.at(s))));
     }
@@ -110,6 +111,7 @@ std::vector<KrlFrame> frames_at(const RingHead& head, const FrameAxis& axis,
 
 std::vector<Isometry3d> poses_of(const std::vector<KrlFrame>& frames) {
     std::vector<Isometry3d> poses;
+    poses.reserve(frames.size());
     for (const KrlFrame& frame : frames) {
         poses.push_back(pose_of(frame));
     }

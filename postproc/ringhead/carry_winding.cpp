@@ -95,6 +95,7 @@ std::string drive_rings(const std::vector<RingPassage>& passages, const Carrying
                         const CarryWindingTask& task) {
     const double turns_per_mm = ring_turns_per_mm(task.angle_rad, task.tube_radius_mm);
     std::vector<std::vector<RingRow>> rows;
+    rows.reserve(passages.size());
     for (const RingPassage& passage : passages) {
         rows.push_back(drive_ring(passage, programs.of(passage),
                                   passage.back ? programs.back_s_mm : task.s_mm, task.head,
