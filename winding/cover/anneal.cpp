@@ -51,8 +51,8 @@ constexpr double kAloneShare = 0.5;
 struct AnnealTask {
     CourseRules rules;  // with the footprints of the ground
     const AnnealGround& ground;
-    std::span<const LibraryCourse> library;
-    std::span<const char> allowed;  // per member of the library
+    std::span<const LibraryCourse> members;  // of the library
+    std::span<const char> allowed;           // per member
     const AnnealOptions& options;
 };
 
@@ -81,10 +81,10 @@ struct AnnealState {
 // Samples that a course covers, by the library: at first there may be no course at all.
 double samples_of_a_course(const AnnealTask& task) {
     double covered = 0.0;
-    for (const LibraryCourse& member : task.library) {
+    for (const LibraryCourse& member : task.members) {
         covered += member.length_mm * task.rules.tow.width_mm / task.ground.samples.area_mm2;
     }
-    return std::max(1.0, covered / std::max<double>(1.0, static_cast<double>(task.library.size())));
+    return std::max(1.0, covered / std::max<double>(1.0, static_cast<double>(task.members.size())));
 }
 
 // \param share of the proposals that are done
@@ -184,7 +184,7 @@ Candidate fresh(const AnnealState& now, Draws& draws) {
     if (draws.unit() < kLibraryShare && !passing.empty()) {
         const std::size_t member = at(passing[draws.below(passing.size())]);
         if (now.task.allowed[member] != 0) {
-            return now.task.library[member].candidate;
+            return now.task.members[member].candidate;
         }
     }
     const SurfacePoint& seed = ground.samples.at[place];
@@ -311,7 +311,7 @@ Proposal joining(const AnnealState& now, Draws& draws, Proposal proposal, Anneal
     const ArrivingWay& which = ways[draws.below(ways.size())];
     const auto& members = which.way->windable;
     const std::size_t number = at(members[draws.below(members.size())]);
-    const LibraryCourse& member = now.task.library[number];
+    const LibraryCourse& member = now.task.members[number];
     const bool backward = arrival_node(end_of(member, true)) == which.arrival;
     if (now.task.allowed[number] == 0) {
         return proposal;

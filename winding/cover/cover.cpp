@@ -233,7 +233,7 @@ std::string too_bare(const std::string& words, std::span<const char> reached,
 }
 
 std::string hardly_reachable(const ProvenLibrary& library) {
-    return "courses reach only " + fixed(100.0 * reached_share(library.library().reached), 1) +
+    return "courses reach only " + fixed(100.0 * reached_share(library.grown().reached), 1) +
            " % of the wall, under " + fixed(100.0 * kWorthPlanning, 0) +
            " % nothing is planned; refused most often, " + refused_most(library.effort());
 }
@@ -270,7 +270,7 @@ void describe_uncovered(const CoverTask& task, CoverOutcome& outcome, ProvenLibr
     }
     outcome.layers.resize(task.samples.size(), 0);
     library.append_refused();
-    plan.uncovered = uncovered_wall(task.mandrel.surface, task.samples, library.library(),
+    plan.uncovered = uncovered_wall(task.mandrel.surface, task.samples, library.grown(),
                                     library.rejection(), outcome.layers);
 }
 
@@ -293,7 +293,7 @@ FibreReach proven_fibre_reach(const CoverTask& task, ProvenLibrary& library, Pla
 
 // Plans courses of a library in which there are some.
 CoverOutcome plan_courses(const CoverTask& task, ProvenLibrary& library, Plan& plan) {
-    plan.what_if = coverage_if_relaxed(task.rules, task.samples, library.library(),
+    plan.what_if = coverage_if_relaxed(task.rules, task.samples, library.grown(),
                                        seed_of(Stream::Otherwise, task.options.context.seed));
     if (reached_share(library.reached()) < kWorthPlanning) {
         library.strike_off_all(CourseFault::NotPlanned);
@@ -346,8 +346,8 @@ TriedPlan plan_cover(const Mandrel& mandrel, const RayQuery& obstacles, const Co
     plan.effort.seed = options.context.seed;
     plan.effort.effort = options.context.effort;
     ProvenLibrary library(grow_library(task.rules, task.samples, options), plan.effort);
-    plan.effort.candidates = library.library().candidates;
-    plan.effort.refusals = library.library().refusals;
+    plan.effort.candidates = library.grown().candidates;
+    plan.effort.refusals = library.grown().refusals;
     task.report_progress("library", 1.0);
     CoverOutcome outcome =
         library.size() > 0

@@ -50,7 +50,7 @@ struct GrowthTask {
 
 // A library and the random draws made for it.
 struct Growth {
-    Library library;
+    Library grown;
     std::uint64_t draws = 0;
 };
 
@@ -105,8 +105,8 @@ void try_candidates(const GrowthTask& task, const std::vector<std::int32_t>& see
         candidates.push_back(candidate_at(task, sample, growth.draws++));
     }
     const std::vector<CandidateFault> outcome =
-        judge_candidates(task.rules, candidates, growth.library);
-    std::vector<CandidateFault>& closest_miss = growth.library.closest_miss;
+        judge_candidates(task.rules, candidates, growth.grown);
+    std::vector<CandidateFault>& closest_miss = growth.grown.closest_miss;
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         closest_miss[at(seeds[i])] = std::max(closest_miss[at(seeds[i])], outcome[i]);
     }
@@ -185,7 +185,7 @@ std::vector<std::int32_t> members_of_scarce_ways(std::span<const LibraryCourse> 
 // hardly be wound in that direction. One continuous fibre needs them, so further candidates are
 // drawn near them.
 void grow_scarce_ways(const GrowthTask& task, Growth& growth) {
-    const std::vector<std::int32_t> near = members_of_scarce_ways(growth.library.members);
+    const std::vector<std::int32_t> near = members_of_scarce_ways(growth.grown.members);
     if (near.empty()) {
         return;
     }
@@ -195,11 +195,11 @@ void grow_scarce_ways(const GrowthTask& task, Growth& growth) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint64_t draw = growth.draws + i;
             const std::uint64_t pick = random_bits(task.stream(Stream::Seeds), ~draw) % near.size();
-            candidates[i] = candidate_near(task, growth.library.members[at(near[pick])], draw);
+            candidates[i] = candidate_near(task, growth.grown.members[at(near[pick])], draw);
         }
     });
     growth.draws += count;
-    judge_candidates(task.rules, candidates, growth.library);
+    judge_candidates(task.rules, candidates, growth.grown);
 }
 
 // Rounds through samples that no member reaches.
@@ -207,7 +207,7 @@ void grow_to_unreached(const GrowthTask& task, Growth& growth) {
     const int rounds = task.options.rounds;
     for (int round = 0; round < rounds; ++round) {
         task.tell((round + 1.0) / (rounds + 1.0));
-        const std::vector<std::int32_t> missed = unreached(growth.library.reached);
+        const std::vector<std::int32_t> missed = unreached(growth.grown.reached);
         if (missed.empty()) {
             break;
         }
@@ -236,19 +236,19 @@ Library grow_library(const CourseRules& rules, const CoverageSamples& samples,
                      const CoverOptions& options) {
     const GrowthTask task{rules, samples, options};
     Growth growth;
-    growth.library.reached.assign(samples.size(), 0);
-    growth.library.closest_miss.assign(samples.size(), CandidateFault::None);
+    growth.grown.reached.assign(samples.size(), 0);
+    growth.grown.closest_miss.assign(samples.size(), CandidateFault::None);
     const std::vector<std::int32_t> seeds = first_seeds(task);
     task.tell(0.0);
     const std::size_t first = std::min(kFirstCandidates, seeds.size());
-    growth.library.judging =
+    growth.grown.judging =
         sketches_hold(task, std::span(seeds).first(first)) ? Judging::Sketches : Judging::Courses;
     try_candidates(task, seeds, growth);
     grow_to_unreached(task, growth);
     for (int round = 0; round < kScarceRounds; ++round) {
         grow_scarce_ways(task, growth);
     }
-    return std::move(growth.library);
+    return std::move(growth.grown);
 }
 
 double reached_share(std::span<const char> reached) {

@@ -61,7 +61,7 @@ public:
     /// \param effort of the plan; must outlive it
     ProvenLibrary(Library library, PlanEffort& effort);
 
-    [[nodiscard]] const Library& library() const { return library_; }
+    [[nodiscard]] const Library& grown() const { return library_; }
     /// Number of members of the library itself.
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::span<LibraryCourse> members() {
