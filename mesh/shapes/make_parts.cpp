@@ -6,10 +6,15 @@
 #include <set>
 #include <utility>
 
+#include "core/units.h"
+
 namespace meshwind {
 namespace {
 
 using Eigen::Vector3d;
+
+// Chords of a quarter.
+constexpr int kTable = 512;
 
 Vector3d centre_of(const TriangleSoup& soup, const VertexRow& row) {
     Vector3d sum = Vector3d::Zero();
@@ -33,6 +38,22 @@ std::size_t nearest_in(const TriangleSoup& soup, const VertexRow& row, const Vec
 
 std::int32_t steps_of(double length_mm, double step_mm, std::int32_t least) {
     return std::max(least, static_cast<std::int32_t>(std::lround(length_mm / step_mm)));
+}
+
+QuarterLengths::QuarterLengths(const std::function<Vector3d(double)>& place_mm)
+    : length_mm_(kTable + 1, 0.0) {
+    Vector3d last = place_mm(0.0);
+    for (int i = 1; i <= kTable; ++i) {
+        const Vector3d next = place_mm(0.5 * kPi * i / kTable);
+        length_mm_[at(i)] = length_mm_[at(i - 1)] + (next - last).norm();
+        last = next;
+    }
+}
+
+double QuarterLengths::parameter(double length_mm) const {
+    const auto above = std::upper_bound(length_mm_.begin() + 1, length_mm_.end() - 1, length_mm);
+    const double share = (length_mm - *(above - 1)) / (*above - *(above - 1));
+    return 0.5 * kPi * (static_cast<double>(above - 1 - length_mm_.begin()) + share) / kTable;
 }
 
 double row_step_mm(double edge_mm) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/index.h"
@@ -16,6 +17,19 @@ using VertexRow = std::vector<std::int32_t>;
 
 /// Distance between rows of equilateral triangles of this edge.
 [[nodiscard]] double row_step_mm(double edge_mm);
+
+/// Length along a curve over its parameters 0 to pi / 2, by a table of chords.
+class QuarterLengths {
+public:
+    explicit QuarterLengths(const std::function<Eigen::Vector3d(double)>& place_mm);
+
+    [[nodiscard]] double whole_mm() const { return length_mm_.back(); }
+    /// The parameter up to which the curve has this length.
+    [[nodiscard]] double parameter(double length_mm) const;
+
+private:
+    std::vector<double> length_mm_;  // at even steps of the parameter
+};
 
 /// Triangles between two rows by the shorter diagonal each time; `upper` lies left of `lower`'s
 /// direction seen from outside, both run the same way. Rows of one vertex make a fan.

@@ -15,38 +15,21 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kTable = 512;
-
-// Lengths along the spine from psi = 0, at kTable steps to pi / 2.
-std::vector<double> quarter_lengths(const TeeShape& shape) {
-    std::vector<double> length(kTable + 1, 0.0);
-    Vector3d last = tee_spine_mm(shape, 0.0);
-    for (int i = 1; i <= kTable; ++i) {
-        const Vector3d next = tee_spine_mm(shape, 0.5 * kPi * i / kTable);
-        length[at(i)] = length[at(i - 1)] + (next - last).norm();
-        last = next;
-    }
-    return length;
-}
-
 // Even steps along the contact curves; the quarters' ends are always among the angles, since equal
 // radii have a kink there.
 std::vector<double> contact_angles(const TeeShape& shape, double edge_mm) {
     TeeShape mirrored = shape;
     mirrored.lean_rad = -shape.lean_rad;
-    const std::vector<double> near = quarter_lengths(shape);
-    const std::vector<double> far = quarter_lengths(mirrored);
+    const QuarterLengths near([&](double psi) { return tee_spine_mm(shape, psi); });
+    const QuarterLengths far([&](double psi) { return tee_spine_mm(mirrored, psi); });
     std::vector<double> angles;
     for (std::int32_t corner = 0; corner < 4; ++corner) {
-        const std::vector<double>& length = corner == 0 || corner == 3 ? near : far;
-        const std::int32_t quarter = steps_of(length.back(), edge_mm, 3);
+        const QuarterLengths& length = corner == 0 || corner == 3 ? near : far;
+        const std::int32_t quarter = steps_of(length.whole_mm(), edge_mm, 3);
         const bool from_behind = corner % 2 == 1;
         for (std::int32_t step = 0; step < quarter; ++step) {
-            const double wanted = length.back() * (from_behind ? quarter - step : step) / quarter;
-            const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
-            const double fraction = (wanted - *(above - 1)) / (*above - *(above - 1));
-            const double psi =
-                0.5 * kPi * (static_cast<double>(above - 1 - length.begin()) + fraction) / kTable;
+            const double psi = length.parameter(length.whole_mm() *
+                                                (from_behind ? quarter - step : step) / quarter);
             const double base = 0.5 * kPi * corner;
             angles.push_back(from_behind ? base + 0.5 * kPi - psi : base + psi);
         }

@@ -118,21 +118,11 @@ struct Poles {
 
 // Angles of even steps along the ball's way, both ends left out; the middle is among them.
 std::vector<double> inner_angles(const Crotch& crotch, double edge_mm) {
-    constexpr int kTable = 512;
-    std::vector<double> length(kTable + 1, 0.0);
-    for (int i = 1; i <= kTable; ++i) {
-        const double step = 0.5 * kPi / kTable;
-        length[at(i)] = length[at(i - 1)] +
-                        (crotch.centre_mm(i * step) - crotch.centre_mm((i - 1) * step)).norm();
-    }
-    const std::int32_t half = steps_of(length.back(), edge_mm, 3);
+    const QuarterLengths length([&](double theta) { return crotch.centre_mm(theta); });
+    const std::int32_t half = steps_of(length.whole_mm(), edge_mm, 3);
     std::vector<double> angles(at(2 * half - 1), 0.0);
     for (std::int32_t step = 1; step < half; ++step) {
-        const double wanted = length.back() * step / half;
-        const auto above = std::upper_bound(length.begin() + 1, length.end() - 1, wanted);
-        const double share = (wanted - *(above - 1)) / (*above - *(above - 1));
-        const double theta =
-            0.5 * kPi * (static_cast<double>(above - 1 - length.begin()) + share) / kTable;
+        const double theta = length.parameter(length.whole_mm() * step / half);
         angles[at(half - 1 + step)] = theta;
         angles[at(half - 1 - step)] = -theta;
     }
