@@ -152,9 +152,9 @@ private:
         for (std::size_t i = 0; i < chords; ++i) {
             const double before = i > 0 ? chord(i - 1).norm() : 0.0;
             const double behind = i + 1 < chords ? chord(i + 1).norm() : 0.0;
-            const bool continues_fibre = (i > 0 && turn_rad(i) < kSameLine_rad) ||
-                                         (i + 1 < chords && turn_rad(i + 1) < kSameLine_rad);
-            points_[i].line = points_[i].line || continues_fibre ||
+            const bool same_line = (i > 0 && turn_rad(i) < kSameLine_rad) ||
+                                   (i + 1 < chords && turn_rad(i + 1) < kSameLine_rad);
+            points_[i].line = points_[i].line || same_line ||
                               chord(i).norm() > kLongChord * std::max(before, behind);
         }
     }

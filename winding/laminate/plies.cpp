@@ -184,11 +184,10 @@ std::vector<Ply> plies_from(std::vector<Weighed> contacts, const Vector3d& norma
     std::vector<std::int32_t> seen;  // samples of the ply
     double last_mm = 0.0;
     for (const auto& [contact, weight] : contacts) {
-        const bool continues_fibre =
-            !plies.empty() && plies.back().piece == contact.piece &&
-            contact.s_mm - last_mm <= kNextPass_bands * tow_width_mm &&
-            std::find(seen.begin(), seen.end(), contact.sample) == seen.end();
-        if (!continues_fibre) {
+        const bool same_ply = !plies.empty() && plies.back().piece == contact.piece &&
+                              contact.s_mm - last_mm <= kNextPass_bands * tow_width_mm &&
+                              std::find(seen.begin(), seen.end(), contact.sample) == seen.end();
+        if (!same_ply) {
             plies.push_back({contact.piece, 0.0, Vector3d::Zero()});
             seen.clear();
         }

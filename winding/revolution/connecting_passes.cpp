@@ -107,10 +107,10 @@ private:
             std::swap(at_low, at_high);
         }
         if (wanted_mm <= reach_mm(at_low)) {
-            return continues_fibre(at_low);
+            return followable(at_low);
         }
         if (wanted_mm >= reach_mm(at_high)) {
-            return continues_fibre(at_high);
+            return followable(at_high);
         }
         for (int i = 0; i < kHalvings; ++i) {
             const double middle = 0.5 * (low + high);
@@ -120,11 +120,11 @@ private:
             (beyond ? at_high : at_low) = std::move(half);
         }
         // Both stop at the parallel, but for rounding; the one short of it ends in itself.
-        return continues_fibre(at_low);
+        return followable(at_low);
     }
 
     // A pass after which another can follow.
-    [[nodiscard]] std::optional<MeridianPass> continues_fibre(const MeridianPass& pass) const {
+    [[nodiscard]] std::optional<MeridianPass> followable(const MeridianPass& pass) const {
         const bool upward = end_ == 0;
         const bool moved = pass.stations.size() > 1 && pass.length_mm() > request_.station_mm;
         const MeridianStop stop = upward ? pass.upper : pass.lower;
@@ -152,7 +152,7 @@ private:
     [[nodiscard]] std::optional<MeridianPass> farthest_pass(double arc_mm) const {
         std::optional<MeridianPass> best;
         for (const double slip : {request_.friction, -request_.friction, 0.0}) {
-            std::optional<MeridianPass> next = continues_fibre(pass(arc_mm, slip));
+            std::optional<MeridianPass> next = followable(pass(arc_mm, slip));
             if (next && (!best || reach_mm(*next) > reach_mm(*best))) {
                 best = std::move(next);
             }
