@@ -85,7 +85,7 @@ struct FibreLimits {
 enum class FeedMode { InverseTime, PerMinute };
 
 struct Controller {
-    std::string dialect;  ///< a name known to postproc/nc/dialect.h
+    std::string dialect;  ///< a name known to postproc/robot/dialects.h
     FeedMode feed = FeedMode::InverseTime;
     std::vector<std::string> header;  ///< lines put before the first move as they are
     std::vector<std::string> footer;  ///< lines put after the last move as they are

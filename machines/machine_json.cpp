@@ -342,8 +342,8 @@ Key<Controller> lines_key(std::string_view name, std::vector<std::string> Contro
 const KeyTable<Controller>& controller_keys() {
     static const KeyTable<Controller> kTable = {{
         required(any_text("dialect", &Controller::dialect,
-                          "language of the program: linuxcnc, fanuc, siemens, grbl, marlin or "
-                          "pulses; krl for carried frames")),
+                          "language of the program: linuxcnc, fanuc, siemens, grbl, marlin, "
+                          "pulses or rapid; krl for carried frames")),
         or_null(word("feed", &Controller::feed, {"inverse-time", "per-minute"},
                      "what F means; inverse-time without")),
         lines_key("header", &Controller::header, "lines of one's own at the head of the program"),

@@ -14,6 +14,7 @@
 #include "mesh/mandrel/extension.h"
 #include "pipeline/job/job_friction.h"
 #include "postproc/ringhead/krl.h"
+#include "postproc/robot/dialects.h"
 
 namespace meshwind {
 namespace {

@@ -1,11 +1,8 @@
 #include "postproc/nc/dialect.h"
 
-#include <memory>
 #include <numeric>
 
 #include "core/error.h"
-#include "postproc/nc/nc_dialects.h"
-#include "postproc/nc/pulses.h"
 
 namespace meshwind {
 
@@ -33,33 +30,6 @@ void Dialect::check(const Machine& machine) const {
     // A name that no controller takes for a command: it may stand in comments alone.
     const ProgramHeader header{.version = "version", .mandrel = "part.stl"};
     (void)write(machine, list, header);
-}
-
-std::vector<std::string> dialect_names() {
-    std::vector<std::string> names;
-    for (const NcFlavour* flavour : nc_flavours()) {
-        names.emplace_back(flavour->dialect);
-    }
-    names.push_back(Pulses().name());
-    return names;
-}
-
-std::unique_ptr<Dialect> make_dialect(std::string_view name) {
-    for (const NcFlavour* flavour : nc_flavours()) {
-        if (flavour->dialect == name) {
-            return std::make_unique<NcDialect>(*flavour);
-        }
-    }
-    if (name == Pulses().name()) {
-        return std::make_unique<Pulses>();
-    }
-    std::string known;
-    for (const std::string& word : dialect_names()) {
-        known += (known.empty() ? "" : ", ") + word;
-    }
-    throw InputError("dialect.unknown", "",
-                     "dialect \"" + std::string(name) + "\" is not known; choose one of " + known +
-                         " (KRL is written by meshwind carry)");
 }
 
 }  // namespace meshwind

@@ -1,7 +1,6 @@
 /// Interface of a controller language (dialect): writes blocks as a program and reads them back.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -113,11 +112,5 @@ public:
     [[nodiscard]] virtual std::string code_of(std::string_view text,
                                               const std::string& file) const = 0;
 };
-
-/// Names of all languages, in the order in which messages list them.
-[[nodiscard]] std::vector<std::string> dialect_names();
-
-/// \throws InputError dialect.unknown with the names that exist
-[[nodiscard]] std::unique_ptr<Dialect> make_dialect(std::string_view name);
 
 }  // namespace meshwind

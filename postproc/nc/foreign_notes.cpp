@@ -43,10 +43,10 @@ std::string code_alone(NcComments comments, std::string_view text) {
     std::string code;
     bool inside = false;
     for (const char c : text) {
-        if (c == ';' && comments != NcComments::Brackets) {
+        if (opens_line_comment(c, comments)) {
             break;
         }
-        inside = inside || (c == '(' && comments != NcComments::Semicolon);
+        inside = inside || (c == '(' && has_brackets(comments));
         if (!inside && c != ' ' && c != '\t') {
             code += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
         }
@@ -61,7 +61,8 @@ bool names_meshwind(std::string_view line) {
         return false;
     }
     const std::size_t opens = line.substr(0, at).find_last_not_of(' ');
-    return opens != std::string_view::npos && (line[opens] == '(' || line[opens] == ';');
+    return opens != std::string_view::npos &&
+           std::string_view("(;!").find(line[opens]) != std::string_view::npos;
 }
 
 std::string times_words(std::size_t times) {

@@ -50,11 +50,11 @@ void NcLine::split(std::string_view text) {
         const char c = text[i];
         if (c == ' ' || c == '\t') {
             ++i;
-        } else if (c == ';' && style != NcComments::Brackets) {
+        } else if (opens_line_comment(c, style)) {
             rest_of_line(text.substr(i + 1));
             return;
         } else {
-            const bool opens = c == '(' && style != NcComments::Semicolon;
+            const bool opens = c == '(' && has_brackets(style);
             i = opens ? comment(text, i) : word(text, i);
         }
     }
@@ -66,11 +66,11 @@ std::string NcLine::split_comments(std::string_view text) {
     std::size_t i = 0;
     while (i < text.size()) {
         const char c = text[i];
-        if (c == ';' && style != NcComments::Brackets) {
+        if (opens_line_comment(c, style)) {
             rest_of_line(text.substr(i + 1));
             break;
         }
-        if (c == '(' && style != NcComments::Semicolon) {
+        if (c == '(' && has_brackets(style)) {
             i = comment(text, i);
             continue;
         }
@@ -83,7 +83,7 @@ std::string NcLine::split_comments(std::string_view text) {
 }
 
 void NcLine::rest_of_line(std::string_view text) {
-    if (style == NcComments::Semicolon) {
+    if (!has_brackets(style)) {
         text.remove_prefix(!text.empty() && text.front() == ' ' ? 1 : 0);
         comments.push_back(text);
     }

@@ -13,7 +13,22 @@ enum class NcComments {
     Brackets,             ///< ( ) alone
     BracketsOrSemicolon,  ///< both; text behind ; means nothing
     Semicolon,            ///< ; to the end of the line alone
+    Exclamation,          ///< ! to the end of the line alone
 };
+
+/// Whether comments stand in brackets.
+[[nodiscard]] constexpr bool has_brackets(NcComments comments) {
+    return comments == NcComments::Brackets || comments == NcComments::BracketsOrSemicolon;
+}
+
+/// What opens a comment to the end of the line. \pre not NcComments::Brackets
+[[nodiscard]] constexpr char line_comment(NcComments comments) {
+    return comments == NcComments::Exclamation ? '!' : ';';
+}
+
+[[nodiscard]] constexpr bool opens_line_comment(char c, NcComments comments) {
+    return comments != NcComments::Brackets && c == line_comment(comments);
+}
 
 /// A letter, in upper case, and the text of its number.
 struct NcWord {

@@ -49,12 +49,13 @@ std::optional<std::string_view> behind(std::string_view begin, std::string_view 
                                                     : std::nullopt;
 }
 
-// What stands in the brackets, or behind the semicolon, of a line that is a comment alone.
+// What stands in the brackets, or behind what opens it, of a line that is a comment alone.
 std::optional<std::string_view> comment_of(std::string_view line) {
     if (line.size() >= 2 && line.front() == '(' && line.back() == ')') {
         return line.substr(1, line.size() - 2);
     }
-    return behind("; ", line);
+    const bool opens = line.substr(0, 2) == "; " || line.substr(0, 2) == "! ";
+    return opens ? std::optional(line.substr(2)) : std::nullopt;
 }
 
 template <typename Number>

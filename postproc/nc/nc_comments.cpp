@@ -28,7 +28,7 @@ void append_if(std::vector<std::string>& to, const std::string& key, const std::
 constexpr std::size_t kAroundComment = 2;
 
 void make_plain(const NcFlavour& flavour, std::string& words) {
-    const bool brackets = flavour.comments != NcComments::Semicolon;
+    const bool brackets = has_brackets(flavour.comments);
     for (char& c : words) {
         const bool plain =
             c >= ' ' && c <= '~' && flavour.not_in_comments.find(c) == std::string_view::npos;
@@ -175,13 +175,14 @@ LineValues line_values(const NcFlavour& flavour, const Machine& machine, const B
 }
 
 std::string comment_lines(const NcFlavour& flavour, std::string words) {
-    const bool brackets = flavour.comments != NcComments::Semicolon;
+    const bool brackets = has_brackets(flavour.comments);
+    const std::string opens = {brackets ? '(' : line_comment(flavour.comments), ' '};
     make_plain(flavour, words);
     std::string text;
     const std::size_t width = flavour.line_length - kAroundComment;
     for (std::size_t i = 0; i == 0 || i < words.size(); i += width) {
         text +=
-            brackets ? '(' + words.substr(i, width) + ")\n" : "; " + words.substr(i, width) + '\n';
+            brackets ? '(' + words.substr(i, width) + ")\n" : opens + words.substr(i, width) + '\n';
     }
     return text;
 }
@@ -279,6 +280,10 @@ void NcMarks::pins(const NcLine& line, std::string_view comment, BlockList& list
     list.pins.push_back(ring);
 }
 
+bool is_code_comment(std::string_view comment) {
+    return begins_with(comment, kTieOn) || begins_with(comment, kPins);
+}
+
 std::string code_of_nc(NcComments comments, std::string_view text, const std::string& file) {
     NcLine line;
     line.file = &file;
@@ -291,7 +296,7 @@ std::string code_of_nc(NcComments comments, std::string_view text, const std::st
             code.erase(0, std::min(code.find_first_not_of("0123456789", 1), code.size()));
         }
         for (const std::string_view comment : line.comments) {
-            if (begins_with(comment, kTieOn) || begins_with(comment, kPins)) {
+            if (is_code_comment(comment)) {
                 code += comment.substr(0, comment.find_last_not_of(" \t") + 1);
             }
         }

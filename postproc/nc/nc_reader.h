@@ -33,6 +33,9 @@ void check_own_line(const NcFlavour& flavour, const Machine& machine, const std:
 [[nodiscard]] std::string code_of_nc(NcComments comments, std::string_view text,
                                      const std::string& file);
 
+/// Whether a comment belongs to the code: where the fibre is tied on, where pins stand.
+[[nodiscard]] bool is_code_comment(std::string_view comment);
+
 /// Text as lines without their ends.
 [[nodiscard]] std::vector<std::string_view> lines_of_text(std::string_view text);
 

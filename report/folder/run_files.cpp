@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/files/disk_file.h"
-#include "postproc/nc/dialect.h"
 #include "postproc/ringhead/krl.h"
+#include "postproc/robot/dialects.h"
 
 namespace meshwind {
 namespace {

@@ -2,7 +2,7 @@
 #include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
 #include "postproc/collision/collision.h"
-#include "postproc/nc/dialect.h"
+#include "postproc/robot/dialects.h"
 #include "tests/fuzz/harness.h"
 
 namespace meshwind::fuzz {

@@ -1,4 +1,4 @@
-// A program: '0' to '6' is the dialect, then its text. What was read, written again, must be read
+// A program: '0' to '7' is the dialect, then its text. What was read, written again, must be read
 // alike; what is short enough is wound on a small tube.
 #include <array>
 #include <cmath>
@@ -6,21 +6,22 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "machines/machine_json.h"
 #include "mesh/mandrel/extension.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/shapes/make.h"
-#include "postproc/nc/dialect.h"
 #include "postproc/ringhead/krl.h"
+#include "postproc/robot/dialects.h"
 #include "postproc/verify/verify.h"
 #include "tests/fuzz/harness.h"
 
 namespace meshwind::fuzz {
 namespace {
 
-constexpr std::array<const char*, 7> kDialects = {"linuxcnc", "fanuc",  "siemens", "grbl",
-                                                  "marlin",   "pulses", "krl"};
+constexpr std::array<std::string_view, 8> kDialects = {
+    "linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", kCarryDialect, "rapid"};
 
 // Only so that an input takes milliseconds: longer programs are read and written, not wound.
 constexpr std::size_t kMaxBlocks = 40;
@@ -28,19 +29,19 @@ constexpr double kMaxWay = 2000.0;  // mm and degrees of all axes together
 
 constexpr double kExtension_mm = 60.0;
 
-Machine machine_of(const char* dialect) {
-    Machine machine = read_machine(MESHWIND_SOURCE_DIR "/machines/six_axis.json");
+Machine machine_of(std::string_view dialect) {
+    const std::string file = dialect == "rapid" ? "robot_winder.json" : "six_axis.json";
+    Machine machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + file);
     machine.controller.dialect = dialect;
     machine.controller.header.clear();
-    machine.controller.feed = dialect == kDialects[0] || dialect == kDialects[1]
-                                  ? FeedMode::InverseTime
-                                  : FeedMode::PerMinute;
+    const bool inverse = dialect == "linuxcnc" || dialect == "fanuc" || dialect == "rapid";
+    machine.controller.feed = inverse ? FeedMode::InverseTime : FeedMode::PerMinute;
     return machine;
 }
 
 // What a program is wound on, and by.
 struct World {
-    explicit World(const char* dialect)
+    explicit World(std::string_view dialect)
         : machine(machine_of(dialect)), envelope(head_envelope(machine)) {
         CylinderShape tube;
         tube.radius_mm = 50.0;
@@ -152,7 +153,7 @@ void run(std::span<const std::uint8_t> bytes) {
     const std::size_t which =
         (bytes[0] + kDialects.size() - '0' % kDialects.size()) % kDialects.size();
     const std::string_view text = text_of(bytes.subspan(1));
-    if (which == kDialects.size() - 1) {
+    if (kDialects[which] == kCarryDialect) {
         (void)durations_s(read_krl(text, "program"));
         return;
     }

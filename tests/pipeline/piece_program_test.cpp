@@ -11,7 +11,7 @@
 
 #include "core/units.h"
 #include "pipeline/plan_layer.h"
-#include "postproc/nc/dialect.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/any_machine.h"
 #include "tests/support/small_pipe.h"
 

@@ -17,6 +17,10 @@ Machine six_axis() {
     return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/six_axis.json");
 }
 
+Machine robot_winder() {
+    return read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/robot_winder.json");
+}
+
 BlockList empty_list(const Machine& machine) {
     BlockList list;
     for (std::size_t a = 0; a < machine.axis_count(); ++a) {

@@ -13,6 +13,9 @@ namespace meshwind::test {
 /// machines/six_axis.json: C Z Y X A B.
 [[nodiscard]] Machine six_axis();
 
+/// machines/robot_winder.json: X of the spindle, A B C U V W of the arm.
+[[nodiscard]] Machine robot_winder();
+
 /// The machine's axes and no block.
 [[nodiscard]] BlockList empty_list(const Machine& machine);
 

@@ -153,7 +153,7 @@ std::vector<double> end_of_program(const std::string& text, const Machine& machi
 }
 
 Machine machine_for(const std::string& dialect) {
-    Machine machine = six_axis();
+    Machine machine = dialect == "rapid" ? robot_winder() : six_axis();
     machine.controller.dialect = dialect;
     machine.controller.header.clear();
     machine.controller.feed = dialect == "marlin" ? FeedMode::PerMinute : FeedMode::InverseTime;
@@ -165,7 +165,7 @@ BlockList small_program(const Machine& machine) {
     BlockList list = empty_list(machine);
     const double pace = machine.controller.dialect == "pulses" ? 0.05 : 1.0;
     const auto block = [&](double c, double z, double x, double duration_s, int piece) {
-        const double place[] = {c, z, 0.0, x, 0.0, 0.0};
+        const double place[] = {c, z, 0.0, x, 0.0, 0.0, 0.0};
         std::vector<std::int64_t> steps;
         for (std::size_t a = 0; a < list.axes.size(); ++a) {
             steps.push_back(std::llround(place[a] * static_cast<double>(kNanoPerUnit) /

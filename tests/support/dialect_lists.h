@@ -10,7 +10,8 @@
 
 namespace meshwind::test {
 
-/// machines/six_axis.json for a dialect, without header lines and with a feed that it takes.
+/// machines/six_axis.json for a dialect, for a robot's robot_winder.json, without header lines and
+/// with a feed that it takes.
 [[nodiscard]] Machine machine_for(const std::string& dialect);
 
 /// A helix of two strokes and twelve circuits that repeat, as data/programs/ has it.

@@ -10,7 +10,7 @@
 
 #include "core/text/text_file.h"
 #include "core/units.h"
-#include "postproc/nc/dialect.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/machine_file.h"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "postproc/nc/dialect.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
 

@@ -14,6 +14,7 @@
 #include "postproc/nc/float32_steps.h"
 #include "postproc/nc/linuxcnc.h"
 #include "postproc/nc/pulses.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
 
@@ -165,8 +166,8 @@ TEST(Dialects, NoDriftOver10000Circuits) {
     const double circuit_deg = 360.0 * std::sqrt(2.0);
     for (const std::string& name : kAll) {
         SCOPED_TRACE(name);
-        if (name == "grbl" || name == "marlin") {
-            continue;  // the next test
+        if (name == "grbl" || name == "marlin" || name == "rapid") {
+            continue;  // the next test; RAPID has absolute positions
         }
         const Machine machine = machine_for(name);
         const auto many = many_circuits(machine, circuit_deg);
@@ -295,10 +296,10 @@ TEST(Dialects, RefuseLettersAndFeedsTheyDoNotHave) {
         other = list;
         other.axes[0].letter = 'E';
         EXPECT_EQ(write_error(name, machine, other),
-                  name == "pulses" ? "written" : "dialect.axis_letter");
+                  name == "pulses" || name == "rapid" ? "written" : "dialect.axis_letter");
         machine.mandrel_chain[0].letter = 'U';
         other.axes[0].letter = 'U';  // the spindle
-        const bool free = name == "fanuc" || name == "siemens" || name == "pulses";
+        const bool free = name != "linuxcnc" && name != "grbl" && name != "marlin";
         EXPECT_EQ(write_error(name, machine, other), free ? "written" : "dialect.axis_letter");
         machine = machine_for(name);
         machine.controller.feed = FeedMode::PerMinute;

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
-#include "postproc/nc/dialect.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
 

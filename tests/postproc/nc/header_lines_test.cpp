@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
 
@@ -46,19 +47,22 @@ TEST(HeaderLines, OthersAreRefusedWithThoseThatExist) {
 }
 
 TEST(HeaderLines, EveryDialectFillsThemIn) {
-    for (const std::string name : {"linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses"}) {
+    for (const std::string name :
+         {"linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "rapid"}) {
         SCOPED_TRACE(name);
         Machine machine = test::machine_for(name);
         const bool brackets = name == "linuxcnc" || name == "fanuc" || name == "grbl";
         const std::string words = "no {program}: {mandrel} on {machine}, {fibre_m} m, {time_s} s";
-        machine.controller.header = {brackets ? "(" + words + ")" : "; " + words};
-        machine.controller.footer = {brackets ? "({blocks} blocks)" : "; {blocks} blocks"};
+        const std::string opens = brackets ? "(" : name == "rapid" ? "! " : "; ";
+        const std::string closes = brackets ? ")" : "";
+        machine.controller.header = {opens + words + closes};
+        machine.controller.footer = {opens + "{blocks} blocks" + closes};
         machine.controller.program_number = 12;
         const auto dialect = make_dialect(name);
         const BlockList list = dialect->prepare(test::random_list(machine, 1, 5));
         const ProgramHeader header{.mandrel = "a.stl", .fibre_length_mm = 1500.0};
         const std::string text = dialect->write(machine, list, header);
-        EXPECT_NE(text.find("no 12: a.stl on Six-axis winder, 1.500 m, "), std::string::npos);
+        EXPECT_NE(text.find("no 12: a.stl on " + machine.name + ", 1.500 m, "), std::string::npos);
         EXPECT_NE(text.find(std::to_string(list.blocks.size() - 1) + " blocks"), std::string::npos);
         EXPECT_EQ(dialect->read(text, "p", machine).nano, list.nano);
         // What is filled in may not open or close a comment, and code is checked as it will stand.

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/units.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 
 namespace meshwind {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "postproc/nc/nc_dialects.h"
+#include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
 

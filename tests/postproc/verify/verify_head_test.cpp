@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/units.h"
-#include "postproc/nc/dialect.h"
+#include "postproc/robot/dialects.h"
 #include "postproc/verify/check_kinds.h"
 #include "postproc/verify/roller_check.h"
 #include "tests/support/exact_winding.h"

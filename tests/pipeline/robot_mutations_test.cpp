@@ -1,0 +1,284 @@
+// One change in a program for a robot is seen, and its block named, as mutations_test.cpp has it
+// for G-code: MESHWIND_COUNT random changes (40) from MESHWIND_SEED (1) of a pipe's program, and
+// every change of its frame that is listed here. Positions are absolute: a block left out or
+// exchanged is another way to the same place.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "pipeline/code_digest.h"
+#include "pipeline/verify_text.h"
+#include "pipeline/wind.h"
+#include "postproc/nc/nc_reader.h"
+#include "postproc/tables/motion_csv.h"
+#include "postproc/tables/path_csv.h"
+#include "tests/support/small_pipe.h"
+
+namespace meshwind {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+unsigned from_environment(const char* name, unsigned value) {
+    const char* const text = std::getenv(name);
+    return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : value;
+}
+
+std::string text_of(const Lines& lines) {
+    std::string text;
+    for (const std::string& line : lines) {
+        text += line + '\n';
+    }
+    return text;
+}
+
+// A released program with the plan that it came from, without the digest of its code.
+struct Released {
+    Setup setup;
+    VerifyPlan plan;
+    std::string file;
+    std::string text;  // as it was written
+    Lines lines;
+    std::vector<std::size_t> blocks;  // lines that are blocks, from 0
+};
+
+Released release(const std::string& dialect) {
+    Machine machine = test::shipped("robot_winder");
+    machine.controller.dialect = dialect;
+    const Job job = test::quick_job();
+    const Run run = wind(test::small_pipe(), machine, job);
+    for (const Check& check : run.checks) {
+        EXPECT_TRUE(check.ok) << check.name << ": " << check.words;
+    }
+    const WoundLayer& layer = run.layers.front();
+    const FibreProgram& program = layer.programs.front();
+    Released released;
+    released.setup = make_setup(test::small_pipe(), machine, job);
+    released.file = program.file;
+    released.text = program.text;
+    released.plan.fibre =
+        read_path_csv(path_csv(layer.plan.pieces, program.made.eyes.path), "path.csv");
+    released.plan.motion =
+        read_motion_csv(motion_csv(machine, program.made.blocks), "motion.csv", machine);
+    for (const std::string_view line : lines_of_text(program.text)) {
+        if (line.find(kCodeDigest) == std::string::npos) {
+            released.lines.emplace_back(line);
+        }
+    }
+    const BlockList list =
+        released.setup.dialect->read(text_of(released.lines), released.file, machine);
+    for (std::size_t b = 1; b < list.blocks.size(); ++b) {
+        released.blocks.push_back(static_cast<std::size_t>(list.blocks[b].line) - 1);
+    }
+    return released;
+}
+
+// What `verify --plan` says of a text.
+struct Answer {
+    bool seen = false;
+    std::string by;         // the check, or the error's code
+    std::int32_t line = 0;  // that it names; 0: none
+};
+
+Answer answer_of(const Released& program, const std::string& text) {
+    try {
+        const BlockList list =
+            program.setup.dialect->read(text, program.file, program.setup.machine);
+        const TextChecks texts = check_text(program.setup, text, program.file, list, program.plan);
+        for (const Check& check : texts.checks) {
+            if (!check.ok) {
+                return {true, check.name, list.blocks[texts.first_wrong.value_or(0)].line};
+            }
+        }
+        for (const Check& check : verify_program(program.setup, list, program.plan.fibre).checks) {
+            if (!check.ok) {
+                return {true, check.name, 0};
+            }
+        }
+    } catch (const InputError& error) {
+        const std::string& place = error.place();
+        const std::size_t colon = place.rfind(':');
+        return {true, error.code(),
+                colon == std::string::npos ? 0 : std::atoi(place.c_str() + colon + 1)};
+    }
+    return {};
+}
+
+// With the digest in its head a change is seen without a plan.
+bool digest_sees(const Released& program, const std::string& text) {
+    const Dialect& dialect = *program.setup.dialect;
+    const BlockList written = dialect.read(program.text, program.file, program.setup.machine);
+    return code_digest(dialect, text, program.file) != written.head->code_digest;
+}
+
+// Where the numbers with a point stand in a line.
+struct Number {
+    std::size_t first = 0;
+    std::size_t size = 0;
+};
+
+std::vector<Number> numbers_of(const std::string& line) {
+    std::vector<Number> numbers;
+    for (std::size_t i = 0; i < line.size();) {
+        const std::size_t end = std::min(line.find_first_not_of("-.0123456789", i), line.size());
+        if (line.substr(i, end - i).find('.') != std::string::npos) {
+            numbers.push_back({i, end - i});
+        }
+        i = std::max(i + 1, end);
+    }
+    return numbers;
+}
+
+class Mutator {
+public:
+    Mutator(const Released& program, unsigned seed) : program_(program), random_(seed) {}
+
+    // Changes one block; \return its line, from 0.
+    std::size_t next(unsigned number, Lines& lines, std::string& what) {
+        for (;;) {
+            lines = program_.lines;
+            const std::size_t at = random_() % program_.blocks.size();
+            const std::size_t line = program_.blocks[at];
+            const bool last = at + 1 == program_.blocks.size();
+            what = lines[line];
+            if (change(number % 8, lines, line, last ? line : program_.blocks[at + 1])) {
+                what += " -> " + (line < lines.size() ? lines[line] : std::string());
+                return line;
+            }
+        }
+    }
+
+private:
+    bool change(unsigned kind, Lines& lines, std::size_t line, std::size_t next) {
+        const auto at = lines.begin() + static_cast<std::ptrdiff_t>(line);
+        std::string& text = lines[line];
+        switch (kind) {
+            case 0:
+                return move(text, 5.0);
+            case 1:
+                return move(text, 0.01);
+            case 2:
+                lines.erase(at);
+                return true;
+            case 3:
+                lines.insert(at, std::string(text));
+                return true;
+            case 4:
+                std::swap(text, lines[next]);
+                return next != line && text != lines[next];
+            case 5:
+                return sign(text);
+            case 6:
+                text.resize(1 + random_() % (text.size() - 2));
+                return true;
+            default:
+                return digits(text);
+        }
+    }
+
+    // A number of the line, the time included.
+    Number pick(const std::string& text) {
+        const std::vector<Number> numbers = numbers_of(text);
+        return numbers[random_() % numbers.size()];
+    }
+
+    bool move(std::string& text, double most) {
+        const Number number = pick(text);
+        const double value = std::strtod(text.c_str() + number.first, nullptr);
+        const double by =
+            (random_() % 2 == 0 ? 1e-3 : -1e-3) *
+            (1.0 + std::floor(1e3 * most * static_cast<double>(random_() % 1000) / 1000.0));
+        char now[40];
+        (void)std::snprintf(now, sizeof now, "%.3f", value + by);
+        text.replace(number.first, number.size, now);
+        return std::strtod(now, nullptr) > 0.0 || number.first < numbers_of(text).back().first;
+    }
+
+    bool sign(std::string& text) {
+        const Number number = pick(text);
+        const bool minus = text[number.first] == '-';
+        text.replace(number.first, minus ? 1 : 0, minus ? "" : "-");
+        return std::strtod(text.c_str() + number.first, nullptr) != 0.0;
+    }
+
+    bool digits(std::string& text) {
+        const Number number = pick(text);
+        for (std::size_t i = number.first; i + 1 < number.first + number.size; ++i) {
+            if (std::isdigit(text[i]) != 0 && std::isdigit(text[i + 1]) != 0 &&
+                text[i] != text[i + 1]) {
+                std::swap(text[i], text[i + 1]);
+                return true;
+            }
+        }
+        return false;
+    }
+
+    const Released& program_;
+    std::mt19937 random_;
+};
+
+void expect_random_changes_seen(const Released& program) {
+    const unsigned seed = from_environment("MESHWIND_SEED", 1);
+    const unsigned count = from_environment("MESHWIND_COUNT", 40);
+    Mutator mutator(program, seed);
+    for (unsigned i = 0; i < count; ++i) {
+        Lines lines;
+        std::string what;
+        const auto line = static_cast<std::int32_t>(mutator.next(i, lines, what)) + 1;
+        const Answer answer = answer_of(program, text_of(lines));
+        // The line itself or a neighbour: comments stand between some.
+        EXPECT_TRUE(answer.seen && std::abs(answer.line - line) <= 2)
+            << "seed " << seed << ", change " << i << " in line " << line << ": " << what
+            << "; seen by " << answer.by << ", which names line " << answer.line;
+        EXPECT_TRUE(digest_sees(program, text_of(lines))) << what;
+    }
+}
+
+// A change of the frame: the first line that has `what` becomes `by`, or goes.
+struct FrameChange {
+    std::string what;
+    std::string by;
+};
+
+void expect_frame_changes_seen(const Released& program, const std::vector<FrameChange>& changes) {
+    for (const FrameChange& change : changes) {
+        SCOPED_TRACE(change.what + " -> " + change.by);
+        std::string text = text_of(program.lines);
+        const std::size_t at = text.find(change.what);
+        ASSERT_NE(at, std::string::npos);
+        text.replace(at, change.what.size(), change.by);
+        EXPECT_TRUE(answer_of(program, text).seen);
+        EXPECT_TRUE(digest_sees(program, text));
+    }
+}
+
+TEST(RobotMutations, Rapid) {
+    const Released program = release("rapid");
+    EXPECT_FALSE(answer_of(program, text_of(program.lines)).seen);
+    EXPECT_FALSE(digest_sees(program, text_of(program.lines)));
+    const std::string first = program.lines[program.blocks.front()];
+    const std::string start = first.substr(0, first.find("v1000")) + "approach,fine,tool0;\n";
+    expect_frame_changes_seen(program, {{"Stop;\n", ""},
+                                        {"Stop;\n", "Stop;\n" + start},
+                                        {"FALSE", "TRUE"},
+                                        {"approach,fine", "approach\\T:=5,fine"},
+                                        {"corner,tool0;", "fine,tool0;"},
+                                        {"tie on at X30.0", "tie on at X33.0"},
+                                        {"! tie on", "! fasten"},
+                                        {"PROC main()", "PROC main()\nWaitTime 1;"},
+                                        {"ENDPROC", start + "ENDPROC"},
+                                        {"ENDMODULE\n", ""}});
+    expect_random_changes_seen(program);
+}
+
+}  // namespace
+}  // namespace meshwind
