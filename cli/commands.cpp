@@ -322,7 +322,7 @@ int run_validate(const ValidateArguments& arguments, const Common& common) {
     std::string more;
     if (machine) {
         const Machine read = read_machine(file);
-        if (read.controller.dialect != kCarryDialect) {
+        if (!carries_frames(read)) {
             check_controller(read, file);
         }
         const MachineClass what = machine_class(read);

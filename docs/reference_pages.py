@@ -281,8 +281,8 @@ _meshwind_fill() {
         _meshwind_files "$current" csv stl obj ply off
         _meshwind_named "$current" '*_axis.csv' data
         ;;
-    program) _meshwind_files "$current" ngc nc mpf gcode pulses mod ;;
-    shown) _meshwind_files "$current" stl STL obj ply off csv dxf ngc nc mpf gcode pulses mod ;;
+    program) _meshwind_files "$current" ngc nc mpf gcode pulses mod src ;;
+    shown) _meshwind_files "$current" stl STL obj ply off csv dxf ngc nc mpf gcode pulses mod src ;;
     folder)
         COMPREPLY+=($(compgen -d -- "$current"))
         compopt -o filenames 2>/dev/null

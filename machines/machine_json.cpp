@@ -343,7 +343,7 @@ const KeyTable<Controller>& controller_keys() {
     static const KeyTable<Controller> kTable = {{
         required(any_text("dialect", &Controller::dialect,
                           "language of the program: linuxcnc, fanuc, siemens, grbl, marlin, "
-                          "pulses or rapid; krl for carried frames")),
+                          "pulses, rapid or krl, which carried frames are written in as well")),
         or_null(word("feed", &Controller::feed, {"inverse-time", "per-minute"},
                      "what F means; inverse-time without")),
         lines_key("header", &Controller::header, "lines of one's own at the head of the program"),

@@ -209,7 +209,7 @@ MandrelOptions mandrel_options(const Job& job, double unit_mm) {
 std::unique_ptr<Dialect> dialect_of(const Machine& machine, const fs::path& file) {
     const std::string& name = machine.controller.dialect;
     const std::string place = file.string() + ": /controller/dialect";
-    if (name == kCarryDialect) {
+    if (carries_frames(machine)) {
         throw InputError("dialect.unknown", place,
                          "is \"" + name +
                              "\", which meshwind carry writes; for this command choose a machine "

@@ -314,6 +314,10 @@ void read_body_line(KrlLines& lines, KrlSpeeds& speeds, KrlProgram& program) {
 
 }  // namespace
 
+bool carries_frames(const Machine& machine) {
+    return machine.controller.dialect == kCarryDialect && machine.eye_chain.empty();
+}
+
 KrlFrame krl_frame(const Eigen::Isometry3d& pose) {
     const EulerZyx angles = euler_zyx(pose.linear());
     KrlFrame frame;

@@ -29,10 +29,15 @@
 
 #include <Eigen/Geometry>
 
+#include "machines/machine.h"
+
 namespace meshwind {
 
 /// The dialect of machines that carry; its programs are no lists of axis blocks (dialect.h).
 inline constexpr const char* kCarryDialect = "krl";
+
+/// Whether a machine's programs are those for carrying: in the dialect, and its eye stands still.
+[[nodiscard]] bool carries_frames(const Machine& machine);
 
 /// Extension of the program's file, with the point.
 inline constexpr const char* kKrlExtension = ".src";

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "postproc/nc/nc_dialects.h"
 #include "postproc/nc/pulses.h"
+#include "postproc/robot/krl_program.h"
 #include "postproc/robot/rapid.h"
 
 namespace meshwind {
@@ -14,6 +15,7 @@ std::vector<std::string> dialect_names() {
     }
     names.push_back(Pulses().name());
     names.push_back(Rapid().name());
+    names.push_back(Krl().name());
     return names;
 }
 
@@ -29,13 +31,15 @@ std::unique_ptr<Dialect> make_dialect(std::string_view name) {
     if (name == Rapid().name()) {
         return std::make_unique<Rapid>();
     }
+    if (name == Krl().name()) {
+        return std::make_unique<Krl>();
+    }
     std::string known;
     for (const std::string& word : dialect_names()) {
         known += (known.empty() ? "" : ", ") + word;
     }
     throw InputError("dialect.unknown", "",
-                     "dialect \"" + std::string(name) + "\" is not known; choose one of " + known +
-                         " (KRL is written by meshwind carry)");
+                     "dialect \"" + std::string(name) + "\" is not known; choose one of " + known);
 }
 
 }  // namespace meshwind

@@ -4,13 +4,13 @@
 #include <charconv>
 #include <utility>
 
-#include "core/error.h"
 #include "core/text/decimal_text.h"
 #include "core/text/text_number.h"
 #include "postproc/nc/nc_reader.h"
 #include "postproc/nc/nc_writer.h"
 #include "postproc/robot/rapid_reader.h"
 #include "postproc/robot/rapid_tokens.h"
+#include "postproc/robot/robot_head.h"
 
 namespace meshwind {
 namespace {
@@ -34,45 +34,20 @@ NcFlavour text_flavour() {
     return flavour;
 }
 
-// What is written.
-struct RapidSource {
-    const Machine& machine;
-    const BlockList& list;
-    const ProgramHeader& header;
-    NcFlavour flavour;
-    RobotAxes axes;
-};
-
-std::string own_lines(const RapidSource& source, const std::vector<std::string>& lines) {
-    const Machine& machine = source.machine;
-    const LineValues values =
-        line_values(source.flavour, machine, source.list, source.header, source.list.duration_s());
-    std::string text;
-    for (const std::string& line : filled_lines(lines, values, machine.name)) {
-        check_own_rapid_line(machine, line);
-        text += line + '\n';
-    }
-    return text;
-}
-
-void append_axis(const BlockList& list, std::size_t block, std::size_t axis, std::string& text) {
-    append_nano(text, list.row(block)[axis], decimals_of(list.axes[axis].resolution_nano));
-}
-
 // The jointtarget of a block's end.
-void append_target(const RapidSource& source, std::size_t block, std::string& text) {
+void append_target(const RobotSource& source, std::size_t block, std::string& text) {
     char before = '[';
     text += '[';
     for (const std::size_t axis : source.axes.arm) {
         text += std::exchange(before, ',');
-        append_axis(source.list, block, axis, text);
+        append_robot_axis(source.list, block, axis, text);
     }
     text += "],";
     before = '[';
     for (const std::optional<std::size_t> axis : source.axes.external) {
         text += std::exchange(before, ',');
         if (axis) {
-            append_axis(source.list, block, *axis, text);
+            append_robot_axis(source.list, block, *axis, text);
         } else {
             text += "9E9";
         }
@@ -80,46 +55,20 @@ void append_target(const RapidSource& source, std::size_t block, std::string& te
     text += "]]";
 }
 
-std::string head_text(const RapidSource& source) {
-    std::vector<std::string> comments = head_comments(source.flavour, source.machine, source.list,
-                                                      source.header, source.list.duration_s());
-    comments.push_back(robot_axes_words(source.axes, source.machine, kRapidExternal));
-    for (const std::string& note : float32_notes(source.list)) {
-        comments.push_back("note: " + note);
-    }
-    std::string text;
-    for (std::string& words : comments) {
-        text += comment_lines(source.flavour, std::move(words));
-    }
-    return text;
-}
-
 // To the start, and the stop there.
-std::string approach_text(const RapidSource& source) {
-    const bool continues_fibre = !source.header.goes_on_from.empty();
-    std::string text = comment_lines(source.flavour, "approach: all axes move together;");
-    text += comment_lines(source.flavour,
-                          continues_fibre
-                              ? "the eye stands nearly there, the fibre stays on"
-                              : "bring the eye clear of the mandrel by hand before the start");
-    text += "MoveAbsJ ";
+std::string approach_text(const RobotSource& source) {
+    std::string text = robot_approach(source) + "MoveAbsJ ";
     append_target(source, 0, text);
-    text += "\\NoEOffs,approach,fine,tool0;\nTPWrite \"";
-    text += source.header.in_the_air ? "no fibre for this run in the air, start again"
-            : continues_fibre        ? "the fibre is on already, start again"
-                                     : "tie the fibre on at the landing point, then start again";
-    return text + "\";\nStop;\n";
+    return text + "\\NoEOffs,approach,fine,tool0;\nTPWrite \"" + robot_tie_on(source) +
+           "\";\nStop;\n";
 }
 
 // The blocks, with a mark where a course begins.
-void append_blocks(const RapidSource& source, std::string& text) {
+void append_blocks(const RobotSource& source, std::string& text) {
     const BlockList& list = source.list;
     std::int32_t piece = -1;  // of the last course mark
     for (std::size_t i = 1; i < list.blocks.size(); ++i) {
-        if (list.blocks[i].piece != piece) {
-            piece = list.blocks[i].piece;
-            text += comment_lines(source.flavour, "course " + std::to_string(piece));
-        }
+        append_course(source, i, piece, text);
         text += "MoveAbsJ ";
         append_target(source, i, text);
         text += "\\NoEOffs,v1000\\T:=";
@@ -157,23 +106,18 @@ std::string Rapid::write(const Machine& machine, const BlockList& list, const Pr
     assert(!list.blocks.empty() && list.axes.size() == machine.axis_count());
     assert(layout.main.empty());
     (void)layout;
-    if (machine.controller.feed != FeedMode::InverseTime) {
-        throw InputError("dialect.feed", machine.name,
-                         "a block of RAPID has its time, no feed per minute; choose "
-                         "\"inverse-time\"");
-    }
-    const RapidSource source{machine, list, header, text_flavour(), robot_axes(machine)};
-    check_moves(list);
+    const RobotSource source =
+        robot_source(machine, list, header, text_flavour(), std::string(kController));
     std::string text;
     text.reserve(kTypicalLine * (list.blocks.size() + 40));
     text += "MODULE meshwind\n";
-    text += head_text(source);
+    text += robot_head(source, kRapidExternal);
     text += kData;
     text += "PROC main()\n";
-    text += own_lines(source, machine.controller.header);
+    text += robot_own_lines(source, machine.controller.header, check_own_rapid_line);
     text += approach_text(source);
     append_blocks(source, text);
-    text += own_lines(source, machine.controller.footer);
+    text += robot_own_lines(source, machine.controller.footer, check_own_rapid_line);
     text += "ENDPROC\nENDMODULE\n";
     return text;
 }

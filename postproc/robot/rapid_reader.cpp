@@ -16,6 +16,7 @@
 #include "postproc/robot/rapid_tokens.h"
 #include "postproc/robot/robot_axes.h"
 #include "postproc/robot/robot_blocks.h"
+#include "postproc/robot/robot_head.h"
 
 namespace meshwind {
 namespace {
@@ -281,7 +282,7 @@ void Reader::move() {
 }
 
 RobotMove Reader::target() {
-    RobotMove to{.nano = std::vector<std::int64_t>(blocks_.axes().size(), 0), .line = token_.line};
+    RobotMove to = blocks_.next(token_.line);
     next();
     expect_mark("[");
     std::array<std::optional<std::size_t>, kArmAxes> arm;
@@ -387,21 +388,7 @@ BlockList read_rapid(std::string_view text, const std::string& file, const Machi
 }
 
 void check_own_rapid_line(const Machine& machine, const std::string& line) {
-    std::string trouble;
-    if (!std::all_of(line.begin(), line.end(), [](char c) { return c >= ' ' && c <= '~'; })) {
-        trouble = "it has characters that are not plain ASCII";
-    } else {
-        try {
-            Reader(line, machine.name, machine).own_line();
-        } catch (const InputError& error) {
-            // The place is that of the line in no file.
-            trouble = error.words();
-        }
-    }
-    if (!trouble.empty()) {
-        throw InputError("dialect.header_line", machine.name,
-                         "controller line \"" + line + "\" cannot be used: " + trouble);
-    }
+    check_robot_line(machine, line, [&] { Reader(line, machine.name, machine).own_line(); });
 }
 
 }  // namespace meshwind

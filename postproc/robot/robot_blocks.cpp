@@ -43,6 +43,12 @@ void RobotBlocks::stop(std::int32_t number) {
     }
 }
 
+RobotMove RobotBlocks::next(std::int32_t number) const {
+    return {.nano = std::vector<std::int64_t>(list_.axes.size(), 0),
+            .piece = marks_.piece(),
+            .line = number};
+}
+
 void RobotBlocks::move(RobotMove to) {
     const std::int32_t now = std::exchange(line_.number, to.line);
     if (to.duration_s > 0.0) {
@@ -84,7 +90,7 @@ void RobotBlocks::block(const RobotMove& to) {
                    "the robot fly by");
     }
     if (list_.blocks.empty()) {
-        list_.blocks.push_back({.piece = marks_.piece(), .line = to.line});
+        list_.blocks.push_back({.piece = to.piece, .line = to.line});
         list_.nano = place_;
     }
     if (to.nano == place_) {
@@ -99,7 +105,7 @@ void RobotBlocks::block(const RobotMove& to) {
         check_interrupt();
     }
     stop_point_ = to.stops ? to.line : 0;
-    list_.blocks.push_back({.duration_s = to.duration_s, .piece = marks_.piece(), .line = to.line});
+    list_.blocks.push_back({.duration_s = to.duration_s, .piece = to.piece, .line = to.line});
     list_.nano.insert(list_.nano.end(), to.nano.begin(), to.nano.end());
 }
 

@@ -17,6 +17,7 @@ struct RobotMove {
     std::vector<std::int64_t> nano{};  ///< by entries of the joint vector
     double duration_s = 0.0;           ///< of a block; 0: the move leads to the start
     bool stops = false;                ///< at its end, so that the next begins from rest
+    std::int32_t piece = -1;           ///< by the last course mark
     std::int32_t line = 0;
 };
 
@@ -38,6 +39,8 @@ public:
     /// \throws InputError nc.tie_on, nc.pins
     void comment(std::string_view words, std::int32_t number);
     void stop(std::int32_t number);
+    /// A move that is to be filled in, with all axes at 0, of the piece that was marked last.
+    [[nodiscard]] RobotMove next(std::int32_t number) const;
     /// \throws InputError nc.resolution, nc.too_far, nc.rapid, nc.too_many_lines; of a block
     /// nc.unknown_start, nc.feed, nc.stop_point
     void move(RobotMove to);

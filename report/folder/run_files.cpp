@@ -38,7 +38,9 @@ bool has_program_extension(const fs::path& name) {
 std::vector<std::string> files_of_carry(const std::filesystem::path& report) {
     std::ifstream stream(report, std::ios::binary);
     const nlohmann::json read = nlohmann::json::parse(stream, nullptr, false);
+    // The main job writes KRL, too; its report tells of a plan.
     if (!read.is_object() || !read.contains("program") || !read["program"].is_object() ||
+        read.contains("plan") ||
         read["program"].value("dialect", nlohmann::json()) != kCarryDialect) {
         return {};
     }

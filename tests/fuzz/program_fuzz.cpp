@@ -1,4 +1,4 @@
-// A program: '0' to '7' is the dialect, then its text. What was read, written again, must be read
+// A program: '0' to '8' is the dialect, then its text. What was read, written again, must be read
 // alike; what is short enough is wound on a small tube.
 #include <array>
 #include <cmath>
@@ -20,8 +20,8 @@
 namespace meshwind::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 8> kDialects = {
-    "linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", kCarryDialect, "rapid"};
+constexpr std::array<std::string_view, 9> kDialects = {
+    "linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "carried", "rapid", "krl"};
 
 // Only so that an input takes milliseconds: longer programs are read and written, not wound.
 constexpr std::size_t kMaxBlocks = 40;
@@ -30,11 +30,12 @@ constexpr double kMaxWay = 2000.0;  // mm and degrees of all axes together
 constexpr double kExtension_mm = 60.0;
 
 Machine machine_of(std::string_view dialect) {
-    const std::string file = dialect == "rapid" ? "robot_winder.json" : "six_axis.json";
+    const bool robot = dialect == "rapid" || dialect == "krl";
+    const std::string file = robot ? "robot_winder.json" : "six_axis.json";
     Machine machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + file);
     machine.controller.dialect = dialect;
     machine.controller.header.clear();
-    const bool inverse = dialect == "linuxcnc" || dialect == "fanuc" || dialect == "rapid";
+    const bool inverse = dialect == "linuxcnc" || dialect == "fanuc" || robot;
     machine.controller.feed = inverse ? FeedMode::InverseTime : FeedMode::PerMinute;
     return machine;
 }
@@ -153,7 +154,7 @@ void run(std::span<const std::uint8_t> bytes) {
     const std::size_t which =
         (bytes[0] + kDialects.size() - '0' % kDialects.size()) % kDialects.size();
     const std::string_view text = text_of(bytes.subspan(1));
-    if (kDialects[which] == kCarryDialect) {
+    if (kDialects[which] == "carried") {
         (void)durations_s(read_krl(text, "program"));
         return;
     }

@@ -49,6 +49,7 @@ struct Released {
     std::string text;  // as it was written
     Lines lines;
     std::vector<std::size_t> blocks;  // lines that are blocks, from 0
+    std::vector<std::size_t> times;   // those with their times
 };
 
 Released release(const std::string& dialect) {
@@ -77,7 +78,10 @@ Released release(const std::string& dialect) {
     const BlockList list =
         released.setup.dialect->read(text_of(released.lines), released.file, machine);
     for (std::size_t b = 1; b < list.blocks.size(); ++b) {
-        released.blocks.push_back(static_cast<std::size_t>(list.blocks[b].line) - 1);
+        const auto line = static_cast<std::size_t>(list.blocks[b].line) - 1;
+        released.blocks.push_back(line);
+        // In KRL the next line; a comment never stands between.
+        released.times.push_back(dialect == "krl" ? line + 1 : line);
     }
     return released;
 }
@@ -147,10 +151,11 @@ public:
         for (;;) {
             lines = program_.lines;
             const std::size_t at = random_() % program_.blocks.size();
-            const std::size_t line = program_.blocks[at];
+            const bool of_time = number % 9 == 8;
+            const std::size_t line = of_time ? program_.times[at] : program_.blocks[at];
             const bool last = at + 1 == program_.blocks.size();
             what = lines[line];
-            if (change(number % 8, lines, line, last ? line : program_.blocks[at + 1])) {
+            if (change(number % 9, lines, line, last ? line : program_.blocks[at + 1])) {
                 what += " -> " + (line < lines.size() ? lines[line] : std::string());
                 return line;
             }
@@ -180,12 +185,25 @@ private:
             case 6:
                 text.resize(1 + random_() % (text.size() - 2));
                 return true;
-            default:
+            case 7:
                 return digits(text);
+            default:
+                return time(text);
         }
     }
 
-    // A number of the line, the time included.
+    // The last number, by a hundredth or more.
+    bool time(std::string& text) {
+        static const std::vector<double> kTimes = {0.1, 0.5, 0.99, 1.01, 2.0, 10.0};
+        const Number number = numbers_of(text).back();
+        const double value = std::strtod(text.c_str() + number.first, nullptr);
+        char now[40];
+        (void)std::snprintf(now, sizeof now, "%.9f", value * kTimes[random_() % kTimes.size()]);
+        text.replace(number.first, number.size, now);
+        return true;
+    }
+
+    // A number of the line.
     Number pick(const std::string& text) {
         const std::vector<Number> numbers = numbers_of(text);
         return numbers[random_() % numbers.size()];
@@ -226,6 +244,19 @@ private:
     std::mt19937 random_;
 };
 
+// The line itself or a neighbour (comments stand between some). A share of a time block of KRL
+// changes the times of all its segments, from the first on.
+bool is_beside(const Lines& lines, std::int32_t line, std::int32_t named) {
+    if (std::abs(named - line) <= 2) {
+        return true;
+    }
+    bool one_block = named > 0 && named < line;
+    for (std::int32_t i = named; one_block && i < line; ++i) {
+        one_block = lines[static_cast<std::size_t>(i) - 1].find("ENDSPLINE") == std::string::npos;
+    }
+    return one_block && lines[static_cast<std::size_t>(line) - 1].find("PART") != std::string::npos;
+}
+
 void expect_random_changes_seen(const Released& program) {
     const unsigned seed = from_environment("MESHWIND_SEED", 1);
     const unsigned count = from_environment("MESHWIND_COUNT", 40);
@@ -235,8 +266,7 @@ void expect_random_changes_seen(const Released& program) {
         std::string what;
         const auto line = static_cast<std::int32_t>(mutator.next(i, lines, what)) + 1;
         const Answer answer = answer_of(program, text_of(lines));
-        // The line itself or a neighbour: comments stand between some.
-        EXPECT_TRUE(answer.seen && std::abs(answer.line - line) <= 2)
+        EXPECT_TRUE(answer.seen && is_beside(lines, line, answer.line))
             << "seed " << seed << ", change " << i << " in line " << line << ": " << what
             << "; seen by " << answer.by << ", which names line " << answer.line;
         EXPECT_TRUE(digest_sees(program, text_of(lines))) << what;
@@ -277,6 +307,27 @@ TEST(RobotMutations, Rapid) {
                                         {"PROC main()", "PROC main()\nWaitTime 1;"},
                                         {"ENDPROC", start + "ENDPROC"},
                                         {"ENDMODULE\n", ""}});
+    expect_random_changes_seen(program);
+}
+
+TEST(RobotMutations, Krl) {
+    const Released program = release("krl");
+    EXPECT_FALSE(answer_of(program, text_of(program.lines)).seen);
+    EXPECT_FALSE(digest_sees(program, text_of(program.lines)));
+    const std::string first = program.lines[program.blocks.front()];
+    const std::string start = "PTP" + first.substr(4) + "\n";
+    expect_frame_changes_seen(program, {{"HALT\n", ""},
+                                        {"HALT\n", "HALT\n" + start},
+                                        {" C_SPL", ""},
+                                        {"$APO.CPTP=50", "$APO.CPTP=5"},
+                                        {"BAS(#VEL_PTP,100)\n", ""},
+                                        {"tie on at X30.0", "tie on at X33.0"},
+                                        {"; tie on", "; fasten"},
+                                        {"PTP_SPLINE", "SPLINE"},
+                                        {"TIME_BLOCK START", "WAIT SEC 1\nTIME_BLOCK START"},
+                                        {"TIME_BLOCK END=", "TIME_BLOCK END=1"},
+                                        {"ENDSPLINE\nEND", "ENDSPLINE\n" + start + "END"},
+                                        {"ENDSPLINE\nEND\n", "ENDSPLINE\n"}});
     expect_random_changes_seen(program);
 }
 

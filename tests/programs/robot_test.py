@@ -10,6 +10,7 @@ import program
 NUMBER = r"(-?[\d.]+)"
 LANGUAGES = {
     "rapid": (".mod", r"MoveAbsJ \[\[" + ",".join([NUMBER] * 6) + r"\],\[" + NUMBER + r",.*\\T:=" + NUMBER + ","),
+    "krl": (".src", r"SPTP \{" + ",".join(f"A{i} {NUMBER}" for i in range(1, 7)) + rf",E1 {NUMBER}\}}\nTIME_BLOCK PART={NUMBER}\n"),
 }
 JOB = '{"tow": {"width": 12}, "redundancy": "central-angle", "layers": [{"kind": "helical", "angle": 50}]}'
 
@@ -49,6 +50,14 @@ class Robot(program.ProgramTest):
                 refused = self.run_program("dry-run", name)
                 self.assertEqual(refused.returncode, 2)
                 self.assertIn("no linear axis", refused.stderr)
+
+    def test_another_run_leaves_tables_of_the_user_alone(self):
+        """`carry` has tables of its own beside a program in KRL; the main job has none."""
+        name = self.wind("krl")
+        self.write("out/rings.csv", "mine")
+        self.wind("krl")
+        self.assertEqual((self.folder / "out/rings.csv").read_text(), "mine")
+        self.assertTrue((self.folder / name).exists())
 
     def test_a_machine_without_an_arm_is_refused(self):
         for dialect in LANGUAGES:

@@ -152,8 +152,12 @@ std::vector<double> end_of_program(const std::string& text, const Machine& machi
     return end;
 }
 
+bool is_robots(const std::string& dialect) {
+    return dialect == "rapid" || dialect == "krl";
+}
+
 Machine machine_for(const std::string& dialect) {
-    Machine machine = dialect == "rapid" ? robot_winder() : six_axis();
+    Machine machine = is_robots(dialect) ? robot_winder() : six_axis();
     machine.controller.dialect = dialect;
     machine.controller.header.clear();
     machine.controller.feed = dialect == "marlin" ? FeedMode::PerMinute : FeedMode::InverseTime;

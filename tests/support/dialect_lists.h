@@ -10,6 +10,9 @@
 
 namespace meshwind::test {
 
+/// Whether it is a language of robots, with absolute positions.
+[[nodiscard]] bool is_robots(const std::string& dialect);
+
 /// machines/six_axis.json for a dialect, for a robot's robot_winder.json, without header lines and
 /// with a feed that it takes.
 [[nodiscard]] Machine machine_for(const std::string& dialect);

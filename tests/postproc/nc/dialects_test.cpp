@@ -166,8 +166,8 @@ TEST(Dialects, NoDriftOver10000Circuits) {
     const double circuit_deg = 360.0 * std::sqrt(2.0);
     for (const std::string& name : kAll) {
         SCOPED_TRACE(name);
-        if (name == "grbl" || name == "marlin" || name == "rapid") {
-            continue;  // the next test; RAPID has absolute positions
+        if (name == "grbl" || name == "marlin" || test::is_robots(name)) {
+            continue;  // the next test; those of robots have absolute positions
         }
         const Machine machine = machine_for(name);
         const auto many = many_circuits(machine, circuit_deg);
@@ -296,7 +296,7 @@ TEST(Dialects, RefuseLettersAndFeedsTheyDoNotHave) {
         other = list;
         other.axes[0].letter = 'E';
         EXPECT_EQ(write_error(name, machine, other),
-                  name == "pulses" || name == "rapid" ? "written" : "dialect.axis_letter");
+                  name == "pulses" || test::is_robots(name) ? "written" : "dialect.axis_letter");
         machine.mandrel_chain[0].letter = 'U';
         other.axes[0].letter = 'U';  // the spindle
         const bool free = name != "linuxcnc" && name != "grbl" && name != "marlin";

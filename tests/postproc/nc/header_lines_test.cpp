@@ -48,7 +48,7 @@ TEST(HeaderLines, OthersAreRefusedWithThoseThatExist) {
 
 TEST(HeaderLines, EveryDialectFillsThemIn) {
     for (const std::string name :
-         {"linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "rapid"}) {
+         {"linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "rapid", "krl"}) {
         SCOPED_TRACE(name);
         Machine machine = test::machine_for(name);
         const bool brackets = name == "linuxcnc" || name == "fanuc" || name == "grbl";
