@@ -47,8 +47,9 @@ class _Page:
         if kind in ("number", "integer"):
             return self.numbers(node, kind)
         if kind == "string" and "pattern" in node:
-            return {"^[A-Z]$": "a capital letter", "^([A-Z]|base)$": "a capital letter or `\"base\"`"}.get(
-                node["pattern"], "text of one line")
+            return {"^[A-Z]$": "a capital letter", "^([A-Z]|base)$": "a capital letter or `\"base\"`",
+                    "^[A-Z]{6}$": "six capital letters", "^[A-Z-]{1,6}$": "up to six capital letters or `-`"}.get(
+                        node["pattern"], "text of one line")
         return {"string": "text", "boolean": "`true` `false`", "null": "null"}[kind]
 
     def choice(self, node):

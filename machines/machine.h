@@ -91,6 +91,11 @@ struct Controller {
     std::vector<std::string> footer;  ///< lines put after the last move as they are
     std::optional<std::int32_t> program_number;
     std::optional<double> junction_deviation_mm;  ///< > 0, GRBL's $11; nothing: its default
+    /// Letters of a robot's axes 1 to 6; empty: the last six of the eye's chain.
+    std::string robot_axes;
+    /// Letters of its external axes from the first on, `-` for a number that it does not have;
+    /// empty: all others in the order of the joint vector.
+    std::string external_axes;
 };
 
 /// A machine as read from its file (machines/machine_json.h); not changed afterwards.

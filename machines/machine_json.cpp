@@ -10,6 +10,7 @@
 #include "core/text/key_table.h"
 #include "core/text/strict_json.h"
 #include "core/units.h"
+#include "machines/controller_json.h"
 
 namespace meshwind {
 namespace {
@@ -25,7 +26,6 @@ constexpr double kMmPerM = 1000.0;
 constexpr double kSecondsPerMinute = 60.0;
 // Wider than this a machine hall, not a machine: a slip of units.
 constexpr double kLargestNumber = 1e6;
-constexpr std::int64_t kLargestProgramNumber = 99'999'999;  // eight digits, the longest O word
 
 constexpr JsonRange kPositive{.min = 0.0, .max = kLargestNumber, .above_min = true};
 constexpr JsonRange kLength{.min = 0.0, .max = kLargestNumber};
@@ -323,39 +323,6 @@ const KeyTable<FibreLimits>& fibre_keys() {
     return kTable;
 }
 
-Key<Controller> lines_key(std::string_view name, std::vector<std::string> Controller::*field,
-                          std::string_view meaning) {
-    return or_null<Controller>(
-        {name,
-         meaning,
-         {{"type", "array"}, {"items", pattern_schema("^[^\\r\\n]*$")}},
-         [field](const JsonValue& value, Controller& controller) {
-             for (const JsonValue& line : value.array()) {
-                 const std::string& text = (controller.*field).emplace_back(line.string());
-                 if (text.find_first_of("\r\n") != std::string::npos) {
-                     line.fail("machine.comment", "holds a line break; write one entry per line");
-                 }
-             }
-         }});
-}
-
-const KeyTable<Controller>& controller_keys() {
-    static const KeyTable<Controller> kTable = {{
-        required(any_text("dialect", &Controller::dialect,
-                          "language of the program: linuxcnc, fanuc, siemens, grbl, marlin, "
-                          "pulses, rapid or krl, which carried frames are written in as well")),
-        or_null(word("feed", &Controller::feed, {"inverse-time", "per-minute"},
-                     "what F means; inverse-time without")),
-        lines_key("header", &Controller::header, "lines of one's own at the head of the program"),
-        lines_key("footer", &Controller::footer, "lines of one's own at its end"),
-        or_null(count("program_number", &Controller::program_number, kLargestProgramNumber,
-                      "O number of fanuc programs; 1 without")),
-        or_null(number("junction_deviation", &Controller::junction_deviation_mm, kPositive,
-                       "of grbl, $11: how near to the corners it stays, mm; 0.01 without")),
-    }};
-    return kTable;
-}
-
 // What the keys of the whole file ask of each other.
 
 void check_letters(const JsonObject& object, const Machine& machine) {
@@ -428,6 +395,7 @@ const KeyTable<Machine>& machine_keys() {
         },
         [](const JsonObject& object, Machine& machine) {
             check_letters(object, machine);
+            check_robot_letters(object.required("controller"), machine);
             check_links(
                 object.required("eye").object(names_of(eye_head_keys())).optional("envelope"),
                 machine.eye.envelope, machine.eye_chain,

@@ -23,10 +23,13 @@ struct RobotAxes {
     std::array<std::optional<std::size_t>, kMostExternalAxes> external{};
 };
 
-/// The last six axes of the eye's chain are axes 1 to 6 of the robot; all others are external, in
-/// the order of the joint vector: those of the mandrel's chain, then those that carry the robot.
-/// \throws InputError dialect.robot_axes unless the six are there and rotary, or with more than six
-/// others
+/// The axes that the machine's controller names (Controller::robot_axes, external_axes). Without
+/// names the last six axes of the eye's chain are axes 1 to 6 of the robot, and all others are
+/// external, in the order of the joint vector: those of the mandrel's chain, then those that carry
+/// the robot.
+/// \pre names are of the machine's axes, each once (read_machine)
+/// \throws InputError dialect.robot_axes unless the six are there and rotary and every other axis
+/// has a number, or with more than six others
 [[nodiscard]] RobotAxes robot_axes(const Machine& machine);
 
 /// "axes 1 to 6: A B C U V W; external: X is E1, Z is E2".

@@ -79,6 +79,16 @@ TEST(MachineJson, SixAxisMachineHasSiUnitsInside) {
     EXPECT_EQ(std::get<Capsule>(machine.eye.envelope[0].shape).radius_mm, 3.5);
 }
 
+TEST(MachineJson, AxesOfARobotArriveAsTheyAreNamed) {
+    const auto read = [](const std::string& name) {
+        return read_machine(kSource + "/data/conformance/machine/valid/" + name).controller;
+    };
+    EXPECT_EQ(read("robot_axes.json").robot_axes, "CZYXAB");
+    EXPECT_EQ(read("robot_axes.json").external_axes, "");
+    EXPECT_EQ(read("external_axes.json").external_axes, "C-Z");
+    EXPECT_EQ(read("six_axis.json").robot_axes, "");
+}
+
 TEST(MachineJson, EnvelopeMeshNamesCountFromTheMachineFile) {
     const std::string folder = kSource + "/data/conformance/machine/valid";
     const Machine machine = read_machine(folder + "/mesh_envelope.json");

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "machines/machine_json.h"
+#include "postproc/robot/dialects.h"
 #include "postproc/robot/rapid_tokens.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
@@ -135,6 +136,54 @@ TEST(Rapid, AxesOfTheChainsAreTheRobotsAndExternalOnes) {
         many.mandrel_chain.push_back(many.mandrel_chain.front());
     }
     EXPECT_EQ(refused_machine(many).substr(0, 26), "dialect.robot_axes: it has");
+}
+
+// What the controller calls axis 1 or eax_b is what the machine file says.
+TEST(Rapid, AxesMayBeNamed) {
+    const auto with = [](const std::string& robot, const std::string& external) {
+        Machine machine =
+            read_machine(std::string(MESHWIND_SOURCE_DIR) + "/machines/robot_track.json");
+        machine.controller.dialect = "rapid";
+        machine.controller.robot_axes = robot;
+        machine.controller.external_axes = external;
+        return machine;
+    };
+    const auto line_of = [](const Machine& machine, const std::string& begin) {
+        BlockList list = empty_list(machine);
+        add(list, {1000, 2000, 1, 2, 3, 4, 5, 6}, 0.0);  // X Z A B C U V W
+        add(list, {1001, 2000, 1, 2, 3, 4, 5, 6}, 1.0);
+        const std::string text = Rapid().write(machine, list, {});
+        EXPECT_EQ(Rapid().read(text, "p", machine).nano, list.nano);
+        const std::size_t at = text.find(begin);
+        return text.substr(at, text.find('\n', at) - at);
+    };
+    const Machine named = with("WVUCBA", "Z--X");
+    EXPECT_EQ(line_of(named, "! axes"),
+              "! axes 1 to 6: W V U C B A; external: Z is eax_a, X is eax_d");
+    const std::string move =
+        "MoveAbsJ [[0.006,0.005,0.004,0.003,0.002,0.001],"
+        "[2.000,9E9,9E9,1.000,9E9,9E9]]";
+    EXPECT_EQ(line_of(named, "MoveAbsJ").substr(0, move.size()), move);
+    EXPECT_EQ(line_of(with("", "ZX"), "! axes"),
+              "! axes 1 to 6: A B C U V W; external: Z is eax_a, X is eax_b");
+    EXPECT_EQ(line_of(with("ABCUVX", ""), "! axes"),
+              "! axes 1 to 6: A B C U V X; external: Z is eax_a, W is eax_b");
+    const struct {
+        const char* robot;
+        const char* external;
+        const char* said;
+    } cases[] = {
+        {"ABCUVZ", "", "dialect.robot_axes: axis Z would be axis 6 "},
+        {"", "Z", "dialect.robot_axes: axis X has no number"},
+        {"", "ZXW", "dialect.robot_axes: axis W is one of the robot's six"},
+    };
+    for (const auto& c : cases) {
+        const std::string words = refused_machine(with(c.robot, c.external));
+        EXPECT_EQ(words.substr(0, std::string(c.said).size()), c.said);
+    }
+    // Other languages have no use for the names, and the file may keep them.
+    Machine siemens = with("ABCUVW", "ZX");
+    EXPECT_NO_THROW(make_dialect("siemens")->check(siemens));
 }
 
 // The controller reads every number into a 32-bit float. What that takes off is no more than the
