@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/margins.h"
-#include "core/secant_root.h"
+#include "core/roots.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "winding/revolution/aim_pass.h"
