@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/roots.h"
 #include "geodesic/slip_and_bridging.h"
 
 namespace meshwind {
@@ -118,17 +119,16 @@ std::optional<Highest> highest_ahead(const FieldWalker& from, const Vector3d& al
 
 // How far ahead the fibre touches there.
 double contact_mm(const Highest& highest, double step_mm) {
-    double low = highest.ahead_mm - step_mm;
-    double high = highest.beyond_mm;
-    if (low <= 0.0 || highest.before->away_mm() >= 0.0) {
+    const double before_mm = highest.ahead_mm - step_mm;
+    if (before_mm <= 0.0 || highest.before->away_mm() >= 0.0) {
         return highest.ahead_mm;
     }
-    Lookout last = *highest.before;
-    for (int i = 0; i < kContactHalvings; ++i) {
-        const double middle = 0.5 * (low + high);
+    Lookout last = *highest.before;  // where it was looked out from last
+    const auto rises = [&](double ahead_mm) {
         last = *highest.before;
-        (last.go(middle) && last.away_mm() < 0.0 ? low : high) = middle;
-    }
+        return last.go(ahead_mm) && last.away_mm() < 0.0;
+    };
+    halve({.holds = before_mm, .fails = highest.beyond_mm}, kContactHalvings, rises);
     return last.ahead_mm();
 }
 
@@ -239,20 +239,17 @@ private:
 
     // Halves the way from a station before a bridge to one after its beginning.
     void refine(const PathPoint& before, double way_mm, Leaving& leaving) const {
-        double low = 0.0;
-        double high = way_mm;
         PathPoint first = leaving.place;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (low + high);
-            PathPoint place = stretch(before.at, before.tangent, middle).path.back();
+        const auto is_beyond = [&](double gone_mm) {
+            PathPoint place = stretch(before.at, before.tangent, gone_mm).path.back();
             place.s_mm += before.s_mm;
-            if (is_under_wall(place)) {
+            const bool beyond = is_under_wall(place);
+            if (beyond) {
                 first = place;
-                high = middle;
-            } else {
-                low = middle;
             }
-        }
+            return beyond;
+        };
+        halve({.holds = way_mm, .fails = 0.0}, kHalvings, is_beyond);
         if (auto bridge = bridge_at(first)) {
             leaving.bridge = std::move(*bridge);
             leaving.place = first;

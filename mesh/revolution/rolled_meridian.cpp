@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/roots.h"
 #include "core/units.h"
 
 namespace meshwind {
@@ -150,12 +151,11 @@ Contact contact_in(const Meridian& meridian, const Stretch& stretch, double shar
 }
 
 // The last place where the ball touches between one where it does and one where it does not.
-Contact last_touch(const Rolling& rolling, const Stretch& stretch, double good, double bad) {
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (good + bad);
-        (rolling.touches(contact_in(rolling.meridian, stretch, middle)) ? good : bad) = middle;
-    }
-    return contact_in(rolling.meridian, stretch, good);
+Contact last_touch(const Rolling& rolling, const Stretch& stretch, const Changeover& touching) {
+    const auto touches = [&](double share) {
+        return rolling.touches(contact_in(rolling.meridian, stretch, share));
+    };
+    return contact_in(rolling.meridian, stretch, halve(touching, kHalvings, touches).holds);
 }
 
 struct Hollows {
@@ -178,9 +178,11 @@ Hollows hollows_of(const Rolling& rolling) {
             const Contact here = contact_in(rolling.meridian, stretch, share);
             const bool touching = rolling.touches(here);
             if (!touching && !from) {
-                from = k > 0 ? last_touch(rolling, stretch, last, share) : before;
+                from =
+                    k > 0 ? last_touch(rolling, stretch, {.holds = last, .fails = share}) : before;
             } else if (touching && from) {
-                const Contact to = k > 0 ? last_touch(rolling, stretch, share, last) : here;
+                const Contact to =
+                    k > 0 ? last_touch(rolling, stretch, {.holds = share, .fails = last}) : here;
                 const Vector2d left = rolling.ball_at(*from);
                 const Vector2d met = rolling.ball_at(to);
                 if ((met - left).norm() > kSameBall * rolling.radius_mm) {

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/roots.h"
 #include "core/small_linear.h"
 
 namespace meshwind {
@@ -151,12 +152,8 @@ std::optional<AxisFrame> at_ring(const FrameAxis& axis, const std::vector<double
             inside = samples[i];
             continue;
         }
-        double beyond = samples[i];
-        for (int k = 0; k < kHalvings; ++k) {
-            const double half = 0.5 * (inside + beyond);
-            (ahead(half) < way_mm ? inside : beyond) = half;
-        }
-        return axis.at(beyond);
+        const auto is_inside = [&](double s_mm) { return ahead(s_mm) < way_mm; };
+        return axis.at(halve({.holds = inside, .fails = samples[i]}, kHalvings, is_inside).fails);
     }
     return std::nullopt;
 }

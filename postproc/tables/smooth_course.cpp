@@ -10,6 +10,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "core/index.h"
+#include "core/roots.h"
 #include "postproc/tables/landing_path.h"
 #include "postproc/tables/wall_place.h"
 
@@ -147,19 +148,16 @@ Eigen::VectorXd smoothest_mm(const CurvatureChange& curvature, const PointOffset
     const auto furthest_mm = [&](const Eigen::VectorXd& u) {
         return is_point.cwiseProduct(off_mm + u).cwiseAbs().maxCoeff();
     };
-    double low = kMinWeight_log;
-    double high = kMaxWeight_log;
-    Eigen::VectorXd best = solve(high);
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (low + high);
-        Eigen::VectorXd u = solve(middle);
-        if (u.allFinite() && furthest_mm(u) <= tolerance_mm) {
+    Eigen::VectorXd best = solve(kMaxWeight_log);
+    const auto keeps_all = [&](double weight_log) {
+        Eigen::VectorXd u = solve(weight_log);
+        const bool kept = u.allFinite() && furthest_mm(u) <= tolerance_mm;
+        if (kept) {
             best = std::move(u);
-            high = middle;
-        } else {
-            low = middle;
         }
-    }
+        return kept;
+    };
+    halve({.holds = kMaxWeight_log, .fails = kMinWeight_log}, kHalvings, keeps_all);
     return best;
 }
 

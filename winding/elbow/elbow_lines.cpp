@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/roots.h"
 #include "core/units.h"
 
 namespace meshwind {
@@ -164,13 +165,11 @@ std::optional<double> offset_for(const Leg& leg, const Wish& wish) {
 
 void steer(const Leg& leg, const Wish& wish, double even, LegLine& line) {
     const double target = wish.psi(line, even, leg.radius_mm);
-    Range middle = middle_range(leg, line, wish);
-    for (int i = 0; i < kHalvings; ++i) {
-        const double u = 0.5 * (middle.low + middle.high);
-        (end_psi(leg, line, wish, u) > target ? middle.low : middle.high) = u;
-    }
+    const Range middle = middle_range(leg, line, wish);
+    const auto is_beyond = [&](double u) { return end_psi(leg, line, wish, u) > target; };
+    line.middle_u =
+        halve({.holds = middle.low, .fails = middle.high}, kHalvings, is_beyond).middle();
     line.end_u = wish.u(line);
-    line.middle_u = 0.5 * (middle.low + middle.high);
 }
 
 // Largest distance of neighbours at a distance from the bend, square to them.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
+#include "core/roots.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "winding/revolution/steered_pass.h"
@@ -70,15 +72,8 @@ public:
     }
 
     // The least slip for which something holds that more slip does not undo.
-    template <class Holds>
-    [[nodiscard]] static double least(double most, const Holds& holds) {
-        double low = 0.0;
-        double high = most;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (low + high);
-            (holds(middle) ? high : low) = middle;
-        }
-        return high;
+    [[nodiscard]] static double least(double most, const std::function<bool(double)>& holds) {
+        return halve({.holds = most, .fails = 0.0}, kHalvings, holds).holds;
     }
 
     [[nodiscard]] double slip() const {
@@ -105,13 +100,9 @@ public:
         if (!reaches(task_.most_slip, 0.0)) {
             return std::nullopt;
         }
-        double good = 0.0;
-        double bad = task_.angle_rad;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (good + bad);
-            (reaches(task_.most_slip, middle) ? good : bad) = middle;
-        }
-        return good;
+        return halve({.holds = 0.0, .fails = task_.angle_rad}, kHalvings,
+                     [this](double angle_rad) { return reaches(task_.most_slip, angle_rad); })
+            .holds;
     }
 
     [[nodiscard]] std::string failure() const {

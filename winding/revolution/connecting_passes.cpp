@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/roots.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 
@@ -112,14 +113,16 @@ private:
         if (wanted_mm >= reach_mm(at_high)) {
             return followable(at_high);
         }
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (low + high);
-            MeridianPass half = pass(arc_mm, middle);
-            const bool beyond = reach_mm(half) > wanted_mm;
-            (beyond ? high : low) = middle;
-            (beyond ? at_high : at_low) = std::move(half);
-        }
+        const auto is_short = [&](double slip) {
+            MeridianPass tried = pass(arc_mm, slip);
+            const bool stops_short = !(reach_mm(tried) > wanted_mm);
+            if (stops_short) {
+                at_low = std::move(tried);
+            }
+            return stops_short;
+        };
         // Both stop at the parallel, but for rounding; the one short of it ends in itself.
+        halve({.holds = low, .fails = high}, kHalvings, is_short);
         return followable(at_low);
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/roots.h"
 #include "core/text/text_number.h"
 
 namespace meshwind {
@@ -112,13 +113,11 @@ private:
         if (inside.s_mm == outside.s_mm) {
             return outside;  // the two sides of a crease
         }
-        double low = 0.0;
-        double high = 1.0;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (low + high);
-            (beside_mm(between(outside, inside, middle)) < 0.0 ? high : low) = middle;
-        }
-        return low > 0.0 ? between(outside, inside, low) : outside;
+        const auto is_within = [&](double share) {
+            return beside_mm(between(outside, inside, share)) < 0.0;
+        };
+        const double share = halve({.holds = 1.0, .fails = 0.0}, kHalvings, is_within).fails;
+        return share > 0.0 ? between(outside, inside, share) : outside;
     }
 
     // Stations below the straight fibre, up to the rim.

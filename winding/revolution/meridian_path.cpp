@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/roots.h"
 #include "core/units.h"
 #include "winding/revolution/concave_creases.h"
 
@@ -161,13 +162,10 @@ private:
 
     // The part of a step up to where it leaves the stretch or turns.
     [[nodiscard]] double cut(const State& from, double h) const {
-        double good = 0.0;
-        double bad = h;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (good + bad);
-            (event_of(stepped(from, middle)) == Event::None ? good : bad) = middle;
-        }
-        return good;
+        const auto goes_on = [&](double part) {
+            return event_of(stepped(from, part)) == Event::None;
+        };
+        return halve({.holds = 0.0, .fails = h}, kHalvings, goes_on).holds;
     }
 
     const Meridian& meridian_;

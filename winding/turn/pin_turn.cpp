@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/roots.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 
@@ -125,14 +126,13 @@ double entry_room_mm(const PinTurnShape& shape, double height_mm) {
 
 // The lead at which both rooms are alike, or the least.
 double even_lead_mm(PinTurnShape shape, double strand_mm, double height_mm) {
-    double low = kMinLead_mm;
-    double high = kMaxLead_rad * shape.radius_mm;
-    for (int i = 0; i < kHalvings; ++i) {
-        shape.lead_mm = 0.5 * (low + high);
+    const Changeover ends{.holds = kMinLead_mm, .fails = kMaxLead_rad * shape.radius_mm};
+    const auto has_less_over = [&](double lead_mm) {
+        shape.lead_mm = lead_mm;
         const Room room = room_of(shape, strand_mm, height_mm);
-        (room.over_mm < room.under_mm ? low : high) = shape.lead_mm;
-    }
-    return high;
+        return room.over_mm < room.under_mm;
+    };
+    return halve(ends, kHalvings, has_less_over).fails;
 }
 
 PinFit fit_at(PinTurnShape shape, double strand_mm, double height_mm) {
