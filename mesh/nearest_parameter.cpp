@@ -1,10 +1,9 @@
 #include "mesh/nearest_parameter.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
-#include <boost/math/tools/toms748_solve.hpp>
+#include "core/roots.h"
 
 namespace meshwind {
 
@@ -35,11 +34,7 @@ double nearest_parameter(const ParameterRange& range, const std::function<double
     if (slope_high <= 0.0) {
         return high;
     }
-    std::uintmax_t iterations = 100;
-    const auto [a, b] = boost::math::tools::toms748_solve(
-        slope, low, high, slope_low, slope_high, boost::math::tools::eps_tolerance<double>(52),
-        iterations);
-    return 0.5 * (a + b);
+    return zero_between({low, high, slope_low, slope_high}, slope).middle();
 }
 
 }  // namespace meshwind

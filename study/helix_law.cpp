@@ -1,9 +1,8 @@
 #include "study/helix_law.h"
 
 #include <cmath>
-#include <cstdint>
 
-#include <boost/math/tools/roots.hpp>
+#include "core/roots.h"
 
 namespace meshwind {
 
@@ -31,23 +30,23 @@ EyeError helix_error(TangentRule rule, const Helix& helix, const Spacing& spacin
 
 double spacing_for_c_error_mm(TangentRule rule, const Helix& helix, double free_length_mm,
                               double c_error_rad, double longest_mm) {
+    constexpr int kBits = 48;  // all but what the differences of positions lose by rounding
     const auto excess = [&](double spacing_mm) {
         return std::abs(helix_error(rule, helix, {spacing_mm, spacing_mm}, free_length_mm).c_rad) -
                c_error_rad;
     };
-    if (excess(longest_mm) <= 0.0) {
+    const double at_longest = excess(longest_mm);
+    if (at_longest <= 0.0) {
         return longest_mm;
     }
     // From where rounding hides the error to the longest: a bracket for any error asked in earnest.
     const double shortest_mm = 1e-6 * longest_mm;
-    if (excess(shortest_mm) >= 0.0) {
+    const double at_shortest = excess(shortest_mm);
+    if (at_shortest >= 0.0) {
         return shortest_mm;
     }
-    std::uintmax_t evaluations = 200;
-    const auto [low, high] = boost::math::tools::toms748_solve(
-        excess, shortest_mm, longest_mm, boost::math::tools::eps_tolerance<double>(48),
-        evaluations);
-    return 0.5 * (low + high);
+    return zero_between({shortest_mm, longest_mm, at_shortest, at_longest}, excess, {.bits = kBits})
+        .middle();
 }
 
 }  // namespace meshwind

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <boost/math/tools/toms748_solve.hpp>
-
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/roots.h"
 #include "core/text/text_number.h"
 #include "core/units.h"
 #include "geodesic/bridge.h"
@@ -42,8 +40,7 @@ constexpr int kMaxBridges = 50;
 constexpr double kPinStation_mm = 0.25;
 
 // Where along its curve the eye is in line with a place about a pin: to the last digits.
-constexpr int kPinRootBits = 50;
-constexpr std::uintmax_t kPinRootSteps = 60;
+constexpr ZeroSearch kPinRoot{.bits = 50, .most_evaluations = 60};
 
 // A free fibre shorter than this has no direction.
 constexpr double kMinFree_mm = 1e-3;
@@ -290,12 +287,8 @@ Vector3d pull_in_plane(const PinContact& pins, const EyeCurve& curve, const Vect
     if (end >= 0.0 || begin <= 0.0) {
         return pins.pull(place, curve.position(end >= 0.0 ? 1.0 : 0.0));
     }
-    std::uintmax_t most = kPinRootSteps;
-    const double high = boost::math::tools::toms748_solve(
-                            over, 0.0, 1.0, begin, end,
-                            boost::math::tools::eps_tolerance<double>(kPinRootBits), most)
-                            .second;
-    return pins.pull(place, curve.position(high));
+    const ZeroBracket zero = zero_between({0.0, 1.0, begin, end}, over, kPinRoot);
+    return pins.pull(place, curve.position(zero.high));
 }
 
 // The landing point follows the eye to the end of its curve where a pin holds the fibre.

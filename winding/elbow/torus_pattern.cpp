@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 
+#include "core/roots.h"
 #include "core/units.h"
 #include "mesh/shapes/make_checks.h"
 
@@ -73,11 +72,7 @@ private:
             return kPi;
         }
         const auto excess = [&](double phi) { return integral(true, phi) - wanted; };
-        std::uintmax_t evaluations = 100;
-        const auto [low, high] = boost::math::tools::toms748_solve(
-            excess, 0.0, kPi, -wanted, half_.theta_rad - wanted,
-            boost::math::tools::eps_tolerance<double>(52), evaluations);
-        return 0.5 * (low + high);
+        return zero_between({0.0, kPi, -wanted, half_.theta_rad - wanted}, excess).middle();
     }
 
     // From 0, |phi| <= pi.

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
-#include <boost/math/tools/roots.hpp>
-
+#include "core/roots.h"
 #include "winding/revolution/concave_creases.h"
 
 namespace meshwind {
@@ -29,7 +27,6 @@ constexpr double kSameTurn_mm = 1e-6;
 constexpr int kCorrections = 8;
 
 constexpr int kBits = 50;
-constexpr std::uintmax_t kRootSteps = 100;
 
 // A path between two nodes of the meridian.
 class Stretch {
@@ -103,15 +100,13 @@ bool follow(const Stretch& stretch, double to_mm, SteeredEnd& at) {
             at.most_sine = std::max(at.most_sine, sine);
             continue;
         }
-        double good = 0.0;
-        double bad = step;
-        for (int k = 0; k < kHalvings; ++k) {
-            const double middle = 0.5 * (good + bad);
-            const double c_there = stretch.stepped(at.arc_mm, at.turning_mm, middle);
-            (stretch.sine(at.arc_mm + middle, c_there) < 1.0 ? good : bad) = middle;
-        }
-        at.turning_mm = stretch.stepped(at.arc_mm, at.turning_mm, good);
-        at.arc_mm += good;
+        const auto goes_on = [&](double part) {
+            const double c_there = stretch.stepped(at.arc_mm, at.turning_mm, part);
+            return stretch.sine(at.arc_mm + part, c_there) < 1.0;
+        };
+        const double left = halve({.holds = 0.0, .fails = step}, kHalvings, goes_on).holds;
+        at.turning_mm = stretch.stepped(at.arc_mm, at.turning_mm, left);
+        at.arc_mm += left;
         at.turned = true;
         at.most_sine = 1.0;
         return true;
@@ -180,12 +175,10 @@ public:
         if ((there > 0.0) == (straight > 0.0) && there != 0.0) {
             return std::nullopt;
         }
-        std::uintmax_t steps = kRootSteps;
-        const auto f = [this](double slip_ratio) { return excess_mm(slip_ratio); };
-        const auto bracket = boost::math::tools::toms748_solve(
-            f, std::min(0.0, far), std::max(0.0, far), far < 0.0 ? there : straight,
-            far < 0.0 ? straight : there, boost::math::tools::eps_tolerance<double>(kBits), steps);
-        return 0.5 * (bracket.first + bracket.second);
+        const SignChange ends = far < 0.0 ? SignChange{far, 0.0, there, straight}
+                                          : SignChange{0.0, far, straight, there};
+        const auto excess = [this](double slip_ratio) { return excess_mm(slip_ratio); };
+        return zero_between(ends, excess, {.bits = kBits}).middle();
     }
 
     [[nodiscard]] double most_reached_mm(double most_slip) const {
@@ -237,13 +230,10 @@ std::optional<double> narrow_place_mm(const Meridian& meridian, double radius_mm
                 arc = next;
                 continue;
             }
-            double wide = arc;
-            double narrow = next;
-            for (int k = 0; k < kHalvings; ++k) {
-                const double middle = 0.5 * (wide + narrow);
-                (meridian.at(middle).radius_mm > radius_mm ? wide : narrow) = middle;
-            }
-            return wide;
+            const auto is_wide = [&](double arc_mm) {
+                return meridian.at(arc_mm).radius_mm > radius_mm;
+            };
+            return halve({.holds = arc, .fails = next}, kHalvings, is_wide).holds;
         }
     }
     return std::nullopt;

@@ -1,11 +1,10 @@
 #include "winding/vessel/dome_pass.h"
 
 #include <cmath>
-#include <cstdint>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 
+#include "core/roots.h"
 #include "core/units.h"
 
 namespace meshwind {
@@ -81,6 +80,7 @@ double slip_ratio(const MeridianFibre& fibre) {
 
 std::optional<double> slip_to_turn(const IsotensoidDome& dome, double clairaut_mm, double turn_mm) {
     constexpr double kMost = 1.0;
+    constexpr int kBits = 40;  // 2e-12, finer than the moment is known
     const auto excess = [&](double slip) {
         return follow_moment(dome, clairaut_mm, turn_mm, slip).excess_mm;
     };
@@ -92,10 +92,7 @@ std::optional<double> slip_to_turn(const IsotensoidDome& dome, double clairaut_m
     if (!(high > 0.0)) {
         return std::nullopt;
     }
-    std::uintmax_t iterations = 100;
-    const auto [a, b] = boost::math::tools::toms748_solve(
-        excess, 0.0, kMost, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
-    const double slip = 0.5 * (a + b);
+    const double slip = zero_between({0.0, kMost, low, high}, excess, {.bits = kBits}).middle();
     if (!follow_moment(dome, clairaut_mm, turn_mm, slip).pressed) {
         return std::nullopt;
     }
