@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t kLargestProgramNumber = 99'999'999;  // eight digits, the longest O word
 constexpr JsonRange kPositive{.min = 0.0, .max = 1e6, .above_min = true};
 // A robot's arm has six axes, and its controller counts as many external ones.
-constexpr std::size_t kMostLetters = 6;
+constexpr std::size_t kMaxLetters = 6;
 
 Key<Controller> lines_key(std::string_view name, std::vector<std::string> Controller::*field,
                           std::string_view meaning) {
@@ -45,7 +45,7 @@ Key<Controller> letters_key(std::string_view name, std::string Controller::*fiel
          {{"type", "string"}, {"pattern", letters.pattern}},
          [=](const JsonValue& value, Controller& controller) {
              const std::string text = value.string();
-             const bool fits = text.size() >= letters.least && text.size() <= kMostLetters &&
+             const bool fits = text.size() >= letters.least && text.size() <= kMaxLetters &&
                                std::all_of(text.begin(), text.end(), [&](char c) {
                                    return (c >= 'A' && c <= 'Z') || (letters.gaps && c == '-');
                                });
@@ -58,7 +58,7 @@ Key<Controller> letters_key(std::string_view name, std::string Controller::*fiel
 }
 
 constexpr Letters kRobotLetters{
-    .pattern = "^[A-Z]{6}$", .least = kMostLetters, .form = "the letters of six axes, \"ABCUVW\""};
+    .pattern = "^[A-Z]{6}$", .least = kMaxLetters, .form = "the letters of six axes, \"ABCUVW\""};
 constexpr Letters kExternalLetters{
     .pattern = "^[A-Z-]{1,6}$",
     .gaps = true,

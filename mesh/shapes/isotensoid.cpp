@@ -114,12 +114,12 @@ void IsotensoidDome::find_least() {
     const auto excess = [&](double v) {
         return std::pow(v / (q_ + 1.0), k + 1.0) * (1.0 + r) * (1.0 + r) - cubic(lowest + v, r);
     };
-    constexpr int kMostEvaluations = 300;  // v may be next to 0, the end of the bracket
+    constexpr int kMaxEvaluations = 300;  // v may be next to 0, the end of the bracket
     const double a = k - 2.0;
     const double b = k * r - 3.0 * q_;
     const double high = (-b - std::sqrt(b * b + 4.0 * a * q_ * r)) / (2.0 * a) - lowest;
     const SignChange ends{0.0, high, excess(0.0), excess(high)};
-    least_above_ = zero_between(ends, excess, {.most_evaluations = kMostEvaluations}).middle();
+    least_above_ = zero_between(ends, excess, {.most_evaluations = kMaxEvaluations}).middle();
     least_square_ = lowest + least_above_;
 }
 

@@ -12,8 +12,8 @@
 namespace meshwind {
 
 /// Names of the external axes in an E6AXIS.
-inline constexpr std::array<const char*, kMostExternalAxes> kKrlExternal = {"E1", "E2", "E3",
-                                                                            "E4", "E5", "E6"};
+inline constexpr std::array<const char*, kMaxExternalAxes> kKrlExternal = {"E1", "E2", "E3",
+                                                                           "E4", "E5", "E6"};
 
 /// Most segments of a spline block. The controller plans a block as a whole before it moves, and
 /// takes a limited number of time parts; 50 take 2 s or so to wind.

@@ -12,7 +12,7 @@
 namespace meshwind {
 
 /// Names of the external axes, as jointtarget has them.
-inline constexpr std::array<const char*, kMostExternalAxes> kRapidExternal = {
+inline constexpr std::array<const char*, kMaxExternalAxes> kRapidExternal = {
     "eax_a", "eax_b", "eax_c", "eax_d", "eax_e", "eax_f"};
 
 /// RAPID: a module with one procedure `main`, in which a line is a block: the absolute positions of

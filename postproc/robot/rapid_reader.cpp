@@ -43,7 +43,7 @@ struct Record {
 constexpr std::array<Record, 5> kRecords = {
     {{"speeddata", 4}, {"zonedata", 7}, {"tooldata", 3}, {"wobjdata", 5}, {"loaddata", 6}}};
 // Records within records of these have no more levels.
-constexpr std::size_t kMostLevels = 4;
+constexpr std::size_t kMaxLevels = 4;
 
 // Reads a program statement by statement into blocks.
 class Reader {
@@ -191,7 +191,7 @@ void Reader::data() {
 // The fields up to the bracket that closes a record, and how many they are.
 std::size_t Reader::record(std::size_t level) {
     for (std::size_t fields = 1;; ++fields) {
-        if (token_.is("[") && level < kMostLevels) {
+        if (token_.is("[") && level < kMaxLevels) {
             next();
             (void)record(level + 1);
         } else {

@@ -20,7 +20,7 @@ double units(std::int64_t nano) {
 
 // All axes that are not the arm's, in their order.
 void number_others(const Machine& machine, std::vector<bool>& numbered, RobotAxes& axes) {
-    if (machine.axis_count() > kArmAxes + kMostExternalAxes) {
+    if (machine.axis_count() > kArmAxes + kMaxExternalAxes) {
         refuse(machine, "it has " + std::to_string(machine.axis_count() - kArmAxes) +
                             " axes beside the robot's six; a robot's program has at most six "
                             "external axes");
@@ -79,7 +79,7 @@ RobotAxes robot_axes(const Machine& machine) {
 }
 
 std::string robot_axes_words(const RobotAxes& axes, const Machine& machine,
-                             const std::array<const char*, kMostExternalAxes>& names) {
+                             const std::array<const char*, kMaxExternalAxes>& names) {
     std::string words = "axes 1 to 6:";
     for (const std::size_t joint : axes.arm) {
         words += std::string(" ") + machine.axis(joint).letter;
@@ -106,7 +106,7 @@ double float32_rounding(const BlockList& list, std::size_t axis) {
 
 void check_float32(const BlockList& list, const std::string& controller) {
     for (std::size_t a = 0; a < list.axes.size(); ++a) {
-        if (float32_rounding(list, a) > kMostRounding) {
+        if (float32_rounding(list, a) > kMaxRounding) {
             throw InputError(
                 "dialect.float32", std::string("axis ") + list.axes[a].letter,
                 "goes so far that " + controller +

@@ -14,13 +14,13 @@
 namespace meshwind {
 
 inline constexpr std::size_t kArmAxes = 6;
-inline constexpr std::size_t kMostExternalAxes = 6;
+inline constexpr std::size_t kMaxExternalAxes = 6;
 
 /// Entries of the machine's joint vector by the robot's numbers.
 struct RobotAxes {
     std::array<std::size_t, kArmAxes> arm{};  ///< axis 1 first
     /// First external axis first; nothing: the robot has none of this number.
-    std::array<std::optional<std::size_t>, kMostExternalAxes> external{};
+    std::array<std::optional<std::size_t>, kMaxExternalAxes> external{};
 };
 
 /// The axes that the machine's controller names (Controller::robot_axes, external_axes). Without
@@ -35,7 +35,7 @@ struct RobotAxes {
 /// "axes 1 to 6: A B C U V W; external: X is E1, Z is E2".
 /// \param names of the external axes in the language
 [[nodiscard]] std::string robot_axes_words(const RobotAxes& axes, const Machine& machine,
-                                           const std::array<const char*, kMostExternalAxes>& names);
+                                           const std::array<const char*, kMaxExternalAxes>& names);
 
 /// Largest distance of an axis' positions from what a controller holds that keeps each in a 32-bit
 /// float, mm or deg. Positions are absolute, so that nothing adds up.
@@ -43,7 +43,7 @@ struct RobotAxes {
 
 /// The coarsest positions that a program may get by that, mm or deg: as coarse as the steps of
 /// controllers that add in floats (kCoarsestBinary), reached at 1 048 576.
-inline constexpr double kMostRounding = 1.0 / 32.0;
+inline constexpr double kMaxRounding = 1.0 / 32.0;
 
 /// \throws InputError dialect.float32 when an axis goes beyond that \param controller in messages
 void check_float32(const BlockList& list, const std::string& controller);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kBlocksPerLook = 4096;
 
 // A program needs one move to get to its start.
-constexpr std::size_t kMostApproaches = 1000;
+constexpr std::size_t kMaxApproaches = 1000;
 
 }  // namespace
 
@@ -66,8 +66,8 @@ void RobotBlocks::approach(const RobotMove& to) {
                                    " after the first block has no time of its own; write it");
     }
     ProgramHead& head = *list_.head;
-    if (head.approach.size() == kMostApproaches) {
-        line_.fail("nc.too_many_lines", "more than " + std::to_string(kMostApproaches) +
+    if (head.approach.size() == kMaxApproaches) {
+        line_.fail("nc.too_many_lines", "more than " + std::to_string(kMaxApproaches) +
                                             " moves lead to the start; leave some out");
     }
     check_place(to);

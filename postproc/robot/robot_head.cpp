@@ -22,7 +22,7 @@ RobotSource robot_source(const Machine& machine, const BlockList& list, const Pr
 }
 
 std::string robot_head(const RobotSource& source,
-                       const std::array<const char*, kMostExternalAxes>& external) {
+                       const std::array<const char*, kMaxExternalAxes>& external) {
     std::vector<std::string> comments = head_comments(source.flavour, source.machine, source.list,
                                                       source.header, source.list.duration_s());
     comments.push_back(robot_axes_words(source.axes, source.machine, external));

@@ -34,7 +34,7 @@ struct RobotSource {
 /// The head's comments: those of every program, which axes are the robot's, what 32-bit floats take
 /// off. \param external names of the external axes in the language
 [[nodiscard]] std::string robot_head(const RobotSource& source,
-                                     const std::array<const char*, kMostExternalAxes>& external);
+                                     const std::array<const char*, kMaxExternalAxes>& external);
 
 /// Comments before the move to the start.
 [[nodiscard]] std::string robot_approach(const RobotSource& source);
