@@ -122,7 +122,7 @@ void join_to(const CoverTask& task, const PlanRoutes& routes, int fibres, Course
              ProvenLibrary& library, PlanCourses& courses) {
     const auto place = [&](const DirectedCourse& course, PlacedCourse& in_place) {
         in_place = library.placed(course);
-        return task.prover.prove_and_wind(in_place);
+        return prove_to_stay(task, courses, in_place);
     };
     const auto strike = [&](std::size_t member, CourseFault why) {
         library.strike_off(member, why);
@@ -186,11 +186,11 @@ struct TriedOrder {
 TriedOrder order_that_holds(const CoverTask& task, const AnnealGround& ground,
                             const FibreReach& reach, ProvenLibrary& library, PlanCourses courses,
                             Plan& plan) {
-    CourseJoiner joiner;
     std::vector<PlacedCourse> best;
     std::size_t least = 0;
     int in_vain = 0;
     for (int attempt = 0; attempt < kMaxAttempts && !courses.placed.empty(); ++attempt) {
+        CourseJoiner joiner;
         CoverOrder order = joined_to_fibres(task, reach.routes, joiner, library, courses);
         lay_out_order(task, order, library, plan);
         std::unique_ptr<TrialWinding> trial = task.machine != nullptr && !order.courses.empty()
@@ -209,6 +209,7 @@ TriedOrder order_that_holds(const CoverTask& task, const AnnealGround& ground,
             least = refused.size();
         }
         give_up_courses(task, refused, library, courses);
+        courses.turned_with = courses.placed;
         if (in_vain < kMaxInVain && attempt + kAttemptsWithoutOthers < kMaxAttempts) {
             replace_lost_courses(task, ground, reach, library, courses);
         }

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
 
 #include "core/index.h"
 #include "core/margins.h"
+#include "core/parallel.h"
 #include "core/random.h"
 #include "winding/cover/anneal.h"
+#include "winding/cover/order_to_follow.h"
 #include "winding/cover/placed_course.h"
 #include "winding/cover/rim_joints.h"
 #include "winding/cover/select_courses.h"
@@ -87,11 +90,14 @@ AnnealOptions annealing_prices(const CoverTask& task, const PlanRoutes& routes, 
     return annealing;
 }
 
-// The others are refused. \param to_stay their own programs are wound as well
+// The others are refused. \param prove thread-safe
 std::vector<PlacedCourse> those_that_hold(const CoverTask& task, std::vector<PlacedCourse> courses,
-                                          bool to_stay, ProvenLibrary& library) {
+                                          const std::function<CourseFault(PlacedCourse&)>& prove,
+                                          ProvenLibrary& library) {
     task.report_progress("prove", 0.0);
-    const std::vector<CourseFault> found = task.prover.prove_all(courses, to_stay);
+    std::vector<CourseFault> found(courses.size(), CourseFault::None);
+    parallel_for(courses.size(), 1,
+                 [&](std::size_t i, std::size_t) { found[i] = prove(courses[i]); });
     std::vector<PlacedCourse> holding;
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (found[i] == CourseFault::None) {
@@ -115,7 +121,8 @@ std::vector<char> which_hold(const CoverTask& task, std::span<const DirectedCour
     for (const DirectedCourse& course : unknown) {
         tried.push_back(library.placed(course));
     }
-    for (PlacedCourse& course : those_that_hold(task, std::move(tried), false, library)) {
+    const auto prove = [&task](PlacedCourse& course) { return task.prover.prove(course); };
+    for (PlacedCourse& course : those_that_hold(task, std::move(tried), prove, library)) {
         proven.emplace(DirectedCourse{course.of_library, course.backward}, std::move(course));
     }
     std::vector<char> holds;
@@ -138,9 +145,9 @@ void anneal_proven(const CoverTask& task, const AnnealGround& ground, const Plan
         seed_of(Stream::Annealing, options.context.seed) + (++courses.annealings << 32U);
     annealing.progress = [&task](double share) { task.report_progress("anneal", share); };
     annealing.way = [&routes](const NodePair& nodes) { return routes.hold(nodes); };
-    annealing.verify = [&task, &library, mending](PlacedCourse& course) {
+    annealing.verify = [&task, &library, &courses, mending](PlacedCourse& course) {
         const CourseFault rejection =
-            mending ? task.prover.prove_and_wind(course) : task.prover.prove(course);
+            mending ? prove_to_stay(task, courses, course) : task.prover.prove(course);
         if (rejection != CourseFault::None) {
             // On the samples of the plan, not on those of the annealing.
             FootprintFinder::Scratch scratch = task.footprints.make_scratch();
@@ -156,6 +163,7 @@ void anneal_proven(const CoverTask& task, const AnnealGround& ground, const Plan
 
 void fill_where_thin(const CoverTask& task, const std::vector<char>& joinable,
                      ProvenLibrary& library, PlanCourses& courses) {
+    const auto prove = [&](PlacedCourse& course) { return prove_to_stay(task, courses, course); };
     for (int round = 0; round < kMaxFills; ++round) {
         const std::vector<std::int32_t> members = fill_thin_places(
             library.members(), library.allowed(), joinable,
@@ -171,7 +179,7 @@ void fill_where_thin(const CoverTask& task, const std::vector<char>& joinable,
             joints.add(member, backward, 1);
             filling.push_back(library.placed({i, backward}));
         }
-        filling = those_that_hold(task, std::move(filling), true, library);
+        filling = those_that_hold(task, std::move(filling), prove, library);
         std::move(filling.begin(), filling.end(), std::back_inserter(courses.placed));
     }
 }
@@ -184,7 +192,7 @@ void replace_link(const CoverTask& task, const ProvenLibrary& library, std::int3
         PlacedCourse course = library.placed(spares.back());
         spares.pop_back();
         course.link = link;
-        if (task.prover.prove_and_wind(course) == CourseFault::None) {
+        if (prove_to_stay(task, courses, course) == CourseFault::None) {
             courses.placed.push_back(std::move(course));
             return;
         }
@@ -213,7 +221,8 @@ CoverTask::CoverTask(const Mandrel& part, const RayQuery& obstacles, const Cover
 
 std::optional<double> choose_courses(const CoverTask& task, const std::vector<char>& joinable,
                                      ProvenLibrary& library, PlanCourses& courses) {
-    courses.placed = those_that_hold(task, std::move(courses.placed), false, library);
+    const auto prove = [&task](PlacedCourse& course) { return task.prover.prove(course); };
+    courses.placed = those_that_hold(task, std::move(courses.placed), prove, library);
     std::map<DirectedCourse, PlacedCourse> proven;
     const FirstChoice first = choose_first(library.members(), library.allowed(), joinable,
                                            task.samples.position_mm, task.nodes(), task.select,
@@ -234,6 +243,15 @@ void make_courses_even(const CoverTask& task, const AnnealGround& ground, const 
     if (task.is_last_stage()) {
         fill_where_thin(task, reach.joinable, library, courses);
     }
+}
+
+CourseFault prove_to_stay(const CoverTask& task, const PlanCourses& courses, PlacedCourse& course) {
+    if (const CourseFault fault = task.prover.prove(course); fault != CourseFault::None) {
+        return fault;
+    }
+    return can_be_turned(task.rules, task.machine, course, courses.turned_with)
+               ? task.prover.wind(course)
+               : CourseFault::InItsPlace;
 }
 
 void give_up_courses(const CoverTask& task,

@@ -63,6 +63,8 @@ struct PlanCourses {
     std::vector<std::vector<DirectedCourse>>
         spare_links;               ///< per link: courses to replace it, the best last
     std::uint64_t annealings = 0;  ///< so far
+    /// What further courses have to be turned to and from (can_be_turned()); none: not looked at.
+    std::vector<PlacedCourse> turned_with{};
 };
 
 /// Keeps the courses that hold, and adds those to begin with (select_courses.h).
@@ -81,6 +83,10 @@ void make_courses_even(const CoverTask& task, const AnnealGround& ground, const 
 void give_up_courses(const CoverTask& task,
                      const std::vector<std::pair<std::size_t, CourseFault>>& refused,
                      ProvenLibrary& library, PlanCourses& courses);
+
+/// Proves a course, winds its program, and looks whether it can be turned. Thread-safe.
+[[nodiscard]] CourseFault prove_to_stay(const CoverTask& task, const PlanCourses& courses,
+                                        PlacedCourse& course);
 
 /// Adds courses in place of those given up.
 void replace_lost_courses(const CoverTask& task, const AnnealGround& ground,

@@ -1,6 +1,7 @@
 #include "winding/cover/order_to_follow.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -119,6 +120,19 @@ private:
     ClosedTurns closed_;
 };
 
+// With fewer others a course may well be the first or the last of a fibre.
+constexpr std::size_t kMinOthers = 3;
+
+bool can_turn(const CourseRules& rules, const Windability& machine, const PlacedCourse& from,
+              const PlacedCourse& to) {
+    const std::array<LibraryCourse, 2> members{from.member, to.member};
+    const std::array<OrderedCourse, 2> order{OrderedCourse{{0, from.backward}, false},
+                                             OrderedCourse{{1, to.backward}, true}};
+    Plan plan;
+    lay_out(rules, members, order, plan);
+    return machine.follow(plan.pieces) == CourseFault::None;
+}
+
 }  // namespace
 
 FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machine,
@@ -126,6 +140,35 @@ FollowedOrder order_to_follow(const CourseRules& rules, const Windability* machi
                               std::span<const DirectedCourse> laid,
                               std::span<const double> lateness, std::size_t fibres) {
     return Follower(rules, machine, members, laid, lateness).run(fibres);
+}
+
+bool can_be_turned(const CourseRules& rules, const Windability* machine, const PlacedCourse& course,
+                   std::span<const PlacedCourse> others) {
+    if (machine == nullptr) {
+        return true;
+    }
+    const NodePair nodes = nodes_of(course.member, course.backward);
+    std::vector<const PlacedCourse*> before;
+    std::vector<const PlacedCourse*> behind;
+    for (const PlacedCourse& other : others) {
+        const NodePair its = nodes_of(other.member, other.backward);
+        if (its.second == nodes.first) {
+            before.push_back(&other);
+        }
+        if (its.first == nodes.second) {
+            behind.push_back(&other);
+        }
+    }
+    const auto is_open_before = [&](const PlacedCourse* other) {
+        return can_turn(rules, *machine, *other, course);
+    };
+    const auto is_open_behind = [&](const PlacedCourse* other) {
+        return can_turn(rules, *machine, course, *other);
+    };
+    return (before.size() < kMinOthers ||
+            std::any_of(before.begin(), before.end(), is_open_before)) &&
+           (behind.size() < kMinOthers ||
+            std::any_of(behind.begin(), behind.end(), is_open_behind));
 }
 
 }  // namespace meshwind

@@ -28,4 +28,11 @@ struct FollowedOrder {
                                             std::span<const DirectedCourse> laid,
                                             std::span<const double> lateness, std::size_t fibres);
 
+/// Whether the machine can follow a turn from some other course to a proven one, and from it to
+/// some other. True where fewer than three others may be turned to: the course may be a fibre's
+/// end. Thread-safe. \param machine null: each turn can be followed \param others proven; the
+/// course may be among them
+[[nodiscard]] bool can_be_turned(const CourseRules& rules, const Windability* machine,
+                                 const PlacedCourse& course, std::span<const PlacedCourse> others);
+
 }  // namespace meshwind

@@ -138,20 +138,6 @@ CourseFault CourseProver::wind(PlacedCourse& course) const {
     return rejection;
 }
 
-CourseFault CourseProver::prove_and_wind(PlacedCourse& course) const {
-    const CourseFault rejection = prove(course);
-    return rejection == CourseFault::None ? wind(course) : rejection;
-}
-
-std::vector<CourseFault> CourseProver::prove_all(std::span<PlacedCourse> courses,
-                                                 bool to_stay) const {
-    std::vector<CourseFault> found(courses.size());
-    parallel_for(courses.size(), 1, [&](std::size_t i, std::size_t) {
-        found[i] = to_stay ? prove_and_wind(courses[i]) : prove(courses[i]);
-    });
-    return found;
-}
-
 std::vector<std::pair<std::size_t, CourseFault>> CourseProver::wind_all(
     std::span<PlacedCourse> courses) const {
     std::vector<CourseFault> found(courses.size(), CourseFault::None);

@@ -39,12 +39,6 @@ public:
     /// Winds the program of a proven course that is to stay; once.
     [[nodiscard]] CourseFault wind(PlacedCourse& course) const;
 
-    [[nodiscard]] CourseFault prove_and_wind(PlacedCourse& course) const;
-
-    /// In parallel. \param to_stay their own programs are wound as well
-    [[nodiscard]] std::vector<CourseFault> prove_all(std::span<PlacedCourse> courses,
-                                                     bool to_stay) const;
-
     /// In parallel, of proven courses. \return the numbers of those that are refused, in order
     [[nodiscard]] std::vector<std::pair<std::size_t, CourseFault>> wind_all(
         std::span<PlacedCourse> courses) const;

@@ -196,7 +196,8 @@ TEST(Rapid, PositionsInFloatsAreAsFarOffAsTheHeadSays) {
         std::mt19937 random(1);
         constexpr int kBlocks = 4000;
         for (int i = 0; i <= kBlocks; ++i) {
-            const double x = turns_deg * (i + 1e-4 * (random() % 1000)) / (kBlocks + 1);
+            const double x =
+                turns_deg * (i + 1e-4 * static_cast<double>(random() % 1000)) / (kBlocks + 1);
             add(list, {std::llround(1000.0 * x), i, 0, 0, 0, 0, 0}, i == 0 ? 0.0 : 0.1);
         }
         const std::string text = Rapid().write(machine, list, {});

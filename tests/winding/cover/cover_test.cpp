@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -416,6 +417,41 @@ TEST(PlanCover, CutsFibresWhereNoTurnCanBeFollowed) {
         EXPECT_EQ(plan.effort.turns_refused, refused);
         EXPECT_EQ(refused, 3 - fibres);
     }
+}
+
+// Behind courses that end in a third of a rim no other can be wound. The first plan has such ends;
+// courses put in their place do not.
+TEST(PlanCover, ReplacesCoursesByThoseThatCanBeTurned) {
+    const auto ends_in_sector = [](const Piece& course) {
+        const Vector3d& p = course.path.back().position_mm;
+        return p.z() > 0.0 && std::abs(std::atan2(p.y(), p.x())) < std::numbers::pi / 3.0;
+    };
+    const auto is_shut = [&](std::span<const Piece> pieces, std::size_t turn) {
+        return pieces[turn].kind == PieceKind::Transition && ends_in_sector(pieces[turn - 1]);
+    };
+    std::vector<std::size_t> refused_at;  // per trial
+    test::AnyMachine machine;
+    machine.follow_rule = [&](std::span<const Piece> pieces) {
+        const bool whole = pieces.size() == 3 && pieces[0].kind == PieceKind::Course;
+        return whole && is_shut(pieces, 1) ? CourseFault::FreeLength : CourseFault::None;
+    };
+    machine.refused_rule = [&](std::span<const Piece> pieces) {
+        std::vector<std::size_t> refused;
+        for (std::size_t i = 1; i < pieces.size(); ++i) {
+            if (is_shut(pieces, i)) {
+                refused.push_back(i);
+            }
+        }
+        refused_at.push_back(refused.size());
+        return refused;
+    };
+    const Plan plan = cover_cylinder(few_courses(), &machine);
+    EXPECT_EQ(plan.failure, "");
+    ASSERT_EQ(refused_at.size(), 2U);
+    EXPECT_GT(refused_at[0], 0U) << "else nothing is replaced";
+    EXPECT_EQ(refused_at[1], 0U);
+    EXPECT_GT(plan.coverage.fraction, 0.9);
+    expect_continuous(plan);
 }
 
 // Whatever is put in their place, courses are refused: the plan with the fewest of them stands.
