@@ -221,12 +221,12 @@ TEST(Setup, LookAheadComesBeforeWhatTakesLongAndMayRefuse) {
 }
 
 TEST(Setup, DialectsThatWriteNoProgramsAreRefusedWithTheirPlace) {
-    Machine machine = shipped("six_axis");
-    for (const char* dialect : {"fortran", "krl"}) {
-        machine.controller.dialect = dialect;
+    Machine unknown = shipped("six_axis");
+    unknown.controller.dialect = "fortran";
+    for (const Machine& machine : {unknown, shipped("robot_kr16")}) {  // krl of a carried frame
         EXPECT_EQ(refusal_of([&] { (void)make_setup(small_pipe(), machine, Job{}, kFiles); }),
                   (Refused{"dialect.unknown", "machine.json: /controller/dialect"}))
-            << dialect;
+            << machine.controller.dialect;
     }
 }
 
