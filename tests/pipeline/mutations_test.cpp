@@ -31,6 +31,7 @@
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/text_answer.h"
 
 namespace meshwind {
 namespace {
@@ -357,38 +358,6 @@ private:
     Mutation mutation_;
 };
 
-// What `verify --plan` says of a text.
-struct Answer {
-    bool seen = false;
-    std::string by;         // the check, or the error's code
-    std::int32_t line = 0;  // that it names; 0: none
-};
-
-Answer answer_of(const Released& program, const std::string& text) {
-    try {
-        const BlockList list =
-            program.setup.dialect->read(text, program.file, program.setup.machine);
-        const TextChecks texts = check_text(program.setup, text, program.file, list, program.plan);
-        for (const Check& check : texts.checks) {
-            if (!check.ok) {
-                return {true, check.name, list.blocks[texts.first_wrong.value_or(0)].line};
-            }
-        }
-        const Verification wound = verify_program(program.setup, list, program.plan.fibre);
-        for (const Check& check : wound.checks) {
-            if (!check.ok) {
-                return {true, check.name, list.blocks[wound.first_wrong_block.value_or(0)].line};
-            }
-        }
-    } catch (const InputError& error) {
-        const std::string place = error.place();
-        const std::size_t colon = place.rfind(':');
-        return {true, error.code(),
-                colon == std::string::npos ? 0 : std::atoi(place.c_str() + colon + 1)};
-    }
-    return {};
-}
-
 // The line itself, or that of a block which is run right before or behind it; deleting and doubling
 // moves lines by one.
 bool is_beside(const Released& program, std::size_t changed, std::int32_t named) {
@@ -420,14 +389,16 @@ bool digest_sees(const Released& program, const Lines& lines) {
 void expect_random_changes_seen(const Released& program) {
     const unsigned seed = from_environment("MESHWIND_SEED", 1);
     const unsigned count = from_environment("MESHWIND_COUNT", 40);
-    EXPECT_FALSE(answer_of(program, text_of(program.lines)).seen);
+    EXPECT_FALSE(
+        test::answer_of(program.setup, program.plan, program.file, text_of(program.lines)).seen);
     EXPECT_FALSE(digest_sees(program, program.lines));
     Mutator mutator(program, seed);
     std::size_t seen = 0;
     std::size_t named = 0;
     for (unsigned i = 0; i < count; ++i) {
         const Mutation mutation = mutator.next(i);
-        const Answer answer = answer_of(program, text_of(mutation.lines));
+        const test::Answer answer =
+            test::answer_of(program.setup, program.plan, program.file, text_of(mutation.lines));
         seen += answer.seen ? 1 : 0;
         const bool beside = is_beside(program, mutation.line, answer.line) ||
                             (mutation.other && is_beside(program, *mutation.other, answer.line));
@@ -505,7 +476,9 @@ std::vector<Mutation> head_changes(const Released& program) {
 void expect_head_changes_seen(const Released& program) {
     for (const Mutation& mutation : head_changes(program)) {
         SCOPED_TRACE(mutation.name);
-        EXPECT_TRUE(answer_of(program, text_of(mutation.lines)).seen);
+        EXPECT_TRUE(
+            test::answer_of(program.setup, program.plan, program.file, text_of(mutation.lines))
+                .seen);
         EXPECT_TRUE(digest_sees(program, mutation.lines));
     }
 }

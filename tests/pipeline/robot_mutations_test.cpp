@@ -14,7 +14,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "pipeline/code_digest.h"
 #include "pipeline/verify_text.h"
 #include "pipeline/wind.h"
@@ -22,6 +21,7 @@
 #include "postproc/tables/motion_csv.h"
 #include "postproc/tables/path_csv.h"
 #include "tests/support/small_pipe.h"
+#include "tests/support/text_answer.h"
 
 namespace meshwind {
 namespace {
@@ -84,37 +84,6 @@ Released release(const std::string& dialect) {
         released.times.push_back(dialect == "krl" ? line + 1 : line);
     }
     return released;
-}
-
-// What `verify --plan` says of a text.
-struct Answer {
-    bool seen = false;
-    std::string by;         // the check, or the error's code
-    std::int32_t line = 0;  // that it names; 0: none
-};
-
-Answer answer_of(const Released& program, const std::string& text) {
-    try {
-        const BlockList list =
-            program.setup.dialect->read(text, program.file, program.setup.machine);
-        const TextChecks texts = check_text(program.setup, text, program.file, list, program.plan);
-        for (const Check& check : texts.checks) {
-            if (!check.ok) {
-                return {true, check.name, list.blocks[texts.first_wrong.value_or(0)].line};
-            }
-        }
-        for (const Check& check : verify_program(program.setup, list, program.plan.fibre).checks) {
-            if (!check.ok) {
-                return {true, check.name, 0};
-            }
-        }
-    } catch (const InputError& error) {
-        const std::string& place = error.place();
-        const std::size_t colon = place.rfind(':');
-        return {true, error.code(),
-                colon == std::string::npos ? 0 : std::atoi(place.c_str() + colon + 1)};
-    }
-    return {};
 }
 
 // With the digest in its head a change is seen without a plan.
@@ -265,7 +234,8 @@ void expect_random_changes_seen(const Released& program) {
         Lines lines;
         std::string what;
         const auto line = static_cast<std::int32_t>(mutator.next(i, lines, what)) + 1;
-        const Answer answer = answer_of(program, text_of(lines));
+        const test::Answer answer =
+            test::answer_of(program.setup, program.plan, program.file, text_of(lines));
         EXPECT_TRUE(answer.seen && is_beside(lines, line, answer.line))
             << "seed " << seed << ", change " << i << " in line " << line << ": " << what
             << "; seen by " << answer.by << ", which names line " << answer.line;
@@ -286,14 +256,15 @@ void expect_frame_changes_seen(const Released& program, const std::vector<FrameC
         const std::size_t at = text.find(change.what);
         ASSERT_NE(at, std::string::npos);
         text.replace(at, change.what.size(), change.by);
-        EXPECT_TRUE(answer_of(program, text).seen);
+        EXPECT_TRUE(test::answer_of(program.setup, program.plan, program.file, text).seen);
         EXPECT_TRUE(digest_sees(program, text));
     }
 }
 
 TEST(RobotMutations, Rapid) {
     const Released program = release("rapid");
-    EXPECT_FALSE(answer_of(program, text_of(program.lines)).seen);
+    EXPECT_FALSE(
+        test::answer_of(program.setup, program.plan, program.file, text_of(program.lines)).seen);
     EXPECT_FALSE(digest_sees(program, text_of(program.lines)));
     const std::string first = program.lines[program.blocks.front()];
     const std::string start = first.substr(0, first.find("v1000")) + "approach,fine,tool0;\n";
@@ -312,7 +283,8 @@ TEST(RobotMutations, Rapid) {
 
 TEST(RobotMutations, Krl) {
     const Released program = release("krl");
-    EXPECT_FALSE(answer_of(program, text_of(program.lines)).seen);
+    EXPECT_FALSE(
+        test::answer_of(program.setup, program.plan, program.file, text_of(program.lines)).seen);
     EXPECT_FALSE(digest_sees(program, text_of(program.lines)));
     const std::string first = program.lines[program.blocks.front()];
     const std::string start = "PTP" + first.substr(4) + "\n";
