@@ -9,7 +9,8 @@ namespace meshwind {
 namespace {
 
 constexpr std::int64_t kLargestProgramNumber = 99'999'999;  // eight digits, the longest O word
-constexpr JsonRange kPositive{.min = 0.0, .max = 1e6, .above_min = true};
+constexpr double kLargestDeviation_mm = 1e6;                // a slip of units
+constexpr JsonRange kDeviation{.min = 0.0, .max = kLargestDeviation_mm, .above_min = true};
 // A robot's arm has six axes, and its controller counts as many external ones.
 constexpr std::size_t kMaxLetters = 6;
 
@@ -77,7 +78,7 @@ const KeyTable<Controller>& controller_keys() {
         lines_key("footer", &Controller::footer, "lines of one's own at its end"),
         or_null(count("program_number", &Controller::program_number, kLargestProgramNumber,
                       "O number of fanuc programs; 1 without")),
-        or_null(number("junction_deviation", &Controller::junction_deviation_mm, kPositive,
+        or_null(number("junction_deviation", &Controller::junction_deviation_mm, kDeviation,
                        "of grbl, $11: how near to the corners it stays, mm; 0.01 without")),
         letters_key("robot_axes", &Controller::robot_axes, kRobotLetters,
                     "of rapid and krl: letters of the robot's axes 1 to 6; the last six of "

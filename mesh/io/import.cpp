@@ -1,13 +1,13 @@
 #include "mesh/io/import.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/text/lower_case.h"
 #include "mesh/io/mesh_readers.h"
 
 namespace meshwind {
@@ -19,13 +19,6 @@ constexpr std::size_t kHeadBytes = 4096;  // far beyond any header that states a
 // counts its own.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 33;
 constexpr std::size_t kPieceBytes = std::size_t{1} << 24;  // between two cancellation points
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return result;
-}
 
 void check_readable(const std::filesystem::path& file) {
     std::error_code error;
@@ -127,7 +120,7 @@ TriangleSoup read_stl(std::string_view bytes, const std::string& name) {
     if (kind_of_stl(bytes) == StlKind::Binary) {
         return read_binary_stl(bytes, name);
     }
-    if (lower(bytes.substr(0, kHeadBytes)).find("facet") == std::string::npos) {
+    if (lower_case(bytes.substr(0, kHeadBytes)).find("facet") == std::string::npos) {
         throw InputError("mesh.not_a_mesh", name,
                          "is text without a single STL facet, export the part as STL");
     }
@@ -139,7 +132,7 @@ std::string read_part_file(const std::filesystem::path& file) {
 }
 
 std::string lower_ending(const std::filesystem::path& file) {
-    return lower(file.extension().string());
+    return lower_case(file.extension().string());
 }
 
 std::string mesh_endings() {
@@ -169,7 +162,7 @@ TriangleSoup parse_triangles(std::string_view bytes, const std::string& name) {
 }
 
 double stated_unit_mm(const std::filesystem::path& file) {
-    const std::string head = lower(read_bytes(file, kHeadBytes));
+    const std::string head = lower_case(read_bytes(file, kHeadBytes));
     for (std::size_t at = head.find("unit"); at != std::string::npos; at = head.find("unit", at)) {
         at += 4;
         at += at < head.size() && head[at] == 's' ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/counted.h"
+#include "core/text/lower_case.h"
 #include "core/text/text_number.h"
 
 namespace meshwind {
@@ -48,7 +49,7 @@ std::string code_alone(NcComments comments, std::string_view text) {
         }
         inside = inside || (c == '(' && has_brackets(comments));
         if (!inside && c != ' ' && c != '\t') {
-            code += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+            code += lower_case(c);
         }
         inside = inside && c != ')';
     }

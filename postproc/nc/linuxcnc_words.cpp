@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/text/lower_case.h"
 #include "postproc/motion/block.h"
 
 namespace meshwind {
@@ -75,7 +76,7 @@ std::string NcLine::split_comments(std::string_view text) {
             continue;
         }
         if (c != ' ' && c != '\t') {
-            code += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+            code += lower_case(c);
         }
         ++i;
     }

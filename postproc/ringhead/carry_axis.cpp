@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "core/error.h"
 #include "core/text/digest.h"
+#include "core/text/lower_case.h"
 #include "core/text/text_file.h"
 #include "core/text/text_number.h"
 #include "mesh/mandrel/load_mandrel.h"
@@ -17,9 +17,7 @@ namespace {
 
 bool is_mesh_file(const std::filesystem::path& file) {
     constexpr std::array kEndings = {".stl", ".obj", ".ply", ".off"};
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = lower_case(file.extension().string());
     return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 

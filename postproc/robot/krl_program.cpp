@@ -1,7 +1,6 @@
 #include "postproc/robot/krl_program.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -9,25 +8,12 @@
 #include "postproc/nc/nc_reader.h"
 #include "postproc/nc/nc_writer.h"
 #include "postproc/robot/krl_reader.h"
-#include "postproc/robot/robot_head.h"
 
 namespace meshwind {
 namespace {
 
-constexpr std::string_view kController = "KRL";
-
 // Text per block in bytes, to reserve the output once.
 constexpr std::size_t kTypicalBlock = 120;
-
-// Shares of time are whole nanoseconds, so that their sum is exact in decimals.
-constexpr double kNanoPerSecond = 1e9;
-
-NcFlavour text_flavour() {
-    NcFlavour flavour;
-    flavour.comments = NcComments::Semicolon;
-    flavour.line_length = 120;  // of comments; the controller reads far longer lines
-    return flavour;
-}
 
 // {A1 .., .., E1 ..}
 void append_place(const RobotSource& source, std::size_t block, std::string& text) {
@@ -40,7 +26,7 @@ void append_place(const RobotSource& source, std::size_t block, std::string& tex
     for (std::size_t i = 0; i < source.axes.external.size(); ++i) {
         if (source.axes.external[i]) {
             text += ',';
-            text += kKrlExternal[i];
+            text += kKrlLanguage.external[i];
             text += ' ';
             append_robot_axis(source.list, block, *source.axes.external[i], text);
         }
@@ -60,8 +46,10 @@ std::string approach_text(const RobotSource& source) {
     return text;
 }
 
-// A time as text, to six digits at least. \return what the text says, in nanoseconds
+// A time as text, to six digits at least, in whole nanoseconds, so that a sum is exact in decimals.
+// \return what the text says, in nanoseconds
 std::int64_t append_seconds(double duration_s, std::string& text) {
+    constexpr auto kNanoPerSecond = static_cast<double>(kNanoPerUnit);
     const double nano = std::max(1.0, std::round(duration_s * kNanoPerSecond));
     std::string digits;
     append_significant(digits, nano / kNanoPerSecond);
@@ -96,33 +84,18 @@ void append_blocks(const RobotSource& source, std::string& text) {
 
 }  // namespace
 
-std::vector<double> Krl::run_times_s(const Machine& machine, const BlockList& list) const {
-    return nc_run_times_s(text_flavour(), machine, list);
-}
-
-BlockList Krl::prepare(BlockList list) const {
-    check_float32(list, std::string(kController));
-    return list;
-}
-
-std::string Krl::write(const Machine& machine, const BlockList& list, const ProgramLayout& layout,
-                       const ProgramHeader& header) const {
-    assert(!list.blocks.empty() && list.axes.size() == machine.axis_count());
-    assert(layout.main.empty());
-    (void)layout;
-    const RobotSource source =
-        robot_source(machine, list, header, text_flavour(), std::string(kController));
+std::string Krl::text_of(const RobotSource& source) const {
     std::string text;
-    text.reserve(kTypicalBlock * (list.blocks.size() + 40));
+    text.reserve(kTypicalBlock * (source.list.blocks.size() + 40));
     text += "&ACCESS RVP\nDEF program( )\n";
-    text += robot_head(source, kKrlExternal);
+    text += robot_head(source, kKrlLanguage.external);
     for (const std::string_view line : kKrlFirstLines) {
         text += std::string(line) + '\n';
     }
-    text += robot_own_lines(source, machine.controller.header, check_own_krl_line);
+    text += robot_own_lines(source, source.machine.controller.header, check_own_krl_line);
     text += approach_text(source);
     append_blocks(source, text);
-    text += robot_own_lines(source, machine.controller.footer, check_own_krl_line);
+    text += robot_own_lines(source, source.machine.controller.footer, check_own_krl_line);
     text += "END\n";
     return text;
 }
@@ -132,7 +105,7 @@ BlockList Krl::read(std::string_view text, const std::string& file, const Machin
 }
 
 std::string Krl::code_of(std::string_view text, const std::string& file) const {
-    return code_of_nc(NcComments::Semicolon, text, file);
+    return code_of_nc(kKrlLanguage.comments, text, file);
 }
 
 }  // namespace meshwind

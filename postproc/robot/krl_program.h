@@ -1,19 +1,20 @@
 /// Dialect of KUKA's robot controllers (KSS 8) for the main job.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "postproc/nc/dialect.h"
-#include "postproc/robot/robot_axes.h"
+#include "postproc/robot/robot_dialect.h"
 
 namespace meshwind {
 
-/// Names of the external axes in an E6AXIS.
-inline constexpr std::array<const char*, kMaxExternalAxes> kKrlExternal = {"E1", "E2", "E3",
-                                                                           "E4", "E5", "E6"};
+inline constexpr RobotLanguage kKrlLanguage = {
+    .name = "krl",
+    .extension = ".src",
+    .title = "KRL",
+    .comments = NcComments::Semicolon,
+    .external = {"E1", "E2", "E3", "E4", "E5", "E6"}};  // as an E6AXIS has them
 
 /// Most segments of a spline block. The controller plans a block as a whole before it moves, and
 /// takes a limited number of time parts; 50 take 2 s or so to wind.
@@ -32,41 +33,38 @@ inline constexpr std::size_t kKrlSegments = 50;
 ///     $APO.CPTP=50
 ///     $APO.CDIS=5
 ///     BAS(#VEL_PTP,10)
+///     BAS(#ACC_PTP,20)
 ///     PTP {A1 3.113,A2 -29.088,A3 84.988,A4 3.757,A5 -55.957,A6 43.004,E1 -5.015}
 ///     ; tie the fibre on at the landing point, then start again
 ///     HALT
 ///     BAS(#VEL_PTP,100)
+///     BAS(#ACC_PTP,100)
 ///     PTP_SPLINE
 ///     TIME_BLOCK START
 ///     ; course 0
 ///     SPTP {A1 2.391,A2 -29.119,A3 85.073,A4 2.885,A5 -55.988,A6 43.495,E1 -26.711}
 ///     TIME_BLOCK PART=0.0865582
 ///     TIME_BLOCK END=0.0865582
-///     ENDSPLINE C_SPL
+///     ENDSPLINE
 ///     END
 ///
 /// All spline blocks but the last flow into the next (C_SPL). The reader refuses one that does not,
 /// for the fibre would stop there. Header and footer lines stand before the first move and behind
-/// the last: comments, $TOOL, $BASE, $LOAD, $OUT[], $ANOUT[], BAS(#TOOL,..), BAS(#BASE,..). As with
-/// Rapid the controller reads numbers into 32-bit floats.
+/// the last: comments, $TOOL, $BASE, $LOAD, $OUT[], $ANOUT[], BAS(#TOOL,..), BAS(#BASE,..).
 ///
 /// The reader takes this form line by line, in small or capital letters.
-/// \throws InputError dialect.robot_axes besides what a dialect throws; as Rapid when reading
-class Krl final : public Dialect {
+/// \throws InputError nc.word_twice and those of Rapid when reading
+class Krl final : public RobotDialect {
 public:
-    [[nodiscard]] std::string name() const override { return "krl"; }
-    [[nodiscard]] std::string extension() const override { return ".src"; }
-    [[nodiscard]] std::vector<double> run_times_s(const Machine& machine,
-                                                  const BlockList& list) const override;
-    [[nodiscard]] BlockList prepare(BlockList list) const override;
-    using Dialect::write;
-    [[nodiscard]] std::string write(const Machine& machine, const BlockList& list,
-                                    const ProgramLayout& layout,
-                                    const ProgramHeader& header) const override;
+    Krl() : RobotDialect(kKrlLanguage) {}
+
     [[nodiscard]] BlockList read(std::string_view text, const std::string& file,
                                  const Machine& machine) const override;
     [[nodiscard]] std::string code_of(std::string_view text,
                                       const std::string& file) const override;
+
+private:
+    [[nodiscard]] std::string text_of(const RobotSource& source) const override;
 };
 
 }  // namespace meshwind

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/lower_case.h"
 #include "postproc/robot/krl_program.h"
-#include "postproc/robot/rapid_tokens.h"
 #include "postproc/robot/robot_axes.h"
 #include "postproc/robot/robot_blocks.h"
 #include "postproc/robot/robot_head.h"
@@ -18,8 +18,6 @@ namespace {
 // Beginnings of lines without effect on where the axes are and when: tool, base and load, outputs.
 constexpr std::array<std::string_view, 7> kIdle = {"$tool=",  "$base=",     "$load=",    "$out[",
                                                    "$anout[", "bas(#tool,", "bas(#base,"};
-
-constexpr double kNanoPerSecond = 1e9;
 
 bool is_blank(char c) {
     return c == ' ' || c == '\t';
@@ -297,7 +295,8 @@ void Reader::end_of_time(Cursor& cursor) {
     }
     const double scale = sum == whole ? 1.0 : static_cast<double>(whole) / static_cast<double>(sum);
     for (std::size_t i = 0; i < points_.size(); ++i) {
-        points_[i].duration_s = static_cast<double>(time_[i]) / kNanoPerSecond * scale;
+        points_[i].duration_s =
+            static_cast<double>(time_[i]) / static_cast<double>(kNanoPerUnit) * scale;
     }
 }
 
@@ -378,8 +377,8 @@ std::optional<std::size_t> Reader::component(Cursor& cursor, std::string& name) 
             name = "A" + std::to_string(i + 1);
             return axes_.arm[i];
         }
-        if (cursor.take(lower_case(kKrlExternal[i]))) {
-            name = kKrlExternal[i];
+        if (cursor.take(lower_case(kKrlLanguage.external[i]))) {
+            name = kKrlLanguage.external[i];
             return axes_.external[i];
         }
     }

@@ -1,21 +1,19 @@
 #include "postproc/robot/rapid.h"
 
-#include <cassert>
-#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "core/text/decimal_text.h"
+#include "core/text/lower_case.h"
 #include "core/text/text_number.h"
 #include "postproc/nc/nc_reader.h"
-#include "postproc/nc/nc_writer.h"
 #include "postproc/robot/rapid_reader.h"
 #include "postproc/robot/rapid_tokens.h"
-#include "postproc/robot/robot_head.h"
 
 namespace meshwind {
 namespace {
-
-constexpr std::string_view kController = "RAPID";
 
 // Text per line in bytes, to reserve the output once.
 constexpr std::size_t kTypicalLine = 130;
@@ -26,13 +24,6 @@ constexpr std::size_t kTypicalLine = 130;
 constexpr std::string_view kData =
     "CONST speeddata approach:=[50,20,50,30];\n"
     "CONST zonedata corner:=[FALSE,10,15,15,15,15,45];\n";
-
-NcFlavour text_flavour() {
-    NcFlavour flavour;
-    flavour.comments = NcComments::Exclamation;
-    flavour.line_length = 120;  // of comments; no limit of the language is known
-    return flavour;
-}
 
 // The jointtarget of a block's end.
 void append_target(const RobotSource& source, std::size_t block, std::string& text) {
@@ -78,46 +69,29 @@ void append_blocks(const RobotSource& source, std::string& text) {
 }
 
 // A number as short as it can be, so that 9E9 is 9E+09 and 90.000 is 90.
-std::string short_number(std::string_view number) {
-    double value = 0.0;
-    const char* const last = number.data() + number.size();
-    const auto [end, error] = std::from_chars(number.data(), last, value);
-    if (error != std::errc{} || end != last) {
-        return std::string(number);
+std::string short_number(const RapidToken& number) {
+    const std::optional<double> value = number.value();
+    if (!value) {
+        return std::string(number.text);
     }
     std::string shortest;
-    append_shortest(shortest, value);
+    append_shortest(shortest, *value);
     return shortest;
 }
 
 }  // namespace
 
-std::vector<double> Rapid::run_times_s(const Machine& machine, const BlockList& list) const {
-    return nc_run_times_s(text_flavour(), machine, list);
-}
-
-BlockList Rapid::prepare(BlockList list) const {
-    check_float32(list, std::string(kController));
-    return list;
-}
-
-std::string Rapid::write(const Machine& machine, const BlockList& list, const ProgramLayout& layout,
-                         const ProgramHeader& header) const {
-    assert(!list.blocks.empty() && list.axes.size() == machine.axis_count());
-    assert(layout.main.empty());
-    (void)layout;
-    const RobotSource source =
-        robot_source(machine, list, header, text_flavour(), std::string(kController));
+std::string Rapid::text_of(const RobotSource& source) const {
     std::string text;
-    text.reserve(kTypicalLine * (list.blocks.size() + 40));
+    text.reserve(kTypicalLine * (source.list.blocks.size() + 40));
     text += "MODULE meshwind\n";
-    text += robot_head(source, kRapidExternal);
+    text += robot_head(source, kRapidLanguage.external);
     text += kData;
     text += "PROC main()\n";
-    text += robot_own_lines(source, machine.controller.header, check_own_rapid_line);
+    text += robot_own_lines(source, source.machine.controller.header, check_own_rapid_line);
     text += approach_text(source);
     append_blocks(source, text);
-    text += robot_own_lines(source, machine.controller.footer, check_own_rapid_line);
+    text += robot_own_lines(source, source.machine.controller.footer, check_own_rapid_line);
     text += "ENDPROC\nENDMODULE\n";
     return text;
 }
@@ -139,7 +113,7 @@ std::string Rapid::code_of(std::string_view text, const std::string& /*file*/) c
     for (RapidToken token = tokens.next(); token.kind != RapidToken::Kind::End;
          token = tokens.next()) {
         code += begins ? "" : " ";
-        code += token.kind == RapidToken::Kind::Number ? short_number(token.text)
+        code += token.kind == RapidToken::Kind::Number ? short_number(token)
                 : token.kind == RapidToken::Kind::Word ? lower_case(token.text)
                                                        : std::string(token.text);
         begins = token.is(";");

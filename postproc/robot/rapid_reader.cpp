@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/text/lower_case.h"
 #include "postproc/robot/rapid.h"
 #include "postproc/robot/rapid_tokens.h"
 #include "postproc/robot/robot_axes.h"
@@ -305,7 +305,7 @@ void Reader::targets(std::span<const std::optional<std::size_t>> joints, RobotMo
         if (joints[i].has_value() != nano.has_value()) {
             line_.fail("nc.no_axis",
                        joints[i] ? std::string("axis ") + letter + " has no position"
-                                 : std::string(kRapidExternal[i]) +
+                                 : std::string(kRapidLanguage.external[i]) +
                                        " has a position, and the machine \"" + machine_.name +
                                        "\" has no such axis; is it the machine of this program?");
         }
@@ -331,10 +331,7 @@ std::optional<std::int64_t> Reader::position(char letter) {
         nano = line_.nano({letter, text});
         *nano = negative ? -*nano : *nano;
     } else {
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || end != text.data() + text.size() || value != kNoAxis ||
-            negative) {
+        if (token_.value() != kNoAxis || negative) {
             line_.bad_number({letter, text});
         }
     }
@@ -354,17 +351,14 @@ void Reader::speed(RobotMove& to) {
 }
 
 double Reader::seconds() {
-    double value = 0.0;
-    const std::string_view text = token_.text;
     if (token_.kind != Kind::Number) {
         not_understood();
     }
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !(value > 0.0) ||
-        !std::isfinite(value)) {
-        line_.fail("nc.feed", "\\T:=" + std::string(text) + " is not a time above 0");
+    const std::optional<double> value = token_.value();
+    if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
+        line_.fail("nc.feed", "\\T:=" + std::string(token_.text) + " is not a time above 0");
     }
-    return value;
+    return *value;
 }
 
 void Reader::zone(RobotMove& to) {

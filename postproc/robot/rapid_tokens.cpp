@@ -1,20 +1,20 @@
 #include "postproc/robot/rapid_tokens.h"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
+
+#include "core/text/lower_case.h"
 
 namespace meshwind {
 namespace {
-
-char small(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
 bool is_letter(char c) {
-    return small(c) >= 'a' && small(c) <= 'z';
+    return lower_case(c) >= 'a' && lower_case(c) <= 'z';
 }
 
 bool is_blank(char c) {
@@ -26,13 +26,14 @@ bool is_blank(char c) {
 bool RapidToken::is_word(std::string_view word) const {
     return kind == Kind::Word &&
            std::equal(text.begin(), text.end(), word.begin(), word.end(),
-                      [](char written, char wanted) { return small(written) == wanted; });
+                      [](char written, char wanted) { return lower_case(written) == wanted; });
 }
 
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(), small);
-    return lower;
+std::optional<double> RapidToken::value() const {
+    double number = 0.0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, number);
+    return error == std::errc{} && end == last ? std::optional(number) : std::nullopt;
 }
 
 // Blanks and comments.
@@ -88,8 +89,8 @@ std::size_t RapidTokens::end_of_token(RapidToken::Kind kind) const {
     } else if (kind == RapidToken::Kind::Number) {
         // The sign of an exponent stands behind its E.
         goes_on([&](char c) {
-            const bool exponent = small(text_[end - 1]) == 'e';
-            return is_digit(c) || c == '.' || small(c) == 'e' ||
+            const bool exponent = lower_case(text_[end - 1]) == 'e';
+            return is_digit(c) || c == '.' || lower_case(c) == 'e' ||
                    (exponent && (c == '+' || c == '-'));
         });
     } else if (kind == RapidToken::Kind::Text) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <string>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -27,10 +27,9 @@ struct RapidToken {
     [[nodiscard]] bool is(std::string_view mark) const {
         return kind == Kind::Mark && text == mark;
     }
+    /// Nothing where the text is not a number as a whole.
+    [[nodiscard]] std::optional<double> value() const;
 };
-
-/// In small letters.
-[[nodiscard]] std::string lower_case(std::string_view text);
 
 /// Token after token. RAPID is free of form: blanks and ends of lines stand between any two; a
 /// comment goes from ! to the end of its line. Nothing is refused here: a character that no token

@@ -1,18 +1,12 @@
 #include "postproc/robot/robot_axes.h"
 
 #include <algorithm>
-#include <cmath>
-#include <span>
+#include <vector>
 
 #include "core/error.h"
-#include "core/text/text_number.h"
 
 namespace meshwind {
 namespace {
-
-double units(std::int64_t nano) {
-    return static_cast<double>(nano) / static_cast<double>(kNanoPerUnit);
-}
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& words) {
     throw InputError("dialect.robot_axes", machine.name, words);
@@ -93,53 +87,6 @@ std::string robot_axes_words(const RobotAxes& axes, const Machine& machine,
         }
     }
     return words;
-}
-
-double float32_rounding(const BlockList& list, std::size_t axis) {
-    double worst = 0.0;
-    for (std::size_t b = 0; b < list.blocks.size(); ++b) {
-        const double value = list.value(b, axis);
-        worst = std::max(worst, std::abs(static_cast<double>(static_cast<float>(value)) - value));
-    }
-    return worst;
-}
-
-void check_float32(const BlockList& list, const std::string& controller) {
-    for (std::size_t a = 0; a < list.axes.size(); ++a) {
-        if (float32_rounding(list, a) > kMaxRounding) {
-            throw InputError(
-                "dialect.float32", std::string("axis ") + list.axes[a].letter,
-                "goes so far that " + controller +
-                    ", which keeps positions in 32-bit floats, would be off by up to " +
-                    fixed(float32_rounding(list, a), 3) +
-                    " mm or deg; wind layer by layer, homing between");
-        }
-    }
-}
-
-std::vector<std::string> float32_notes(const BlockList& list) {
-    std::vector<std::string> notes;
-    for (std::size_t a = 0; a < list.axes.size(); ++a) {
-        const double off = float32_rounding(list, a);
-        if (off > 0.5 * units(list.axes[a].resolution_nano)) {
-            notes.push_back(std::string("axis ") + list.axes[a].letter + " is off by up to " +
-                            fixed(off, 4) + " at the controller, which keeps 32-bit floats");
-        }
-    }
-    return notes;
-}
-
-void check_moves(const BlockList& list) {
-    for (std::size_t i = 1; i < list.blocks.size(); ++i) {
-        const std::span<const std::int64_t> now = list.row(i);
-        const bool rests = std::equal(now.begin(), now.end(), list.row(i - 1).begin());
-        if (rests || !(list.blocks[i].duration_s > 0.0)) {
-            throw InputError("dialect.duration", "block " + std::to_string(i),
-                             rests ? "moves no axis, so that it would last no time; join it with "
-                                     "the next one"
-                                   : "takes no time; give every block a duration above 0");
-        }
-    }
 }
 
 }  // namespace meshwind

@@ -1,15 +1,12 @@
-/// Axes of a machine as those of a robot and its external axes, and the limits that languages of
-/// robots have in common.
+/// Axes of a machine as those of a robot and its external axes.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "machines/machine.h"
-#include "postproc/motion/block.h"
 
 namespace meshwind {
 
@@ -36,23 +33,5 @@ struct RobotAxes {
 /// \param names of the external axes in the language
 [[nodiscard]] std::string robot_axes_words(const RobotAxes& axes, const Machine& machine,
                                            const std::array<const char*, kMaxExternalAxes>& names);
-
-/// Largest distance of an axis' positions from what a controller holds that keeps each in a 32-bit
-/// float, mm or deg. Positions are absolute, so that nothing adds up.
-[[nodiscard]] double float32_rounding(const BlockList& list, std::size_t axis);
-
-/// The coarsest positions that a program may get by that, mm or deg: as coarse as the steps of
-/// controllers that add in floats (kCoarsestBinary), reached at 1 048 576.
-inline constexpr double kMaxRounding = 1.0 / 32.0;
-
-/// \throws InputError dialect.float32 when an axis goes beyond that \param controller in messages
-void check_float32(const BlockList& list, const std::string& controller);
-
-/// A remark for each axis whose positions the controller rounds by more than half a step.
-[[nodiscard]] std::vector<std::string> float32_notes(const BlockList& list);
-
-/// \throws InputError dialect.duration for a block without time or motion: no language of robots
-/// has a word for it
-void check_moves(const BlockList& list);
 
 }  // namespace meshwind

@@ -6,20 +6,9 @@
 #include "core/error.h"
 #include "core/text/decimal_text.h"
 #include "postproc/nc/nc_writer.h"
+#include "postproc/robot/float32_positions.h"
 
 namespace meshwind {
-
-RobotSource robot_source(const Machine& machine, const BlockList& list, const ProgramHeader& header,
-                         const NcFlavour& flavour, const std::string& language) {
-    if (machine.controller.feed != FeedMode::InverseTime) {
-        throw InputError("dialect.feed", machine.name,
-                         "a block of " + language +
-                             " has its time, no feed per minute; choose \"inverse-time\"");
-    }
-    RobotSource source{machine, list, header, flavour, robot_axes(machine)};
-    check_moves(list);
-    return source;
-}
 
 std::string robot_head(const RobotSource& source,
                        const std::array<const char*, kMaxExternalAxes>& external) {

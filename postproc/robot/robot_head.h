@@ -1,4 +1,4 @@
-/// What programs in languages of robots have in common beside their blocks.
+/// Head, approach and own lines of programs in languages of robots.
 #pragma once
 
 #include <array>
@@ -22,14 +22,6 @@ struct RobotSource {
     NcFlavour flavour{};  ///< of comments
     RobotAxes axes{};
 };
-
-/// Checks what no language of robots has words for: a feed per minute, blocks without time or
-/// motion.
-/// \param language in messages \throws InputError dialect.feed, dialect.robot_axes,
-/// dialect.duration
-[[nodiscard]] RobotSource robot_source(const Machine& machine, const BlockList& list,
-                                       const ProgramHeader& header, const NcFlavour& flavour,
-                                       const std::string& language);
 
 /// The head's comments: those of every program, which axes are the robot's, what 32-bit floats take
 /// off. \param external names of the external axes in the language

@@ -21,52 +21,20 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "core/text/text_file.h"
 #include "machines/machine_json.h"
 #include "mesh/mandrel/load_mandrel.h"
-#include "pipeline/code_digest.h"
-#include "pipeline/verify_text.h"
-#include "pipeline/wind.h"
-#include "postproc/tables/motion_csv.h"
-#include "postproc/tables/path_csv.h"
 #include "tests/support/fixtures.h"
-#include "tests/support/text_answer.h"
+#include "tests/support/released_program.h"
 
 namespace meshwind {
 namespace {
 
 namespace fs = std::filesystem;
 
-using Lines = std::vector<std::string>;
+using test::Lines;
 
 const std::string kSource = MESHWIND_SOURCE_DIR;
-
-unsigned from_environment(const char* name, unsigned value) {
-    const char* const text = std::getenv(name);
-    return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : value;
-}
-
-Lines lines_of(const std::string& text) {
-    Lines lines{""};
-    for (const char c : text) {
-        if (c == '\n') {
-            lines.emplace_back();
-        } else {
-            lines.back().push_back(c);
-        }
-    }
-    lines.pop_back();
-    return lines;
-}
-
-std::string text_of(const Lines& lines) {
-    std::string text;
-    for (const std::string& line : lines) {
-        text += line + '\n';
-    }
-    return text;
-}
 
 // A number behind a letter: where its text stands.
 struct Word {
@@ -123,15 +91,9 @@ bool differ(const std::string& a, const std::string& b) {
             !(std::abs(first.log_feed - second.log_feed) <= kOtherFeed));
 }
 
-// A released program with the plan that it came from.
-struct Released {
-    Setup setup;
-    VerifyPlan plan;
-    std::string file;
-    std::string text;                 // as it was written
-    Lines lines;                      // without the digest
-    std::vector<std::size_t> blocks;  // lines that are blocks
-    std::vector<std::int32_t> run;    // line of each block, from 1, as it is run
+struct Released : test::ReleasedProgram {
+    std::vector<std::size_t> blocks{};  // lines that are blocks
+    std::vector<std::int32_t> run{};    // line of each block, from 1, as it is run
 };
 
 struct Part {
@@ -162,32 +124,16 @@ Released release(const Part& part) {
     const Mandrel mandrel = mandrel_of(part);
     const Machine machine = machine_of(part);
     const Job job = part.job.empty() ? Job{} : parse_job(part.job, "job.json");
-    const Run run = wind(mandrel, machine, job);
-    EXPECT_TRUE(run.planned()) << part.name;
-    for (const Check& check : run.checks) {
-        EXPECT_TRUE(check.ok) << part.name << ", " << check.name << ": " << check.words;
-    }
-    const WoundLayer& layer = run.layers.front();
-    const FibreProgram& program = layer.programs.front();
-    Released released;
-    released.setup = make_setup(mandrel, machine, job);
-    released.file = program.file;
-    released.text = program.text;
-    released.plan.fibre =
-        read_path_csv(path_csv(layer.plan.pieces, program.made.eyes.path), "path.csv");
-    released.plan.motion =
-        read_motion_csv(motion_csv(machine, program.made.blocks), "motion.csv", machine);
-    for (const std::string& line : lines_of(released.text)) {
-        if (line.find(kCodeDigest) == std::string::npos) {
-            released.lines.push_back(line);
-        }
+    SCOPED_TRACE(part.name);
+    Released released{test::released_program(mandrel, machine, job)};
+    for (std::size_t i = 0; i < released.lines.size(); ++i) {
+        const std::string& line = released.lines[i];
         if (line.substr(0, 2) == "G1" && line.size() > 2 && !words_of(line).empty()) {
-            released.blocks.push_back(released.lines.size() - 1);
+            released.blocks.push_back(i);
         }
     }
-    EXPECT_LT(released.lines.size(), lines_of(released.text).size());
-    const BlockList list = released.setup.dialect->read(text_of(released.lines), released.file,
-                                                        released.setup.machine);
+    const BlockList list = released.setup.dialect->read(test::text_of(released.lines),
+                                                        released.file, released.setup.machine);
     for (const Block& block : list.blocks) {
         released.run.push_back(block.line);
     }
@@ -375,30 +321,17 @@ bool is_beside(const Released& program, std::size_t changed, std::int32_t named)
     return false;
 }
 
-// With the digest in its head the change is seen without a plan.
-bool digest_sees(const Released& program, const Lines& lines) {
-    const Dialect& dialect = *program.setup.dialect;
-    try {
-        const BlockList written = dialect.read(program.text, program.file, program.setup.machine);
-        return code_digest(dialect, text_of(lines), program.file) != written.head->code_digest;
-    } catch (const InputError&) {
-        return true;
-    }
-}
-
 void expect_random_changes_seen(const Released& program) {
-    const unsigned seed = from_environment("MESHWIND_SEED", 1);
-    const unsigned count = from_environment("MESHWIND_COUNT", 40);
-    EXPECT_FALSE(
-        test::answer_of(program.setup, program.plan, program.file, text_of(program.lines)).seen);
-    EXPECT_FALSE(digest_sees(program, program.lines));
+    const unsigned seed = test::from_environment("MESHWIND_SEED", 1);
+    const unsigned count = test::from_environment("MESHWIND_COUNT", 40);
+    EXPECT_FALSE(test::answer_of(program, test::text_of(program.lines)).seen);
+    EXPECT_FALSE(test::digest_sees(program, test::text_of(program.lines)));
     Mutator mutator(program, seed);
     std::size_t seen = 0;
     std::size_t named = 0;
     for (unsigned i = 0; i < count; ++i) {
         const Mutation mutation = mutator.next(i);
-        const test::Answer answer =
-            test::answer_of(program.setup, program.plan, program.file, text_of(mutation.lines));
+        const test::Answer answer = test::answer_of(program, test::text_of(mutation.lines));
         seen += answer.seen ? 1 : 0;
         const bool beside = is_beside(program, mutation.line, answer.line) ||
                             (mutation.other && is_beside(program, *mutation.other, answer.line));
@@ -407,7 +340,7 @@ void expect_random_changes_seen(const Released& program) {
             << "seed " << seed << ", change " << i << ", " << mutation.name << " in line "
             << mutation.line + 1 << ": " << mutation.what << "; seen by " << answer.by
             << ", which names line " << answer.line;
-        EXPECT_TRUE(digest_sees(program, mutation.lines)) << mutation.what;
+        EXPECT_TRUE(test::digest_sees(program, test::text_of(mutation.lines))) << mutation.what;
     }
     std::printf("seed %u: %zu of %u seen, %zu named\n", seed, seen, count, named);
 }
@@ -476,10 +409,8 @@ std::vector<Mutation> head_changes(const Released& program) {
 void expect_head_changes_seen(const Released& program) {
     for (const Mutation& mutation : head_changes(program)) {
         SCOPED_TRACE(mutation.name);
-        EXPECT_TRUE(
-            test::answer_of(program.setup, program.plan, program.file, text_of(mutation.lines))
-                .seen);
-        EXPECT_TRUE(digest_sees(program, mutation.lines));
+        EXPECT_TRUE(test::answer_of(program, test::text_of(mutation.lines)).seen);
+        EXPECT_TRUE(test::digest_sees(program, test::text_of(mutation.lines)));
     }
 }
 
@@ -519,7 +450,7 @@ TEST(Mutations, PipeGrbl) {
 
 // Plans for half a minute: asked for by name or by MESHWIND_COUNT.
 TEST(Mutations, Tee) {
-    if (from_environment("MESHWIND_COUNT", 0) == 0) {
+    if (test::from_environment("MESHWIND_COUNT", 0) == 0) {
         GTEST_SKIP() << "set MESHWIND_COUNT";
     }
     expect_changes_seen({.name = "tee", .machine = "six_axis"});

@@ -14,69 +14,26 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/code_digest.h"
-#include "pipeline/verify_text.h"
-#include "pipeline/wind.h"
-#include "postproc/nc/nc_reader.h"
-#include "postproc/tables/motion_csv.h"
-#include "postproc/tables/path_csv.h"
+#include "tests/support/released_program.h"
 #include "tests/support/small_pipe.h"
-#include "tests/support/text_answer.h"
 
 namespace meshwind {
 namespace {
 
-using Lines = std::vector<std::string>;
+using test::Lines;
 
-unsigned from_environment(const char* name, unsigned value) {
-    const char* const text = std::getenv(name);
-    return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : value;
-}
-
-std::string text_of(const Lines& lines) {
-    std::string text;
-    for (const std::string& line : lines) {
-        text += line + '\n';
-    }
-    return text;
-}
-
-// A released program with the plan that it came from, without the digest of its code.
-struct Released {
-    Setup setup;
-    VerifyPlan plan;
-    std::string file;
-    std::string text;  // as it was written
-    Lines lines;
-    std::vector<std::size_t> blocks;  // lines that are blocks, from 0
-    std::vector<std::size_t> times;   // those with their times
+struct Released : test::ReleasedProgram {
+    std::vector<std::size_t> blocks{};  // lines that are blocks, from 0
+    std::vector<std::size_t> times{};   // those with their times
 };
 
 Released release(const std::string& dialect) {
     Machine machine = test::shipped("robot_winder");
     machine.controller.dialect = dialect;
     const Job job = test::quick_job();
-    const Run run = wind(test::small_pipe(), machine, job);
-    for (const Check& check : run.checks) {
-        EXPECT_TRUE(check.ok) << check.name << ": " << check.words;
-    }
-    const WoundLayer& layer = run.layers.front();
-    const FibreProgram& program = layer.programs.front();
-    Released released;
-    released.setup = make_setup(test::small_pipe(), machine, job);
-    released.file = program.file;
-    released.text = program.text;
-    released.plan.fibre =
-        read_path_csv(path_csv(layer.plan.pieces, program.made.eyes.path), "path.csv");
-    released.plan.motion =
-        read_motion_csv(motion_csv(machine, program.made.blocks), "motion.csv", machine);
-    for (const std::string_view line : lines_of_text(program.text)) {
-        if (line.find(kCodeDigest) == std::string::npos) {
-            released.lines.emplace_back(line);
-        }
-    }
+    Released released{test::released_program(test::small_pipe(), machine, job)};
     const BlockList list =
-        released.setup.dialect->read(text_of(released.lines), released.file, machine);
+        released.setup.dialect->read(test::text_of(released.lines), released.file, machine);
     for (std::size_t b = 1; b < list.blocks.size(); ++b) {
         const auto line = static_cast<std::size_t>(list.blocks[b].line) - 1;
         released.blocks.push_back(line);
@@ -84,13 +41,6 @@ Released release(const std::string& dialect) {
         released.times.push_back(dialect == "krl" ? line + 1 : line);
     }
     return released;
-}
-
-// With the digest in its head a change is seen without a plan.
-bool digest_sees(const Released& program, const std::string& text) {
-    const Dialect& dialect = *program.setup.dialect;
-    const BlockList written = dialect.read(program.text, program.file, program.setup.machine);
-    return code_digest(dialect, text, program.file) != written.head->code_digest;
 }
 
 // Where the numbers with a point stand in a line.
@@ -227,19 +177,18 @@ bool is_beside(const Lines& lines, std::int32_t line, std::int32_t named) {
 }
 
 void expect_random_changes_seen(const Released& program) {
-    const unsigned seed = from_environment("MESHWIND_SEED", 1);
-    const unsigned count = from_environment("MESHWIND_COUNT", 40);
+    const unsigned seed = test::from_environment("MESHWIND_SEED", 1);
+    const unsigned count = test::from_environment("MESHWIND_COUNT", 40);
     Mutator mutator(program, seed);
     for (unsigned i = 0; i < count; ++i) {
         Lines lines;
         std::string what;
         const auto line = static_cast<std::int32_t>(mutator.next(i, lines, what)) + 1;
-        const test::Answer answer =
-            test::answer_of(program.setup, program.plan, program.file, text_of(lines));
+        const test::Answer answer = test::answer_of(program, test::text_of(lines));
         EXPECT_TRUE(answer.seen && is_beside(lines, line, answer.line))
             << "seed " << seed << ", change " << i << " in line " << line << ": " << what
             << "; seen by " << answer.by << ", which names line " << answer.line;
-        EXPECT_TRUE(digest_sees(program, text_of(lines))) << what;
+        EXPECT_TRUE(test::digest_sees(program, test::text_of(lines))) << what;
     }
 }
 
@@ -252,20 +201,19 @@ struct FrameChange {
 void expect_frame_changes_seen(const Released& program, const std::vector<FrameChange>& changes) {
     for (const FrameChange& change : changes) {
         SCOPED_TRACE(change.what + " -> " + change.by);
-        std::string text = text_of(program.lines);
+        std::string text = test::text_of(program.lines);
         const std::size_t at = text.find(change.what);
         ASSERT_NE(at, std::string::npos);
         text.replace(at, change.what.size(), change.by);
-        EXPECT_TRUE(test::answer_of(program.setup, program.plan, program.file, text).seen);
-        EXPECT_TRUE(digest_sees(program, text));
+        EXPECT_TRUE(test::answer_of(program, text).seen);
+        EXPECT_TRUE(test::digest_sees(program, text));
     }
 }
 
 TEST(RobotMutations, Rapid) {
     const Released program = release("rapid");
-    EXPECT_FALSE(
-        test::answer_of(program.setup, program.plan, program.file, text_of(program.lines)).seen);
-    EXPECT_FALSE(digest_sees(program, text_of(program.lines)));
+    EXPECT_FALSE(test::answer_of(program, test::text_of(program.lines)).seen);
+    EXPECT_FALSE(test::digest_sees(program, test::text_of(program.lines)));
     const std::string first = program.lines[program.blocks.front()];
     const std::string start = first.substr(0, first.find("v1000")) + "approach,fine,tool0;\n";
     expect_frame_changes_seen(program, {{"Stop;\n", ""},
@@ -283,9 +231,8 @@ TEST(RobotMutations, Rapid) {
 
 TEST(RobotMutations, Krl) {
     const Released program = release("krl");
-    EXPECT_FALSE(
-        test::answer_of(program.setup, program.plan, program.file, text_of(program.lines)).seen);
-    EXPECT_FALSE(digest_sees(program, text_of(program.lines)));
+    EXPECT_FALSE(test::answer_of(program, test::text_of(program.lines)).seen);
+    EXPECT_FALSE(test::digest_sees(program, test::text_of(program.lines)));
     const std::string first = program.lines[program.blocks.front()];
     const std::string start = "PTP" + first.substr(4) + "\n";
     expect_frame_changes_seen(program, {{"HALT\n", ""},

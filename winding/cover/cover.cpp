@@ -190,7 +190,7 @@ TriedOrder order_that_holds(const CoverTask& task, const AnnealGround& ground,
     std::size_t least = 0;
     int in_vain = 0;
     for (int attempt = 0; attempt < kMaxAttempts && !courses.placed.empty(); ++attempt) {
-        CourseJoiner joiner;
+        CourseJoiner joiner;  // what it keeps was proven against other turns
         CoverOrder order = joined_to_fibres(task, reach.routes, joiner, library, courses);
         lay_out_order(task, order, library, plan);
         std::unique_ptr<TrialWinding> trial = task.machine != nullptr && !order.courses.empty()
@@ -209,6 +209,7 @@ TriedOrder order_that_holds(const CoverTask& task, const AnnealGround& ground,
             least = refused.size();
         }
         give_up_courses(task, refused, library, courses);
+        // Else those that the machine cannot turn would come again, from the next places of a rim.
         courses.turned_with = courses.placed;
         if (in_vain < kMaxInVain && attempt + kAttemptsWithoutOthers < kMaxAttempts) {
             replace_lost_courses(task, ground, reach, library, courses);

@@ -84,7 +84,7 @@ void give_up_courses(const CoverTask& task,
                      const std::vector<std::pair<std::size_t, CourseFault>>& refused,
                      ProvenLibrary& library, PlanCourses& courses);
 
-/// Proves a course, winds its program, and looks whether it can be turned. Thread-safe.
+/// Proves a course, sees whether it can be turned, and winds its own program. Thread-safe.
 [[nodiscard]] CourseFault prove_to_stay(const CoverTask& task, const PlanCourses& courses,
                                         PlacedCourse& course);
 

@@ -148,27 +148,22 @@ bool can_be_turned(const CourseRules& rules, const Windability* machine, const P
         return true;
     }
     const NodePair nodes = nodes_of(course.member, course.backward);
-    std::vector<const PlacedCourse*> before;
-    std::vector<const PlacedCourse*> behind;
+    std::size_t before = 0;  // others from which fibre may come
+    std::size_t behind = 0;  // others to which it may go on
+    bool comes = false;
+    bool goes_on = false;
     for (const PlacedCourse& other : others) {
         const NodePair its = nodes_of(other.member, other.backward);
         if (its.second == nodes.first) {
-            before.push_back(&other);
+            ++before;
+            comes = comes || can_turn(rules, *machine, other, course);
         }
         if (its.first == nodes.second) {
-            behind.push_back(&other);
+            ++behind;
+            goes_on = goes_on || can_turn(rules, *machine, course, other);
         }
     }
-    const auto is_open_before = [&](const PlacedCourse* other) {
-        return can_turn(rules, *machine, *other, course);
-    };
-    const auto is_open_behind = [&](const PlacedCourse* other) {
-        return can_turn(rules, *machine, course, *other);
-    };
-    return (before.size() < kMinOthers ||
-            std::any_of(before.begin(), before.end(), is_open_before)) &&
-           (behind.size() < kMinOthers ||
-            std::any_of(behind.begin(), behind.end(), is_open_behind));
+    return (comes || before < kMinOthers) && (goes_on || behind < kMinOthers);
 }
 
 }  // namespace meshwind
