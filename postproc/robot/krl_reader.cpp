@@ -179,13 +179,15 @@ void Reader::line(std::string_view code) {
             }
             part_ = Part::Name;
             [[fallthrough]];
-        case Part::Name:
-            if (!cursor.take("def") || packed(cursor.rest()).size() < 3 ||
-                packed(cursor.rest()).substr(packed(cursor.rest()).size() - 2) != "()") {
+        case Part::Name: {
+            const bool begins = cursor.take("def");
+            const std::string name = packed(cursor.rest());
+            if (!begins || name.size() < 3 || name.substr(name.size() - 2) != "()") {
                 not_understood();
             }
             part_ = Part::Settings;
             return;
+        }
         case Part::Settings:
             settings(code);
             return;
