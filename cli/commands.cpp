@@ -20,6 +20,7 @@
 #include "core/units.h"
 #include "machines/eye_inverse.h"
 #include "machines/machine_json.h"
+#include "machines/spindle_frame.h"
 #include "mesh/io/export.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "mesh/shapes/make.h"
@@ -321,7 +322,7 @@ int run_validate(const ValidateArguments& arguments, const Common& common) {
         text.is_object() && (text.contains("schema") || text.contains("eye_chain"));
     std::string more;
     if (machine) {
-        const Machine read = read_machine(file);
+        const Machine read = in_spindle_frame(read_machine(file));
         if (!carries_frames(read)) {
             check_controller(read, file);
         }
@@ -344,7 +345,7 @@ int run_machines(const Common& common) {
     std::vector<std::pair<std::string, Machine>> machines;
     std::size_t widest = 0;
     for (const std::string& file : shipped_machines()) {
-        machines.emplace_back(file, read_machine(find_input(file).string()));
+        machines.emplace_back(file, in_spindle_frame(read_machine(find_input(file).string())));
         widest = std::max(widest, file.size());
     }
     nlohmann::json all = nlohmann::json::array();

@@ -62,11 +62,12 @@ double distance_to_axis(const Axis& axis, const Eigen::Vector3d& point_mm) {
 }
 
 [[noreturn]] void unsupported(const Machine& machine, const std::string& words) {
-    throw InputError("machine.unsupported_chain", machine.name,
-                     words +
-                         "; the closed form needs a spindle along Z, one to three linear axes and "
-                         "at most a head roll along X and a head swing along Y, both through the "
-                         "eye");
+    throw InputError(
+        "machine.unsupported_chain", machine.name,
+        words +
+            "; the closed form needs one spindle, the exit at a right angle to it, one "
+            "to three linear axes and at most a head roll along the exit and a head "
+            "swing across both, the two through the eye");
 }
 
 [[noreturn]] void missing(const Machine& machine, const std::string& words) {
@@ -173,10 +174,10 @@ SpindleWristInverse::SpindleWristInverse(const Machine& machine)
     recognise_linear(machine);
     recognise_wrist(machine);
     if (sign_along(machine.eye.roller, Eigen::Vector3d::UnitZ()) == 0.0) {
-        unsupported(machine, "the roller is not along Z at zero");
+        unsupported(machine, "the roller is not along the spindle at zero");
     }
     if (sign_along(machine.eye.exit, Eigen::Vector3d::UnitX()) != -1.0) {
-        unsupported(machine, "the exit is not along -X at zero");
+        unsupported(machine, "the exit is not along -X of the spindle's frame at zero");
     }
 }
 
@@ -190,13 +191,17 @@ void SpindleWristInverse::recognise_spindle(const Machine& machine) {
     }
     spindle_sign_ = spindle_sign(machine).value_or(0.0);
     if (spindle_sign_ == 0.0) {
-        unsupported(machine, name_of(spindle) + " is not the Z axis of the machine frame");
+        unsupported(machine, name_of(spindle) +
+                                 " is not at a right angle to the exit, or not along z of the "
+                                 "mandrel frame");
     }
 }
 
 void SpindleWristInverse::recognise_mount(const Machine& machine) {
     if (!is_mounted_along_z(machine)) {
-        unsupported(machine, "the mandrel frame at zero is not the machine frame moved along Z");
+        unsupported(machine,
+                    "the mandrel frame at zero is not that of the spindle, moved along it: z along "
+                    "the spindle, x against the exit");
     }
     if (machine.mount) {  // what is left to move when the eye is at the target
         eye_zero_mm_.z() -= machine.mount->origin_mm.z();
@@ -268,10 +273,11 @@ void SpindleWristInverse::recognise_wrist(const Machine& machine) {
     has_roll_ = links > 0;
     has_swing_ = links > 1;
     if (has_roll_) {
-        roll_ = rotary(linear_count_, Eigen::Vector3d::UnitX(), "X (head roll)");
+        roll_ = rotary(linear_count_, Eigen::Vector3d::UnitX(), "the exit (head roll)");
     }
     if (has_swing_) {
-        swing_ = rotary(linear_count_ + 1, Eigen::Vector3d::UnitY(), "Y (head swing)");
+        swing_ = rotary(linear_count_ + 1, Eigen::Vector3d::UnitY(),
+                        "a right angle to exit and spindle (head swing)");
     }
     if (links > 2) {
         unsupported(machine, "the eye chain has more than two rotary axes");

@@ -104,12 +104,15 @@ struct Controller {
 struct Machine {
     std::string name;
     std::vector<Axis> mandrel_chain;
-    std::vector<Axis> eye_chain;        ///< empty: the eye stands still
-    std::optional<MandrelMount> mount;  ///< nothing: the mandrel frame is the machine frame at zero
+    std::vector<Axis> eye_chain;  ///< empty: the eye stands still
+    /// Nothing: the mandrel frame at zero is the frame of the machine (machines/spindle_frame.h).
+    std::optional<MandrelMount> mount;
     EyeHead eye;
     std::vector<MachineBody> bodies;
     FibreLimits fibre;
     Controller controller;
+    /// Unit; upwards in a picture of a machine with one spindle (machines/spindle_frame.h).
+    Eigen::Vector3d up = Eigen::Vector3d::UnitY();
 
     [[nodiscard]] std::size_t axis_count() const { return mandrel_chain.size() + eye_chain.size(); }
 

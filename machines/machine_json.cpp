@@ -376,13 +376,14 @@ const KeyTable<Machine>& machine_keys() {
             required(chain_key("eye_chain", &Machine::eye_chain, true,
                                "axes that carry the eye, from the base outward; empty: the eye "
                                "stands still")),
-            or_null<Machine>(
-                {"mandrel",
-                 "the mandrel's frame in the machine frame; without it both are the same",
-                 keys_schema(mount_keys()),
-                 [](const JsonValue& value, Machine& machine) {
-                     read_keys(mount_keys(), value, machine.mount.emplace());
-                 }}),
+            or_null<Machine>({"mandrel",
+                              "the mandrel's frame in the machine frame; without it that of the "
+                              "spindle, or both are "
+                              "the same",
+                              keys_schema(mount_keys()),
+                              [](const JsonValue& value, Machine& machine) {
+                                  read_keys(mount_keys(), value, machine.mount.emplace());
+                              }}),
             required(
                 object("eye", &Machine::eye, eye_head_keys(), "where the fibre leaves the head")),
             parts_key("bodies", &Machine::bodies, "bodyCapsule", "bodyMesh",

@@ -10,6 +10,7 @@
 #include "core/text/digest.h"
 #include "core/text/text_file.h"
 #include "machines/machine_json.h"
+#include "machines/spindle_frame.h"
 #include "mesh/io/import.h"
 #include "mesh/mandrel/load_mandrel.h"
 #include "pipeline/run_names.h"
@@ -63,7 +64,7 @@ Machine load_machine(const std::filesystem::path& file) {
     for (MachineBody& body : machine.bodies) {
         read_mesh(body.shape);
     }
-    return machine;
+    return in_spindle_frame(std::move(machine));
 }
 
 Job load_job(const std::filesystem::path& file, std::span<const JobSetting> settings,

@@ -90,6 +90,7 @@ json page_machine(const Machine& machine, PageArrays& arrays) {
                    {"mandrel_chain", chain_json(machine.mandrel_chain)},
                    {"eye_chain", chain_json(machine.eye_chain)},
                    {"mount", nullptr},
+                   {"up", vector_json(machine.up)},
                    {"eye",
                     {{"position", vector_json(machine.eye.position_mm)},
                      {"roller", vector_json(machine.eye.roller)},

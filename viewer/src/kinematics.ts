@@ -78,10 +78,11 @@ export class Kinematics {
         return 0;
     }
 
-    /** Which way is up on the screen: spindles lie along z, with y up; arms stand on z. */
+    /** Which way is up on the screen: as a machine with one spindle has it; arms stand on z. */
     up(): Vector3 {
         const rotary = this.machine.mandrel_chain.filter((axis) => axis.type === 'rotary');
         const alongZ = rotary.length > 0 && Math.abs(rotary[0].direction[2]) > 0.99;
-        return alongZ && rotary.length === 1 ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1);
+        const spindle = alongZ && rotary.length === 1;
+        return spindle ? new Vector3(...this.machine.up) : new Vector3(0, 0, 1);
     }
 }

@@ -144,6 +144,7 @@ export interface Machine {
     mandrel_chain: Axis[];
     eye_chain: Axis[];
     mount: { origin: Vec3; x: Vec3; z: Vec3 } | null;
+    up: Vec3;
     eye: { position: Vec3; roller: Vec3; exit: Vec3; envelope: Body[] };
     bodies: Body[];
     fibre: { min_free_length: number; max_free_length: number; max_speed: number };
