@@ -69,9 +69,10 @@ constexpr Letters kExternalLetters{
 
 const KeyTable<Controller>& controller_keys() {
     static const KeyTable<Controller> kTable = {{
-        required(any_text("dialect", &Controller::dialect,
-                          "language of the program: linuxcnc, fanuc, siemens, grbl, marlin, "
-                          "pulses, rapid or krl, which carried frames are written in as well")),
+        required(
+            any_text("dialect", &Controller::dialect,
+                     "language of the program: linuxcnc, fanuc, siemens, grbl, marlin, "
+                     "pulses, rapid, krl, which carried frames are written in as well, or tp")),
         or_null(word("feed", &Controller::feed, {"inverse-time", "per-minute"},
                      "what F means; inverse-time without")),
         lines_key("header", &Controller::header, "lines of one's own at the head of the program"),
@@ -81,11 +82,11 @@ const KeyTable<Controller>& controller_keys() {
         or_null(number("junction_deviation", &Controller::junction_deviation_mm, kDeviation,
                        "of grbl, $11: how near to the corners it stays, mm; 0.01 without")),
         letters_key("robot_axes", &Controller::robot_axes, kRobotLetters,
-                    "of rapid and krl: letters of the robot's axes 1 to 6; the last six of "
+                    "of rapid, krl and tp: letters of the robot's axes 1 to 6; the last six of "
                     "eye_chain without"),
         letters_key("external_axes", &Controller::external_axes, kExternalLetters,
-                    "of rapid and krl: letters of the external axes, eax_a or E1 first, - for one "
-                    "that is not there; without it all others, those of mandrel_chain first"),
+                    "of rapid, krl and tp: letters of the external axes, eax_a or E1 first, - for "
+                    "one that is not there; without it all others, those of mandrel_chain first"),
     }};
     return kTable;
 }

@@ -105,7 +105,8 @@ void append_made_from(std::vector<std::string>& comments, const ProgramHeader& h
 }
 
 std::optional<MadeFrom> made_from(std::string_view program) {
-    const std::vector<std::string_view> lines = lines_of_text(program);
+    const std::string remarks = tp_text(tp_lines(program));
+    const std::vector<std::string_view> lines = lines_of_text(remarks.empty() ? program : remarks);
     if (!is_by_meshwind(lines)) {
         return std::nullopt;
     }

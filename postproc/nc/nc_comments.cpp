@@ -84,6 +84,15 @@ bool begins_with(std::string_view comment, std::string_view words) {
     return comment.substr(0, words.size()) == words;
 }
 
+constexpr std::string_view kTpRemark = "! ";
+constexpr std::string_view kTpGoesOn = "!+";
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = std::min(text.find_first_not_of(" \t"), text.size());
+    const std::size_t end = text.find_last_not_of(" \t") + 1;
+    return text.substr(first, end > first ? end - first : 0);
+}
+
 // More pins at a ring, or mm of one, than anything has.
 constexpr double kMaxOfPins = 1e4;
 
@@ -317,6 +326,44 @@ std::vector<std::string_view> lines_of_text(std::string_view text) {
         text.remove_prefix(std::min(end + 1, text.size()));
     }
     return lines;
+}
+
+std::vector<TpLine> tp_lines(std::string_view program) {
+    std::vector<TpLine> lines;
+    const std::vector<std::string_view> all = lines_of_text(program);
+    const auto begin = std::find(all.begin(), all.end(), "/MN");
+    for (auto at = begin; at != all.end() && ++at != all.end() && !begins_with(*at, "/");) {
+        const std::string_view words = trimmed(*at);
+        const std::size_t number = std::min(words.find_first_not_of("0123456789"), words.size());
+        const auto line = static_cast<std::int32_t>(at - all.begin()) + 1;
+        if (words.empty()) {
+            continue;
+        }
+        if (!begins_with(words.substr(number), ":") || words.back() != ';') {
+            lines.push_back({std::string(words), line, false});
+            continue;
+        }
+        const std::string_view text = trimmed(words.substr(number + 1, words.size() - number - 2));
+        const bool goes_on = begins_with(text, kTpGoesOn) && !lines.empty() &&
+                             begins_with(lines.back().text, kTpRemark);
+        if (goes_on) {
+            lines.back().text += text.substr(kTpGoesOn.size());
+        } else {
+            const bool remark = begins_with(text, "!");
+            lines.push_back({remark ? std::string(kTpRemark).append(trimmed(text.substr(1)))
+                                    : std::string(text),
+                             line, true});
+        }
+    }
+    return lines;
+}
+
+std::string tp_text(const std::vector<TpLine>& lines) {
+    std::string text;
+    for (const TpLine& line : lines) {
+        text += line.text + '\n';
+    }
+    return text;
 }
 
 }  // namespace meshwind

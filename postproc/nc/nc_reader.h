@@ -39,6 +39,20 @@ void check_own_line(const NcFlavour& flavour, const Machine& machine, const std:
 /// Text as lines without their ends.
 [[nodiscard]] std::vector<std::string_view> lines_of_text(std::string_view text);
 
+/// An instruction in the text form of a TP program (FANUC's robots), which parts long remarks:
+/// "12:  !words ;" and, behind "!+", what goes on from the remark before.
+struct TpLine {
+    std::string text{};     ///< without number and semicolon; a whole remark behind "! "
+    std::int32_t line = 0;  ///< of the program, from 1
+    bool is_whole = false;  ///< it has both; else the text is as it stands
+};
+
+/// What stands between /MN and /POS; nothing in programs of other languages.
+[[nodiscard]] std::vector<TpLine> tp_lines(std::string_view program);
+
+/// The texts of these, a line each.
+[[nodiscard]] std::string tp_text(const std::vector<TpLine>& lines);
+
 /// The comments with a meaning: "course 3", "tie on at X1.000 Y2.000 Z3.000 on the mandrel",
 /// "code digest: 0f..".
 class NcMarks {

@@ -1,21 +1,35 @@
 #include "postproc/robot/dialects.h"
 
+#include <array>
+
 #include "core/error.h"
 #include "postproc/nc/nc_dialects.h"
 #include "postproc/nc/pulses.h"
 #include "postproc/robot/krl_program.h"
 #include "postproc/robot/rapid.h"
+#include "postproc/robot/tp_program.h"
 
 namespace meshwind {
+namespace {
+
+template <typename Language>
+std::unique_ptr<Dialect> make() {
+    return std::make_unique<Language>();
+}
+
+// Languages that are no flavour of G-code.
+constexpr std::array kOthers = {make<Pulses>, make<Rapid>, make<Krl>, make<Tp>};
+
+}  // namespace
 
 std::vector<std::string> dialect_names() {
     std::vector<std::string> names;
     for (const NcFlavour* flavour : nc_flavours()) {
         names.emplace_back(flavour->dialect);
     }
-    names.push_back(Pulses().name());
-    names.push_back(Rapid().name());
-    names.push_back(Krl().name());
+    for (const auto& make_other : kOthers) {
+        names.push_back(make_other()->name());
+    }
     return names;
 }
 
@@ -25,14 +39,10 @@ std::unique_ptr<Dialect> make_dialect(std::string_view name) {
             return std::make_unique<NcDialect>(*flavour);
         }
     }
-    if (name == Pulses().name()) {
-        return std::make_unique<Pulses>();
-    }
-    if (name == Rapid().name()) {
-        return std::make_unique<Rapid>();
-    }
-    if (name == Krl().name()) {
-        return std::make_unique<Krl>();
+    for (const auto& make_other : kOthers) {
+        if (std::unique_ptr<Dialect> other = make_other(); other->name() == name) {
+            return other;
+        }
     }
     std::string known;
     for (const std::string& word : dialect_names()) {

@@ -16,6 +16,8 @@ namespace {
 NcFlavour comments_of(const RobotLanguage& language) {
     NcFlavour flavour;
     flavour.comments = language.comments;
+    flavour.not_in_comments = language.not_in_comments;
+    flavour.stand_in = language.stand_in;
     flavour.line_length = 120;  // of comments; the controllers read longer lines
     return flavour;
 }
@@ -42,6 +44,9 @@ std::vector<double> RobotDialect::run_times_s(const Machine& machine, const Bloc
 
 BlockList RobotDialect::prepare(BlockList list) const {
     check_float32(list, language_.title);
+    for (Block& block : list.blocks) {
+        block.duration_s = sayable_s(block.duration_s);
+    }
     return list;
 }
 

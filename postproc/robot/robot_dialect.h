@@ -18,6 +18,8 @@ struct RobotLanguage {
     const char* title;      ///< in messages
     NcComments comments;
     std::array<const char*, kMaxExternalAxes> external;  ///< names of the external axes
+    const char* not_in_comments = "";                    ///< characters with a meaning even there
+    char stand_in = '?';                                 ///< written in their place
 };
 
 /// A language whose blocks have absolute positions of all axes and a time. The controller reads
@@ -40,6 +42,8 @@ protected:
     explicit RobotDialect(const RobotLanguage& language) : language_(language) {}
 
 private:
+    /// The duration of a block as the language can say it, never shorter.
+    [[nodiscard]] virtual double sayable_s(double duration_s) const { return duration_s; }
     /// The program. \param source checked
     [[nodiscard]] virtual std::string text_of(const RobotSource& source) const = 0;
 

@@ -36,8 +36,8 @@ public:
         }
         if (words_.empty() && head_.stop_line == 0 && keeps_form(task_)) {
             words_ =
-                "the program does not stop (M0; Stop in RAPID, HALT in KRL) between its last rapid "
-                "move and its first feed move; the fibre could not be tied on";
+                "the program does not stop (M0; Stop in RAPID, HALT in KRL, PAUSE in TP) between "
+                "its last rapid move and its first feed move; the fibre could not be tied on";
         }
         return Check(check_kind::kApproach, words_.empty(), words_,
                      {{"rapid_moves", static_cast<double>(head_.approach.size())},

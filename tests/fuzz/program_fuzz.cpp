@@ -1,4 +1,4 @@
-// A program: '0' to '8' is the dialect, then its text. What was read, written again, must be read
+// A program: '0' to '9' is the dialect, then its text. What was read, written again, must be read
 // alike; what is short enough is wound on a small tube.
 #include <array>
 #include <cmath>
@@ -20,8 +20,8 @@
 namespace meshwind::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 9> kDialects = {
-    "linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "carried", "rapid", "krl"};
+constexpr std::array<std::string_view, 10> kDialects = {
+    "linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "carried", "rapid", "krl", "tp"};
 
 // Only so that an input takes milliseconds: longer programs are read and written, not wound.
 constexpr std::size_t kMaxBlocks = 40;
@@ -30,7 +30,7 @@ constexpr double kMaxWay = 2000.0;  // mm and degrees of all axes together
 constexpr double kExtension_mm = 60.0;
 
 Machine machine_of(std::string_view dialect) {
-    const bool robot = dialect == "rapid" || dialect == "krl";
+    const bool robot = dialect == "rapid" || dialect == "krl" || dialect == "tp";
     const std::string file = robot ? "robot_winder.json" : "six_axis.json";
     Machine machine = read_machine(MESHWIND_SOURCE_DIR "/machines/" + file);
     machine.controller.dialect = dialect;

@@ -23,9 +23,15 @@ namespace {
 using test::Lines;
 
 struct Released : test::ReleasedProgram {
-    std::vector<std::size_t> blocks{};  // lines that are blocks, from 0
+    std::vector<std::size_t> blocks{};  // lines with positions of blocks, from 0
     std::vector<std::size_t> times{};   // those with their times
 };
+
+// The first three angles of a position of TP.
+std::size_t line_of_position(const Lines& lines, std::size_t number) {
+    const auto at = std::find(lines.begin(), lines.end(), "P[" + std::to_string(number) + "]{");
+    return static_cast<std::size_t>(at - lines.begin()) + 3;
+}
 
 Released release(const std::string& dialect) {
     Machine machine = test::shipped("robot_winder");
@@ -36,7 +42,8 @@ Released release(const std::string& dialect) {
         released.setup.dialect->read(test::text_of(released.lines), released.file, machine);
     for (std::size_t b = 1; b < list.blocks.size(); ++b) {
         const auto line = static_cast<std::size_t>(list.blocks[b].line) - 1;
-        released.blocks.push_back(line);
+        // In TP the block's own line has the time alone.
+        released.blocks.push_back(dialect == "tp" ? line_of_position(released.lines, b + 1) : line);
         // In KRL the next line; a comment never stands between.
         released.times.push_back(dialect == "krl" ? line + 1 : line);
     }
@@ -65,8 +72,13 @@ class Mutator {
 public:
     Mutator(const Released& program, unsigned seed) : program_(program), random_(seed) {}
 
-    // Changes one block; \return its line, from 0.
-    std::size_t next(unsigned number, Lines& lines, std::string& what) {
+    struct Change {
+        std::size_t block = 0;  // from 0
+        std::size_t line = 0;   // from 0
+    };
+
+    // Changes one block.
+    Change next(unsigned number, Lines& lines, std::string& what) {
         for (;;) {
             lines = program_.lines;
             const std::size_t at = random_() % program_.blocks.size();
@@ -76,7 +88,7 @@ public:
             what = lines[line];
             if (change(number % 9, lines, line, last ? line : program_.blocks[at + 1])) {
                 what += " -> " + (line < lines.size() ? lines[line] : std::string());
-                return line;
+                return {at, line};
             }
         }
     }
@@ -114,12 +126,25 @@ private:
     // The last number, by a hundredth or more.
     bool time(std::string& text) {
         static const std::vector<double> kTimes = {0.1, 0.5, 0.99, 1.01, 2.0, 10.0};
-        const Number number = numbers_of(text).back();
+        const Number number = time_of(text);
+        const std::string before = text;
         const double value = std::strtod(text.c_str() + number.first, nullptr);
+        const bool whole = before.find('.', number.first) >= number.first + number.size;
         char now[40];
-        (void)std::snprintf(now, sizeof now, "%.9f", value * kTimes[random_() % kTimes.size()]);
+        (void)std::snprintf(now, sizeof now, whole ? "%.0f" : "%.9f",
+                            value * kTimes[random_() % kTimes.size()]);
         text.replace(number.first, number.size, now);
-        return true;
+        return text != before;
+    }
+
+    // The number before its unit, or the last one.
+    static Number time_of(const std::string& text) {
+        const std::size_t unit = text.find("msec");
+        if (unit == std::string::npos) {
+            return numbers_of(text).back();
+        }
+        const std::size_t first = text.rfind(' ', unit) + 1;
+        return {first, unit - first};
     }
 
     // A number of the line.
@@ -163,10 +188,11 @@ private:
     std::mt19937 random_;
 };
 
-// The line itself or a neighbour (comments stand between some). A share of a time block of KRL
+// The line itself or a neighbour (comments stand between some, and angles of TP begin three lines
+// behind their position's name). A share of a time block of KRL
 // changes the times of all its segments, from the first on.
 bool is_beside(const Lines& lines, std::int32_t line, std::int32_t named) {
-    if (std::abs(named - line) <= 2) {
+    if (std::abs(named - line) <= 3) {
         return true;
     }
     bool one_block = named > 0 && named < line;
@@ -183,9 +209,12 @@ void expect_random_changes_seen(const Released& program) {
     for (unsigned i = 0; i < count; ++i) {
         Lines lines;
         std::string what;
-        const auto line = static_cast<std::int32_t>(mutator.next(i, lines, what)) + 1;
+        const Mutator::Change change = mutator.next(i, lines, what);
+        const auto line = static_cast<std::int32_t>(change.line) + 1;
+        const auto of_block = static_cast<std::int32_t>(program.times[change.block]) + 1;
         const test::Answer answer = test::answer_of(program, test::text_of(lines));
-        EXPECT_TRUE(answer.seen && is_beside(lines, line, answer.line))
+        EXPECT_TRUE(answer.seen &&
+                    (is_beside(lines, line, answer.line) || std::abs(answer.line - of_block) <= 2))
             << "seed " << seed << ", change " << i << " in line " << line << ": " << what
             << "; seen by " << answer.by << ", which names line " << answer.line;
         EXPECT_TRUE(test::digest_sees(program, test::text_of(lines))) << what;
@@ -247,6 +276,26 @@ TEST(RobotMutations, Krl) {
                                         {"TIME_BLOCK END=", "TIME_BLOCK END=1"},
                                         {"ENDSPLINE\nEND", "ENDSPLINE\n" + start + "END"},
                                         {"ENDSPLINE\nEND\n", "ENDSPLINE\n"}});
+    expect_random_changes_seen(program);
+}
+
+TEST(RobotMutations, Tp) {
+    const Released program = release("tp");
+    EXPECT_FALSE(test::answer_of(program, test::text_of(program.lines)).seen);
+    EXPECT_FALSE(test::digest_sees(program, test::text_of(program.lines)));
+    const std::string start = "    :J P[2] 10% FINE ;\n";
+    expect_frame_changes_seen(program, {{"PAUSE ;\n", " ;\n"},
+                                        {"PAUSE ;\n", "PAUSE ;\n" + start},
+                                        {"CNT100", "FINE"},
+                                        {"10% FINE", "5sec FINE"},
+                                        {"J P[3] ", "J P[4] "},
+                                        {"UT : 1", "UT : 2"},
+                                        {"1,*,*,*,*", "1,1,*,*,*"},
+                                        {"tie on at X30.0", "tie on at X33.0"},
+                                        {"!tie on", "!fasten"},
+                                        {"UTOOL_NUM=1 ;", "UTOOL_NUM=1 ;\n    :  WAIT 1.00(sec) ;"},
+                                        {"/POS\n", start + "/POS\n"},
+                                        {"/END\n", ""}});
     expect_random_changes_seen(program);
 }
 

@@ -13,7 +13,7 @@ import unittest
 import program
 
 EXTENSIONS = {"linuxcnc": ".ngc", "fanuc": ".nc", "siemens": ".mpf", "grbl": ".gcode",
-              "marlin": ".gcode", "pulses": ".pulses", "rapid": ".mod", "krl": ".src"}
+              "marlin": ".gcode", "pulses": ".pulses", "rapid": ".mod", "krl": ".src", "tp": ".ls"}
 HOOPS = '{"tow": {"width": 12}, "mandrel": {"extension": 0}, "layers": [{"kind": "hoop"}]}'
 # Slips off: the plan is made and a check fails.
 SLIPS = HOOPS.replace("12", '12, "friction": 0.001')

@@ -153,7 +153,7 @@ std::vector<double> end_of_program(const std::string& text, const Machine& machi
 }
 
 bool is_robots(const std::string& dialect) {
-    return dialect == "rapid" || dialect == "krl";
+    return dialect == "rapid" || dialect == "krl" || dialect == "tp";
 }
 
 Machine machine_for(const std::string& dialect) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "postproc/nc/nc_reader.h"
 #include "postproc/robot/dialects.h"
 #include "tests/support/block_lists.h"
 #include "tests/support/dialect_lists.h"
@@ -48,12 +49,12 @@ TEST(HeaderLines, OthersAreRefusedWithThoseThatExist) {
 
 TEST(HeaderLines, EveryDialectFillsThemIn) {
     for (const std::string name :
-         {"linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "rapid", "krl"}) {
+         {"linuxcnc", "fanuc", "siemens", "grbl", "marlin", "pulses", "rapid", "krl", "tp"}) {
         SCOPED_TRACE(name);
         Machine machine = test::machine_for(name);
         const bool brackets = name == "linuxcnc" || name == "fanuc" || name == "grbl";
         const std::string words = "no {program}: {mandrel} on {machine}, {fibre_m} m, {time_s} s";
-        const std::string opens = brackets ? "(" : name == "rapid" ? "! " : "; ";
+        const std::string opens = brackets ? "(" : name == "rapid" || name == "tp" ? "! " : "; ";
         const std::string closes = brackets ? ")" : "";
         machine.controller.header = {opens + words + closes};
         machine.controller.footer = {opens + "{blocks} blocks" + closes};
@@ -62,8 +63,11 @@ TEST(HeaderLines, EveryDialectFillsThemIn) {
         const BlockList list = dialect->prepare(test::random_list(machine, 1, 5));
         const ProgramHeader header{.mandrel = "a.stl", .fibre_length_mm = 1500.0};
         const std::string text = dialect->write(machine, list, header);
-        EXPECT_NE(text.find("no 12: a.stl on " + machine.name + ", 1.500 m, "), std::string::npos);
-        EXPECT_NE(text.find(std::to_string(list.blocks.size() - 1) + " blocks"), std::string::npos);
+        // TP parts remarks.
+        const std::string whole = name == "tp" ? tp_text(tp_lines(text)) : text;
+        EXPECT_NE(whole.find("no 12: a.stl on " + machine.name + ", 1.500 m, "), std::string::npos);
+        EXPECT_NE(whole.find(std::to_string(list.blocks.size() - 1) + " blocks"),
+                  std::string::npos);
         EXPECT_EQ(dialect->read(text, "p", machine).nano, list.nano);
         // What is filled in may not open or close a comment, and code is checked as it will stand.
         const ProgramHeader odd{.mandrel = "a) M2 (\n.stl"};
