@@ -8,6 +8,7 @@
 
 #include "core/units.h"
 #include "mesh/edge_table.h"
+#include "mesh/smooth/jet_fit.h"
 
 namespace meshwind {
 namespace {

@@ -6,11 +6,12 @@
 #include <cstdint>
 #include <span>
 
-#include "mesh/smooth/jet_fit.h"
 #include "mesh/surface.h"
 #include "mesh/triangle_soup.h"
 
 namespace meshwind {
+
+struct Jet;
 
 /// Input of `freeze_surface` beside the triangles; all spans are per face and as long as
 /// `soup.faces`.

@@ -16,7 +16,7 @@
 #include "postproc/eye/eye_rules.h"
 #include "winding/plan/figures.h"
 #include "winding/revolution/pattern_constraints.h"
-#include "winding/turn/pin_turn.h"
+#include "winding/turn/pin.h"
 
 namespace meshwind {
 

@@ -6,12 +6,11 @@
 #include <string>
 #include <string_view>
 
-#include "winding/plan/tow.h"
-#include "winding/revolution/rim_turns.h"
-
 namespace meshwind {
 
 struct Job;
+class RimTurns;
+struct Tow;
 
 /// How the fibre turns round beyond a rim.
 enum class TurnKind { Friction, Pins, Pole };

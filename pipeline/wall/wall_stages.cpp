@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/random.h"
 #include "core/text/text_number.h"
+#include "geodesic/on_surface.h"
 #include "mesh/nearest.h"
 #include "mesh/revolution/revolution.h"
 #include "mesh/segment/rims.h"

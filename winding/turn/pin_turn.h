@@ -29,16 +29,6 @@
 
 namespace meshwind {
 
-/// Constraints on the pins; 0 and none: chosen.
-struct PinConstraints {
-    int count = 0;  ///< >= 0: of a ring, a multiple of the circuits
-    double diameter_mm = 2.0;
-    std::optional<double> height_mm{};
-    int skip = 0;  ///< >= 0: pins that a turn runs behind
-    /// >= 0: least distance of the pins' axes from the rim; 0: a tow's width and a pin's diameter
-    double offset_mm = 0.0;
-};
-
 /// A turn on the unrolled extension.
 struct PinTurnShape {
     double radius_mm = 0.0;            ///< of the extension
