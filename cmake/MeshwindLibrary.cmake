@@ -1,17 +1,18 @@
-# meshwind_library(NAME HEADERS ... SOURCES ... PUBLIC ... PRIVATE ...): one static library per folder.
+# meshwind_library(NAME HEADERS ... INTERNAL ... SOURCES ... PUBLIC ... PRIVATE ...): one static library per folder. HEADERS are
+# installed, INTERNAL are the other headers; tests/tools/check_public.py holds which are which.
 function(meshwind_library name)
-    cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "HEADERS;INTERNAL;SOURCES;PUBLIC;PRIVATE" ${ARGN})
     set(target meshwind_${name})
     add_library(${target} STATIC)
     add_library(meshwind::${name} ALIAS ${target})
-    target_sources(${target} PRIVATE ${ARG_SOURCES})
+    target_sources(${target} PRIVATE ${ARG_INTERNAL} ${ARG_SOURCES})
     target_sources(
         ${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
     meshwind_flags(${target})
     if(MESHWIND_UNITY GREATER 1)
-        meshwind_note_names(${ARG_HEADERS})
+        meshwind_note_names(${ARG_HEADERS} ${ARG_INTERNAL})
         meshwind_unity(${target} ${ARG_SOURCES})
     endif()
 endfunction()
