@@ -54,7 +54,7 @@ public:
 
 private:
     // Some hundred columns with eight hundred rows take two thousand.
-    static constexpr int kMaxSteps = 20'000;
+    static constexpr int kMaxSteps = 4'000;
 
     struct Model;
     static void tell_apart(Model& model);

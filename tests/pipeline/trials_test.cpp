@@ -181,7 +181,9 @@ TEST(Trials, TurnsOnPinsWhereFrictionDoesNotDo) {
                    : build_mandrel(make_mandrel("tee", {}, {.edge_mm = 15.0}), "tee");
     };
     const auto run = wind(mandrel, shipped("six_axis"), job, {.context = {.effort = kQuick}});
-    EXPECT_EQ(asked, (std::vector{TurnKind::Friction, TurnKind::Pins}));
+    // Friction once; pins as often as it takes seeds.
+    EXPECT_EQ(asked.front(), TurnKind::Friction);
+    EXPECT_EQ(std::count(asked.begin(), asked.end(), TurnKind::Friction), 1);
     EXPECT_EQ(failed_checks(run), std::vector<std::string>{});
     const meshwind::Setup& setup = run.layers.front().setup;
     EXPECT_EQ(setup.pins.size(), 2U);

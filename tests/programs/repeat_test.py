@@ -58,7 +58,7 @@ class Repeat(program.ProgramTest):
     def test_what_a_run_chose_by_itself_is_told(self):
         """A tee on which friction does not turn the fibre is wound on pins, of which the job says nothing."""
         self.make("tee", "--edge", "12", "--run-length", "240", "--branch-length", "140")
-        self.write("job.json", json.dumps({"tow": {"width": 10, "friction": 0.1}, "mandrel": {"extension": 40}}))
+        self.write("job.json", json.dumps({"tow": {"width": 10, "friction": 0.1}, "mandrel": {"extension": 30}}))
         self.done("tee.stl", "--machine", "six_axis.json", "--job", "job.json", "-o", "out", "--effort", "0.1")
         (self.folder / "job.json").unlink()
         text = (self.folder / "out/program.ngc").read_text()

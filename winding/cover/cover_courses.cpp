@@ -27,8 +27,13 @@ constexpr std::size_t kMaxSpares = 200;
 // What does not hold of the courses that fill thin places makes room for others so many times.
 constexpr int kMaxFills = 10;
 
-// Proposals at an effort of 1, and where a few courses had to be given up.
+// Rounds in which the courses that fill thin places and the others settle.
+constexpr int kSettlings = 3;
+
+// Proposals at an effort of 1: of an annealing, of a round of settling, and where a few courses had
+// to be given up.
 constexpr double kProposals = 30'000.0;
+constexpr double kSettlingProposals = 10'000.0;
 constexpr std::int64_t kMendingProposals = 4'000;
 
 // What a fibre too many costs where courses lead on to a stage from which none leads back: then it
@@ -39,6 +44,11 @@ constexpr double kDearFibre = 6.0;
 // those whose thin places are filled later.
 constexpr double kLastBare = 2.0;
 constexpr double kEarlyBare = 0.3;
+
+// The same in the first round of settling. From round to round it is so many times more where too
+// much lacks, and else as many times less.
+constexpr double kSettlingBare = 2.0;
+constexpr double kSettlingStep = 2.0;
 
 // Courses that come of the bound are moved, but not thrown about, and keep short turns: values of
 // AnnealOptions. Its own are for a wanted winding angle, which takes other courses.
@@ -66,14 +76,26 @@ CourseRules rules_of(const Mandrel& mandrel, const RayQuery& obstacles,
 // What courses are annealed for.
 enum class AnnealAim {
     Evenness,
-    Mending  // a few courses are missing
+    Settling,  // thin places have just been filled
+    Mending    // a few courses are missing
 };
 
+std::int64_t proposals_for(AnnealAim aim, double effort) {
+    switch (aim) {
+        case AnnealAim::Settling:
+            return std::llround(effort * kSettlingProposals);
+        case AnnealAim::Mending:
+            return kMendingProposals;
+        default:
+            return std::llround(effort * kProposals);
+    }
+}
+
 // How much courses are annealed, and at what prices; what is specific to a plan is left open.
-AnnealOptions annealing_prices(const CoverTask& task, const PlanRoutes& routes, AnnealAim aim) {
+// \param bare what a layer short of the target costs more
+AnnealOptions annealing_prices(const CoverTask& task, const PlanRoutes& routes, AnnealAim aim,
+                               double bare) {
     AnnealOptions annealing;
-    const bool mending = aim == AnnealAim::Mending;
-    const double bare = task.is_last_stage() ? kLastBare : kEarlyBare;
     annealing.bare_hot *= bare;
     annealing.bare_cold *= bare;
     if (!task.options.angle_rad.has_value()) {
@@ -81,9 +103,8 @@ AnnealOptions annealing_prices(const CoverTask& task, const PlanRoutes& routes, 
         annealing.turn_share = kStartedTurnShare;
     }
     annealing.fibre_share = routes.has_fibres_to_spare() ? kDearFibre : annealing.fibre_share;
-    annealing.proposals =
-        mending ? kMendingProposals : std::llround(task.options.context.effort * kProposals);
-    if (mending) {
+    annealing.proposals = proposals_for(aim, task.options.context.effort);
+    if (aim != AnnealAim::Evenness) {
         annealing.hot = annealing.cold;
         annealing.bare_hot = annealing.bare_cold;
     }
@@ -133,10 +154,10 @@ std::vector<char> which_hold(const CoverTask& task, std::span<const DirectedCour
 }
 
 void anneal_proven(const CoverTask& task, const AnnealGround& ground, const PlanRoutes& routes,
-                   AnnealAim aim, ProvenLibrary& library, PlanCourses& courses) {
+                   AnnealAim aim, double bare, ProvenLibrary& library, PlanCourses& courses) {
     const CoverOptions& options = task.options;
     const bool mending = aim == AnnealAim::Mending;
-    AnnealOptions annealing = annealing_prices(task, routes, aim);
+    AnnealOptions annealing = annealing_prices(task, routes, aim, bare);
     annealing.select = task.select;
     annealing.select.targets = task.stage.weighed.layers;
     annealing.beyond_layers = task.stage.beyond_layers;
@@ -182,6 +203,48 @@ void fill_where_thin(const CoverTask& task, const std::vector<char>& joinable,
         filling = those_that_hold(task, std::move(filling), prove, library);
         std::move(filling.begin(), filling.end(), std::back_inserter(courses.placed));
     }
+}
+
+double bare_price(const CoverTask& task) {
+    return task.is_last_stage() ? kLastBare : kEarlyBare;
+}
+
+// Fibre of the courses, with what it takes to join them: a course for each fibre too many.
+double fibre_mm(const CoverTask& task, std::span<const PlacedCourse> courses) {
+    double sum_mm = 0.0;
+    for (const PlacedCourse& course : courses) {
+        sum_mm += course.member.length_mm + course.member.turn_mm;
+    }
+    const int joining =
+        std::max(0, RimJoints(task.nodes(), courses).fibres() - task.options.fibres);
+    const auto number = static_cast<double>(std::max<std::size_t>(1, courses.size()));
+    return sum_mm * (1.0 + joining / number);
+}
+
+// Fills thin places, and lets all courses settle: some of those that lay there are needed no more,
+// and others lie better a little beside. Of all rounds the courses with the least fibre stay.
+void fill_and_settle(const CoverTask& task, const AnnealGround& ground, const FibreReach& reach,
+                     ProvenLibrary& library, PlanCourses& courses) {
+    const auto lacking = [&] {
+        return lacking_share(layers_of(courses.placed, task.samples.size()), reach.joinable,
+                             task.select);
+    };
+    fill_where_thin(task, reach.joinable, library, courses);
+    const double most_lacking = std::max(lacking(), task.stage.filled_to);
+    std::vector<PlacedCourse> best = courses.placed;
+    double least_mm = fibre_mm(task, best);
+    double bare = kSettlingBare;
+    for (int round = 0; round < kSettlings && task.stage.stages_left > 0; ++round) {
+        anneal_proven(task, ground, reach.routes, AnnealAim::Settling, bare, library, courses);
+        bare *= lacking() > task.stage.filled_to ? kSettlingStep : 1.0 / kSettlingStep;
+        fill_where_thin(task, reach.joinable, library, courses);
+        if (const double now_mm = fibre_mm(task, courses.placed);
+            now_mm < least_mm && lacking() <= most_lacking) {
+            best = courses.placed;
+            least_mm = now_mm;
+        }
+    }
+    courses.placed = std::move(best);
 }
 
 // The next course that holds in place of the link between two stages that did not.
@@ -238,10 +301,11 @@ std::optional<double> choose_courses(const CoverTask& task, const std::vector<ch
 void make_courses_even(const CoverTask& task, const AnnealGround& ground, const FibreReach& reach,
                        ProvenLibrary& library, PlanCourses& courses) {
     if (task.stage.stages_left > 0) {
-        anneal_proven(task, ground, reach.routes, AnnealAim::Evenness, library, courses);
+        anneal_proven(task, ground, reach.routes, AnnealAim::Evenness, bare_price(task), library,
+                      courses);
     }
     if (task.is_last_stage()) {
-        fill_where_thin(task, reach.joinable, library, courses);
+        fill_and_settle(task, ground, reach, library, courses);
     }
 }
 
@@ -274,7 +338,8 @@ void replace_lost_courses(const CoverTask& task, const AnnealGround& ground,
         // Annealing would take out again what fills thin places.
         fill_where_thin(task, reach.joinable, library, courses);
     } else {
-        anneal_proven(task, ground, reach.routes, AnnealAim::Mending, library, courses);
+        anneal_proven(task, ground, reach.routes, AnnealAim::Mending, bare_price(task), library,
+                      courses);
     }
 }
 

@@ -25,6 +25,17 @@ constexpr std::size_t kGainChunk = 256;
 
 }  // namespace
 
+double lacking_share(std::span<const std::int32_t> layers, std::span<const char> reached,
+                     const SelectOptions& options) {
+    double in_reach = 0.0;
+    double lacking = 0.0;
+    for (std::int32_t i = 0; at(i) < layers.size(); ++i) {
+        in_reach += reached[at(i)];
+        lacking += reached[at(i)] != 0 && layers[at(i)] < options.target(i) ? 1.0 : 0.0;
+    }
+    return lacking / std::max(1.0, in_reach);
+}
+
 std::vector<std::int32_t> fill_thin_places(std::span<const LibraryCourse> members,
                                            std::span<const char> allowed,
                                            std::span<const char> reached,

@@ -36,6 +36,11 @@ struct Selection {
     std::vector<std::int32_t> layers;  ///< per sample
 };
 
+/// Share of the samples in reach that are short of their target. \param layers per sample
+/// \param reached per sample
+[[nodiscard]] double lacking_share(std::span<const std::int32_t> layers,
+                                   std::span<const char> reached, const SelectOptions& options);
+
 /// Members that bring most samples to their target, per length of their fibre, until at most the
 /// share `most_short` of those in reach is short of it, or no member helps. \param reached per
 /// sample

@@ -39,6 +39,14 @@ TEST(FillThinPlaces, TakesWhatBringsMostPlacesToTheirTarget) {
     EXPECT_EQ(filled(0.5, all), Indices{});
 }
 
+TEST(LackingShare, CountsPlacesInReachAlone) {
+    const std::vector<std::int32_t> layers{0, 1, 2, 3, 0};
+    const std::vector<std::int32_t> targets{1, 2, 2, 2, -1};
+    EXPECT_EQ(lacking_share(layers, std::vector<char>(5, 1), {.targets = targets}), 0.4);
+    EXPECT_EQ(lacking_share(layers, std::vector<char>{0, 1, 1, 1, 1}, {.targets = targets}), 0.25);
+    EXPECT_EQ(lacking_share(layers, std::vector<char>(5, 0), {.targets = targets}), 0.0);
+}
+
 TEST(FillThinPlaces, LeavesWhatIsOutOfReach) {
     const std::vector<LibraryCourse> members{covering(0, 4)};
     std::vector<char> reached(5, 0);
