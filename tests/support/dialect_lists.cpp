@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "core/error.h"
 #include "tests/support/block_lists.h"
 
 namespace meshwind::test {
@@ -169,7 +170,8 @@ BlockList small_program(const Machine& machine) {
     BlockList list = empty_list(machine);
     const double pace = machine.controller.dialect == "pulses" ? 0.05 : 1.0;
     const auto block = [&](double c, double z, double x, double duration_s, int piece) {
-        const double place[] = {c, z, 0.0, x, 0.0, 0.0, 0.0};
+        std::vector<double> place{c, z, 0.0, x};
+        place.resize(list.axes.size(), 0.0);
         std::vector<std::int64_t> steps;
         for (std::size_t a = 0; a < list.axes.size(); ++a) {
             steps.push_back(std::llround(place[a] * static_cast<double>(kNanoPerUnit) /
@@ -190,6 +192,21 @@ BlockList small_program(const Machine& machine) {
         }
     }
     return list;
+}
+
+bool reads_otherwise(const Dialect& dialect, const Machine& machine, const std::string& changed,
+                     const BlockList& whole) {
+    try {
+        const BlockList read = dialect.read(changed, "p", machine);
+        bool same = read.nano == whole.nano && read.blocks.size() == whole.blocks.size() &&
+                    read.head->stop_line > 0;
+        for (std::size_t b = 0; same && b < read.blocks.size(); ++b) {
+            same = read.blocks[b].duration_s == whole.blocks[b].duration_s;
+        }
+        return !same;
+    } catch (const InputError&) {
+        return true;
+    }
 }
 
 ManyCircuits many_circuits(const Machine& machine, double circuit_deg) {

@@ -20,6 +20,10 @@ namespace meshwind::test {
 /// A helix of two strokes and twelve circuits that repeat, as data/programs/ has it.
 [[nodiscard]] BlockList small_program(const Machine& machine);
 
+/// Whether a changed program is refused, or read as other motions, times or stops than the whole.
+[[nodiscard]] bool reads_otherwise(const Dialect& dialect, const Machine& machine,
+                                   const std::string& changed, const BlockList& whole);
+
 /// 10,000 circuits there and back, four blocks each, in which C turns by `circuit_deg`; and the
 /// exact angle in the end.
 struct ManyCircuits {
